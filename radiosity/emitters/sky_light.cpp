@@ -17,7 +17,6 @@ struct SkyLight::Share {
   int cell = 0;
   double E = 0.0;       // unobstructed, mean of the bands
   double likely = 0.0;  // weight of the site; 0: not known to be open
-  double cdf = 0.0;     // running sum of weights
   double weight = 0.0;  // of the cell's rays
   bool is_open() const { return likely > 0.0; }
 };
@@ -25,6 +24,7 @@ struct SkyLight::Share {
 // All cells above a point's horizon, in the order of the curve.
 struct SkyLight::Shares {
   std::vector<Share> cells{};
+  std::vector<double> cdf{};  // running sum of the cells' weights
   double rays_per_open_ray = 1.0;
   Eigen::ArrayXd E_open{};  // unobstructed, of the open cells
 };
@@ -50,9 +50,11 @@ void SkyLight::set_weights(Shares& shares) const {
   }
   const double thinning =
       open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
+  shares.cdf.clear();
+  shares.cdf.reserve(shares.cells.size());
   for (Share& share : shares.cells) {
     share.weight = share.E * (share.is_open() ? share.likely : thinning);
-    share.cdf = sum += share.weight;
+    shares.cdf.push_back(sum += share.weight);
   }
   shares.rays_per_open_ray = open > 0.0 ? sum / open : 1.0;
   shares.E_open = Eigen::ArrayXd::Zero(bands_);
@@ -217,15 +219,16 @@ class SkyLight::Estimate {
     std::vector<Sample> samples;
     ray.reserve(static_cast<std::size_t>(rays));
     samples.reserve(static_cast<std::size_t>(rays));
-    const double all = cells().back().cdf;
+    std::vector<Eigen::Array4f> points(static_cast<std::size_t>(rays));
+    sky_.sobol_.points(0, key, points);
+    const std::vector<double>& cdf = shares_->cdf;
+    const double all = cdf.back();
     std::size_t s = 0;
     for (int i = 0; i < rays; ++i) {
-      const double within =
-          random_uniform(random_key(key, RandomPurpose::sky_rays, static_cast<std::uint64_t>(i)));
-      const double wanted = (i + within) / rays * all;
-      while (s + 1 < cells().size() && !(cells()[s].cdf > wanted)) ++s;
+      const Eigen::Array4f& u = points[static_cast<std::size_t>(i)];
+      const double wanted = (i + static_cast<double>(u[2])) / rays * all;
+      while (s + 1 < cdf.size() && !(cdf[s] > wanted)) ++s;
       const Share& share = cells()[s];
-      const Eigen::Array4f u = sky_.sobol_.point(i, key);
       const SkyCells::Sample drawn =
           sky_.cells_.sample(share.cell, static_cast<double>(u[0]), static_cast<double>(u[1]));
       const double cosine = drawn.direction.dot(at_.normal);
@@ -242,14 +245,20 @@ class SkyLight::Estimate {
     caster_.occluded(ray, blocked);
     std::vector<double> passed_share;
     passed_share.reserve(ray.size());
+    const Spectrum whole = Spectrum::Ones(sky_.bands_);
+    const auto add = [&](const Sample& sample, const Spectrum& passed, Eigen::ArrayXd& sum) {
+      for (int k = 0; k < sky_.bands_; ++k) {
+        sum[k] += sample.weight * sky_.cells_.colour(sample.cell, k) * double{passed[k]};
+      }
+    };
     for (std::size_t i = 0; i < ray.size(); ++i) {
       const Sample& sample = samples[i];
-      const Eigen::ArrayXd weight = sample.weight * sky_.cells_.colour(sample.cell);
+      Eigen::ArrayXd& seen = sample.is_open ? tally.seen_open : tally.seen_elsewhere;
       passed_share.push_back(blocked[i] == 0 ? 1.0 : 0.0);
-      if (sample.is_open) tally.all_open += weight;
+      if (sample.is_open) add(sample, whole, tally.all_open);
       ++tally.rays;
       if (blocked[i] == 0) {
-        (sample.is_open ? tally.seen_open : tally.seen_elsewhere) += weight;
+        add(sample, whole, seen);
         ++tally.clear;
         continue;
       }
@@ -257,7 +266,7 @@ class SkyLight::Estimate {
       const Spectrum passed = sky_.panes_.passed(caster_, ray[i]);
       passed_share.back() = passed.cast<double>().mean();
       if (!(passed > 0.0f).any()) continue;
-      (sample.is_open ? tally.seen_open : tally.seen_elsewhere) += weight * passed.cast<double>();
+      add(sample, passed, seen);
       ++tally.clear;
     }
     const double visible = tally.all_open.sum() > 0.0 ? seen_share(tally).mean() : 0.0;
