@@ -138,6 +138,9 @@ int print_result(const Difference& difference, const CompareArguments& arguments
 }
 
 int compare(const CompareArguments& arguments, Console& console) {
+  for (const std::string& file : {arguments.picture, arguments.reference, arguments.second_half}) {
+    if (!file.empty()) note_input(file);
+  }
   if (!arguments.output.empty()) require_writable(arguments.output);
   const Image a = read_exr(arguments.picture, ExrChannels::bands);
   const Image b = read_exr(arguments.reference, ExrChannels::bands);

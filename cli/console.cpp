@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "cli/interrupt.h"
+#include "scene/utf8.h"
 
 namespace lightwell {
 namespace {
@@ -24,6 +26,17 @@ double seconds_between(std::chrono::steady_clock::time_point a,
 }
 
 }  // namespace
+
+std::string plain_lines(std::string_view text) {
+  std::string lines;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find('\n', begin), text.size());
+    if (begin > 0) lines += '\n';
+    lines += plain_text(text.substr(begin, end - begin));
+    begin = end + 1;
+  }
+  return lines;
+}
 
 double Stopwatch::seconds() const {
   return seconds_between(start_, std::chrono::steady_clock::now());
@@ -111,7 +124,7 @@ void Console::finish_phase() {
 void Console::say(std::string_view line) {
   if (options_.quiet) return;
   finish_phase();
-  fmt::print(stderr, "{}\n", line);
+  fmt::print(stderr, "{}\n", plain_lines(line));
 }
 
 void Console::say_notes(const Scene& scene) {

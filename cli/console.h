@@ -22,6 +22,10 @@ struct CommonOptions {
   std::vector<std::string> command_line{};  ///< argv
 };
 
+/// Lines of text for a terminal: plain_text() of each, since names and files may hold what
+/// terminals obey.
+std::string plain_lines(std::string_view text);
+
 /// A clock that starts with its construction.
 class Stopwatch {
  public:

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <stdexcept>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -37,6 +38,7 @@ struct Exported {
 
 SolvedScene read_alone(const std::string& file, Console& console, Report& report) {
   const Stopwatch watch;
+  note_input(file);
   SolvedScene solved = read_solution(file);
   report.add_solution(solved, false);
   report.add("light", light_name(solved.solution.relative_units));
@@ -47,12 +49,21 @@ SolvedScene read_alone(const std::string& file, Console& console, Report& report
   return solved;
 }
 
+// The MTL beside an OBJ is written unasked, and must not replace one that no export wrote.
+void require_own_materials(const std::filesystem::path& obj) {
+  const std::filesystem::path materials = std::filesystem::path(obj).replace_extension(".mtl");
+  require_writable(materials);
+  if (!std::filesystem::exists(materials) || is_exported_library(materials)) return;
+  throw std::runtime_error(fmt::format(
+      "{}: cannot be written, since '{}', which belongs to it, is not of an export; name "
+      "another output, or remove that file",
+      obj.string(), materials.string()));
+}
+
 void require_all_writable(const ExportArguments& arguments) {
   for (const std::filesystem::path file : arguments.outputs) {
     require_writable(file);
-    if (lower_extension(file) == ".obj") {
-      require_writable(std::filesystem::path(file).replace_extension(".mtl"));
-    }
+    if (lower_extension(file) == ".obj") require_own_materials(file);
     // The number of lightmaps is not known yet; the first always exists.
     if (arguments.lightmap && lower_extension(file) == ".glb") {
       require_writable(lightmap_files(file, 1).front());

@@ -239,6 +239,7 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
   Report report(console.options());
   Stopwatch watch;
   const NumberedScene numbered = read_numbered_scene(arguments.scene);
+  for (const auto& file : numbered.scene.files) note_input(file);
   refuse_losses(numbered.scene, console.options());
   if (arguments.show_row > 0) require_writable(arguments.row_file());
   if (!arguments.view3d.empty()) require_writable(arguments.view3d);

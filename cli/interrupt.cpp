@@ -21,6 +21,7 @@ void catch_interrupts() {
   action.sa_flags = SA_RESTART | SA_RESETHAND;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  sigaction(SIGHUP, &action, nullptr);
   // A write beyond the allowed file size fails with EFBIG and is reported, like a full disk.
   std::signal(SIGXFSZ, SIG_IGN);
 }

@@ -8,11 +8,11 @@
 namespace lightwell {
 
 /// Installs signal handling for the whole process:
-/// - the first SIGINT or SIGTERM sets a flag, the second ends the program;
+/// - the first SIGINT, SIGTERM or SIGHUP sets a flag, the second ends the program;
 /// - SIGXFSZ is ignored, so that a file at the allowed size fails to be written with an error.
 void catch_interrupts();
 
-/// True once SIGTERM has arrived, or SIGINT while no InterruptEndsEarly lives.
+/// True once SIGTERM or SIGHUP has arrived, or SIGINT while no InterruptEndsEarly lives.
 bool interrupt_requested();
 
 /// True once SIGINT has arrived while an InterruptEndsEarly lives.

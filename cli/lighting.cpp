@@ -214,6 +214,8 @@ std::string points_csv(const LightingReport& report) {
     for (std::size_t at = 0; (at = name.find('"', at)) != std::string::npos; at += 2) {
       name.insert(at, 1, '"');
     }
+    // A spreadsheet would compute a name that begins like a formula.
+    if (name.find_first_of("=+-@") == 0) name.insert(0, 1, '\'');
     for (std::size_t i = 0; i < grid.points.size(); ++i) {
       const Eigen::Vector3d p = grid.points[i].position / report.metres_per_unit;
       const double lux = field.lux[static_cast<Eigen::Index>(i)];

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cli/arguments.h"
+#include "cli/outputs.h"
 #include "cli/quoted.h"
 #include "raytrace/camera_ray.h"
 #include "raytrace/probe.h"
@@ -68,6 +69,7 @@ std::vector<Ray> LookFromArguments::rays(const Scene& scene) const {
       add_camera(choose_camera(scene, name), rays);
       continue;
     }
+    note_input(name);
     const double diagonal = scene_bounds(scene).diagonal();
     std::uint64_t key = 0;
     for (const Probe& place : read_probes(name, scene.metres_per_unit)) {

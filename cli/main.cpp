@@ -152,7 +152,7 @@ std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app,
 }
 
 int fail(ExitCode code, const std::string& sentence) {
-  fmt::print(stderr, "error: {}\n", sentence);
+  fmt::print(stderr, "error: {}\n", plain_lines(sentence));
   return code;
 }
 

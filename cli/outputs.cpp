@@ -16,9 +16,33 @@ namespace {
   throw std::runtime_error(fmt::format("{}: cannot be written: {}", file.string(), why));
 }
 
+// The files of the command that this process runs.
+struct CommandFiles {
+  std::vector<fs::path> inputs{}, outputs{};
+};
+
+CommandFiles& command_files() {
+  static CommandFiles files;
+  return files;
+}
+
+void refuse_same(const fs::path& output, const fs::path& input) {
+  std::error_code error;  // of files that do not exist, which are not the same
+  if (!fs::equivalent(output, input, error) || error) return;
+  refuse(output, fmt::format("the command reads the same file{}; name another output",
+                             output == input ? "" : fmt::format(" as '{}'", input.string())));
+}
+
 }  // namespace
 
+void note_input(const fs::path& file) {
+  command_files().inputs.push_back(file);
+  for (const fs::path& output : command_files().outputs) refuse_same(output, file);
+}
+
 void require_writable(const fs::path& file) {
+  command_files().outputs.push_back(file);
+  for (const fs::path& input : command_files().inputs) refuse_same(file, input);
   std::error_code error;
   const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error)) {

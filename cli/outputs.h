@@ -5,9 +5,13 @@
 
 namespace lightwell {
 
-/// Throws std::runtime_error with the reason if `file` can be neither created nor replaced. To be
-/// called before the long work whose result goes into `file`.
+/// Throws std::runtime_error with the reason if `file` can be neither created nor replaced, or is a
+/// file that note_input() named. To be called before the long work whose result goes into `file`.
 void require_writable(const std::filesystem::path& file);
+
+/// Names a file that the command reads. Throws std::runtime_error if require_writable() named the
+/// same file, by whatever name, as an output: results never replace what they were made from.
+void note_input(const std::filesystem::path& file);
 
 /// A folder for results: the constructor makes missing folders of its path, the destructor removes
 /// those of them that are empty.

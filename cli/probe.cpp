@@ -85,6 +85,7 @@ int probe(const ProbeArguments& arguments, Console& console) {
   if (scene.relative_units) {
     console.say("note: the scene names no unit of light; irradiance and lux are relative.");
   }
+  note_input(arguments.points);
   const std::vector<Probe> probes = read_probes(arguments.points, scene.metres_per_unit);
   require_writable(arguments.output);
   const SolvedScene solved = arguments.solution.empty()

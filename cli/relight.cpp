@@ -22,6 +22,7 @@ int relight_solution(const RelightArguments& arguments, Console& console) {
   Report report(console.options());
   require_writable(arguments.output);
   const Stopwatch reading;
+  note_input(arguments.solution);
   SolvedScene solved = read_solution(arguments.solution);
   report.add_phase("read_solution", reading.seconds());
   const std::vector<Spectrum> scales =

@@ -4,6 +4,7 @@
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
+#include "cli/outputs.h"
 #include "cli/picture_in_time.h"
 #include "cli/refinement.h"
 #include "mesh/patches/patch_textures.h"
@@ -137,6 +138,7 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report,
   console.begin("reading");
   const Scene scene = read_scene(file);
   console.finish_phase();
+  for (const fs::path& read : scene.files) note_input(read);
   refuse_losses(scene, console.options());
   console.say_notes(scene);
   report.add("light", light_name(scene.relative_units));
@@ -187,6 +189,7 @@ SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& ch
       MemoryOptions{.limit = arguments.memory, .folder = task.output.parent_path()});
   std::optional<SolvedScene> start;
   if (!arguments.start_from.empty()) {
+    note_input(arguments.start_from);
     start = read_solution(arguments.start_from);
     options.start = &*start;
   }
@@ -234,6 +237,7 @@ void write_solution_step(const fs::path& file, const SolvedScene& solved, Consol
 SolvedScene read_solution_step(const fs::path& file, const Scene& scene, Console& console,
                                Report& report) {
   const Stopwatch watch;
+  note_input(file);
   SolvedScene solved = read_solution(file);
   check_matches(scene, solved.solution);
   attach_textures(scene, solved.mesh);

@@ -226,6 +226,22 @@ double area_to_mesh(const Scene& scene) {
   return std::max(diffuse, all / most_of_all);
 }
 
+// Patch size of `count` patches of even size, or of up to 2.5 times as many in a scene with much
+// area in little space, such as a house of furnished rooms. There the patches must not be large
+// beside the way of light from surface to surface: 4 V / A in the mean (Cauchy). In an empty room
+// of 4 m x 5 m x 3 m that is 2.6 m, and the edge of 1600 patches is a tenth of it.
+double even_patch_size(const Scene& scene, int count) {
+  constexpr double largest = 0.3, most_times = 2.5;
+  constexpr double thickest = 0.1;  // of a flat scene, beside its largest extent
+  const double area = area_to_mesh(scene), size = std::sqrt(area / count);
+  if (!(area > 0.0)) return size;
+  const Bounds bounds = scene_bounds(scene);
+  const Eigen::Array3d extent = (bounds.high - bounds.low).array();
+  const double volume = extent.max(thickest * extent.maxCoeff()).prod();
+  const double of_way = largest * 4.0 * volume / area;
+  return std::clamp(of_way, size / std::sqrt(most_times), size);
+}
+
 // Meshes with the smallest tolerance that keeps all contact lines, or else with the one that leaves
 // fewest facets without a mesh and, of those, lets fewest cross themselves and keeps most lines.
 FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOptions& options,
@@ -257,10 +273,10 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOption
 
 CutSize cut_size(const Scene& scene, const MeshOptions& options) {
   check(scene, options);
-  const auto even_patches = [&](int count) { return std::sqrt(area_to_mesh(scene) / count); };
   if (!(options.max_element_size > 0.0)) {
-    return {.patch_size = options.max_patch_size > 0.0 ? options.max_patch_size
-                                                       : even_patches(options.auto_patch_count),
+    return {.patch_size = options.max_patch_size > 0.0
+                              ? options.max_patch_size
+                              : even_patch_size(scene, options.auto_patch_count),
             .elements_per_edge = options.elements_per_patch_edge};
   }
   const double element = options.max_element_size;
@@ -271,7 +287,7 @@ CutSize cut_size(const Scene& scene, const MeshOptions& options) {
     return {.patch_size = std::min(options.max_patch_size, count * element),
             .elements_per_edge = count};
   }
-  const double along = std::ceil(even_patches(options.most_patches) / element);
+  const double along = std::ceil(std::sqrt(area_to_mesh(scene) / options.most_patches) / element);
   const auto count = static_cast<int>(std::clamp(along, 2.0, 1e3));
   return {.patch_size = count * element, .elements_per_edge = count};
 }

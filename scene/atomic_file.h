@@ -6,7 +6,8 @@ namespace lightwell {
 
 /// A file that appears under its name only when complete. The caller writes a temporary file in the
 /// same folder, and commit() renames it. Without commit() the destructor removes the temporary
-/// file.
+/// file. The constructor removes temporary files for the same target that processes left which were
+/// killed.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& target);

@@ -140,6 +140,8 @@ inline constexpr int max_blades = 64;
 /// A room and its contents as plain data, in metres and watts.
 struct Scene {
   std::filesystem::path file{};  ///< source of the scene, for messages
+  /// All files that read_scene() read: also materials, pictures, luminaires and included scenes.
+  std::vector<std::filesystem::path> files{};
   std::string title{};
   double metres_per_unit = 1.0;  ///< the file's length unit; coordinates here are already metres
   std::string unit_name = "m";   ///< the file's name of the unit

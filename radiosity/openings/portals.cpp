@@ -146,13 +146,20 @@ Portals::Portals(const ElementCaster& caster, const std::vector<float>& brightne
       region = Eigen::AlignedBox3d(region.min() - more, region.max() + more);
     }
   }
-  if (portals_.size() <= static_cast<std::size_t>(most)) return;
-  const auto power = [](const Portal& portal) {
-    return portal.area * std::max(portal.brightness[0], portal.brightness[1]);
-  };
-  std::stable_sort(portals_.begin(), portals_.end(),
-                   [&](const Portal& a, const Portal& b) { return power(a) > power(b); });
-  portals_.resize(static_cast<std::size_t>(most));
+  if (portals_.size() > static_cast<std::size_t>(most)) {
+    const auto power = [](const Portal& portal) {
+      return portal.area * std::max(portal.brightness[0], portal.brightness[1]);
+    };
+    std::stable_sort(portals_.begin(), portals_.end(),
+                     [&](const Portal& a, const Portal& b) { return power(a) > power(b); });
+    portals_.resize(static_cast<std::size_t>(most));
+  }
+  std::vector<BoxTree::Box> boxes;
+  for (const Portal& portal : portals_) {
+    const Vector3d reach = portal.shape.along.cwiseAbs() + portal.shape.across.cwiseAbs();
+    boxes.emplace_back(portal.shape.center - reach, portal.shape.center + reach);
+  }
+  boxes_ = BoxTree(std::move(boxes));
 }
 
 template <class Weight>
@@ -241,7 +248,11 @@ bool Portals::part(const Vector3d& a, const Vector3d& b) const {
 bool Portals::is_near(const Vector3d& at, double size) const {
   constexpr double sizes = 2.0, least_height = 1e-3;
   const double reach = sizes * size;
-  return std::any_of(portals_.begin(), portals_.end(), [&](const Portal& portal) {
+  thread_local std::vector<int> around;
+  const Vector3d all_ways = Vector3d::Constant(reach);
+  boxes_.find_overlaps({at - all_ways, at + all_ways}, around);
+  return std::ranges::any_of(around, [&](int number) {
+    const Portal& portal = portals_[static_cast<std::size_t>(number)];
     const Vector3d to = at - portal.shape.center;
     const double height = to.dot(portal.shape.normal);
     if (!portal.is_dim[height > 0.0 ? 0 : 1] || std::abs(height) > reach) return false;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
+#include "mesh/geometry/box_tree.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/openings/find_openings.h"
 
@@ -90,6 +91,7 @@ class Portals {
                Weight weight) const;
 
   std::vector<Portal> portals_{};
+  BoxTree boxes_{std::vector<BoxTree::Box>{}};  // of the rectangles
 };
 
 /// The openings that are narrow: less wide than a tenth of the mean distance to what is seen

@@ -6,6 +6,7 @@
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
+#include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
@@ -15,8 +16,10 @@
 
 #include "radiosity/solution/channel_arrays.h"
 #include "radiosity/solution/solution_seal.h"
+#include "radiosity/solution/vtk_messages.h"
 #include "radiosity/solution/vtk_output.h"
 #include "scene/atomic_file.h"
+#include "scene/utf8.h"
 
 namespace lightwell {
 namespace {
@@ -46,10 +49,9 @@ void add_bands(vtkFieldData* data, const char* name, const BandArray& values, co
       add_values(data, name, values.data(), values.rows(), static_cast<int>(values.cols()));
   for (int k = 0; array && k < bands.count(); ++k) {
     // VTK writes the label unescaped into an XML attribute. The true name is in 'band_names'.
-    std::string label = bands.names[k];
+    std::string label = as_utf8(bands.names[k]);
     std::replace_if(
-        label.begin(), label.end(),
-        [](char c) { return std::strchr("<>&\"'", c) || static_cast<unsigned char>(c) < 0x20; },
+        label.begin(), label.end(), [](char c) { return std::strchr("<>&\"'", c) != nullptr; },
         '_');
     array->SetComponentName(k, label.c_str());
   }
@@ -276,6 +278,16 @@ std::string summary(const SolvedScene& solved) {
       fmt::format("cannot write the solution '{}': {}", path.string(), reason));
 }
 
+// True if VTK's parser accepts the text of the file. The arrays, which are most of the file, are
+// not read.
+bool can_be_parsed(const std::filesystem::path& path) {
+  const VtkMessages messages;
+  vtkNew<vtkXMLPolyDataReader> reader;
+  reader->SetFileName(path.c_str());
+  reader->UpdateInformation();
+  return reader->GetErrorCode() == 0 && !messages.any();
+}
+
 }  // namespace
 
 void write_solution(const std::filesystem::path& path, const SolvedScene& solved) {
@@ -293,6 +305,9 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
   writer->set_preamble(solution_preamble(summary(solved)));
   const std::string failure = write_appended(writer, poly, file.temporary());
   if (!failure.empty()) fail_solution_write(path, failure);
+  if (!can_be_parsed(file.temporary())) {
+    fail_solution_write(path, "what was written cannot be read back; a checkpoint is kept");
+  }
   seal_solution(file.temporary());
   file.commit();
 }

@@ -8,11 +8,13 @@
 #include <cstring>
 #include <fstream>
 #include <limits>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "scene/errors.h"
+#include "scene/utf8.h"
 
 namespace lightwell {
 namespace {
@@ -74,13 +76,12 @@ int read_format(const std::filesystem::path& path, std::ifstream& file) {
 }  // namespace
 
 std::string solution_preamble(const std::string& summary) {
-  std::string text = summary;
-  // "?>" would end the processing instruction early, and XML has no control characters.
+  std::string text;
+  std::istringstream lines(summary);
+  for (std::string line; std::getline(lines, line);) text += as_utf8(line) + "\n";
+  // "?>" would end the processing instruction early.
   for (std::size_t at = text.find("?>"); at != std::string::npos; at = text.find("?>", at)) {
     text.replace(at, 2, "? >");
-  }
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 && c != '\n') c = ' ';
   }
   return fmt::format("{}{}\"\n{}?>\n", preamble_start, solution_format, text);
 }

@@ -11,7 +11,7 @@ namespace lightwell {
 inline constexpr int solution_format = 1;
 
 /// The processing instruction at the beginning of a solution file, readable with `head`. `summary`:
-/// free text, one "name: value" line each.
+/// free text, one "name: value" line each; text that is not UTF-8 is taken as Latin-1.
 std::string solution_preamble(const std::string& summary);
 
 /// FNV-1a over all bytes (64 bits; Fowler, Noll & Vo). Throws std::runtime_error if unreadable.

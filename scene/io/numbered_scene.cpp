@@ -1,5 +1,6 @@
 #include "scene/io/numbered_scene.h"
 
+#include "scene/io/clean_names.h"
 #include "scene/io/mesh_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
@@ -19,9 +20,15 @@ void name_rows(NumberedScene& numbered) {
 }  // namespace
 
 NumberedScene read_numbered_scene(const std::filesystem::path& path) {
+  const FilesRead read;
   const std::string extension = lower_extension(path);
-  if (extension == ".vs3") return read_numbered_vs3(path);
   NumberedScene numbered;
+  if (extension == ".vs3") {
+    numbered = read_numbered_vs3(path);
+    numbered.scene.files = read.files();
+    clean_names(numbered.scene);
+    return numbered;
+  }
   FilePolygons polygons;
   if (extension == ".obj") {
     numbered.scene = read_obj_file(path, 1.0, MeshMaterials::ignored, &polygons);
@@ -32,6 +39,8 @@ NumberedScene read_numbered_scene(const std::filesystem::path& path) {
     polygons.count = static_cast<int>(scene_facets(numbered.scene).size());
     for (int f = 0; f < polygons.count; ++f) polygons.of_facet.push_back(f);
   }
+  numbered.scene.files = read.files();
+  clean_names(numbered.scene);
   numbered.rows.resize(static_cast<std::size_t>(polygons.count));
   numbered.row_of_facet = std::move(polygons.of_facet);
   name_rows(numbered);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <fstream>
 #include <string_view>
 
@@ -24,8 +25,8 @@ namespace {
   throw InputError(fmt::format("{}: {}", path.string(), what));
 }
 
-// Checks the header because the PLY reader of assimp 5.2 never returns from a truncated header and
-// trusts any count.
+// Checks the header because the PLY reader of assimp 5.2 never returns from a truncated header,
+// trusts any count, and takes a name that begins with digits for a count.
 void check_ply_header(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   const auto bytes = static_cast<double>(std::filesystem::file_size(path));
@@ -38,6 +39,12 @@ void check_ply_header(const std::filesystem::path& path) {
     if (key == "end_header" && !stream.eof()) return;
     if (key != "element") continue;
     const std::string_view name = next_word(rest);
+    if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) {
+      throw InputError(
+          fmt::format("{}:{}: the name of an element must begin with a letter ({}); the file was "
+                      "damaged",
+                      path.string(), number, trimmed(line)));
+    }
     const auto count = parse_finite(next_word(rest));
     if (!count || !(*count >= 0.0 && *count <= bytes)) {
       throw InputError(

@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include "scene/errors.h"
+#include "scene/io/clean_names.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
+namespace {
 
-Scene read_scene(const std::filesystem::path& path) {
+Scene read_any(const std::filesystem::path& path) {
   require_readable(path);
   const std::string extension = lower_extension(path);
   if (extension == ".toml") return read_toml(path);
@@ -28,6 +30,16 @@ Scene read_scene(const std::filesystem::path& path) {
                   ".toml (native), .obj, .ply and .stl, .gltf and .glb, Mitsuba's .xml, "
                   "RADIANCE's .rad and .rif, and View3D's .vs3",
                   path.string(), extension));
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& path) {
+  const FilesRead read;
+  Scene scene = read_any(path);
+  scene.files = read.files();
+  clean_names(scene);
+  return scene;
 }
 
 }  // namespace lightwell

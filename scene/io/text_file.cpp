@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -15,7 +16,23 @@ namespace {
 
 constexpr std::string_view line_blanks = " \t\r\f\v";
 
+thread_local FilesRead* innermost = nullptr;
+
 }  // namespace
+
+FilesRead::FilesRead() : outer_(innermost) {
+  innermost = this;
+}
+
+FilesRead::~FilesRead() {
+  innermost = outer_;
+}
+
+void FilesRead::add(const std::filesystem::path& path) {
+  for (FilesRead* list = innermost; list; list = list->outer_) {
+    if (std::ranges::find(list->files_, path) == list->files_.end()) list->files_.push_back(path);
+  }
+}
 
 void require_readable(const std::filesystem::path& path) {
   std::error_code error;
@@ -34,6 +51,7 @@ void require_readable(const std::filesystem::path& path) {
     throw InputError(
         fmt::format("{}: the file cannot be opened; check its permissions", path.string()));
   }
+  FilesRead::add(path);
 }
 
 TextFile::TextFile(const std::filesystem::path& path) : path_(path) {

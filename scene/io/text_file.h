@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace lightwell {
 
@@ -28,6 +29,24 @@ class TextFile {
 
 /// Throws InputError naming the file unless `path` is a readable regular file.
 void require_readable(const std::filesystem::path& path);
+
+/// The files that this thread opens by require_readable() while the object exists. Of nested
+/// objects each has all of them.
+class FilesRead {
+ public:
+  FilesRead();
+  ~FilesRead();
+  FilesRead(const FilesRead&) = delete;
+  FilesRead& operator=(const FilesRead&) = delete;
+
+  /// In the order of reading, once each.
+  const std::vector<std::filesystem::path>& files() const { return files_; }
+  static void add(const std::filesystem::path& path);
+
+ private:
+  FilesRead* outer_;
+  std::vector<std::filesystem::path> files_{};
+};
 
 /// The extension in lower case: ".obj".
 std::string lower_extension(const std::filesystem::path& path);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -269,6 +270,24 @@ TEST(BuildPatches, SidesFollowTheMaterial) {
     EXPECT_NEAR(normal.z(), is_back ? -1 : 1, 1e-15);
   }
   for (int m = 0; m < 5; ++m) EXPECT_NEAR(side_area(mesh, m, true), back_area[m], 1e-14);
+}
+
+// Shelves of 4 m x 5 m in a room of 4 m x 5 m x 3 m, both sides of each: light flies 4 V / A, and
+// an edge is 0.3 of that, or 1 / sqrt(2.5) of the edge of even patches. In the empty room that is a
+// tenth of the way.
+TEST(BuildPatches, AutomaticSizeFollowsTheWayOfLight) {
+  for (const int shelves : {0, 5, 10, 40}) {
+    Scene scene = empty_scene();
+    add_box(scene, "room", {0, 0, 0}, {4, 5, 3}, true, 1);
+    for (int i = 0; i < shelves; ++i) {
+      const double z = 3.0 * (i + 1) / (shelves + 1);
+      add_polygon(scene, "shelf", {{0, 0, z}, {4, 0, z}, {4, 5, z}, {0, 5, z}});
+    }
+    const double area = 94.0 + 2 * 20.0 * shelves, even = std::sqrt(area / 1600);
+    const double of_way = 0.3 * 4.0 * 60.0 / area;
+    const double expected = std::clamp(of_way, even / std::sqrt(2.5), even);
+    EXPECT_NEAR(cut_size(scene, {}).patch_size, expected, 1e-12) << shelves;
+  }
 }
 
 TEST(BuildPatches, AutomaticSizeMakesAboutTheAskedNumberOfPatches) {

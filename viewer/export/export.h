@@ -65,6 +65,9 @@ void write_ply(const std::filesystem::path& path, const BakedModel& model);
 /// most programs read.
 void write_obj(const std::filesystem::path& path, const BakedModel& model);
 
+/// True if write_obj() wrote the MTL.
+bool is_exported_library(const std::filesystem::path& mtl);
+
 /// Writes a self-contained page for a web browser: the model, the program that draws the model
 /// (viewer/export/web) and a library for WebGL 2. `lux_range` is the scale of the false colours;
 /// default: lux_range() of the model's illuminance. docs/export.md describes the data.

@@ -1,12 +1,16 @@
 #include <fmt/format.h>
 
+#include <fstream>
 #include <iterator>
+#include <string_view>
 
 #include "viewer/export/export.h"
 #include "viewer/export/write_whole.h"
 
 namespace lightwell {
 namespace {
+
+constexpr std::string_view library_start = "# Baked by Lightwell";
 
 /// `name` as one word, since some programs end names at a space, without "#".
 std::string obj_word(const std::string& name) {
@@ -25,7 +29,8 @@ std::string material_word(const BakedModel& model, int material) {
 /// The MTL: white materials without shading, so that programs that multiply vertex colours by Kd
 /// show the vertex colours.
 std::string library(const BakedModel& model) {
-  std::string text = "# Baked by Lightwell: the light is in the colours of the vertices.\n";
+  std::string text =
+      std::string(library_start) + ": the light is in the colours of the vertices.\n";
   for (int m = 0; m < static_cast<int>(model.materials.size()); ++m) {
     text += fmt::format("\nnewmtl {}\nKa 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 0\n",
                         material_word(model, m));
@@ -35,6 +40,13 @@ std::string library(const BakedModel& model) {
 }
 
 }  // namespace
+
+bool is_exported_library(const std::filesystem::path& mtl) {
+  std::string start(library_start.size(), '\0');
+  std::ifstream(mtl, std::ios::binary)
+      .read(start.data(), static_cast<std::streamsize>(start.size()));
+  return start == library_start;
+}
 
 void write_obj(const std::filesystem::path& path, const BakedModel& model) {
   std::filesystem::path materials = path;
@@ -58,9 +70,8 @@ void write_obj(const std::filesystem::path& path, const BakedModel& model) {
       fmt::format_to(out, "f {} {} {}\n", triangle[0] + 1, triangle[1] + 1, triangle[2] + 1);
     }
   }
-  // The OBJ is written after the MTL, so that the MTL named in an OBJ exists.
-  write_whole(materials, {library(model)});
-  write_whole(path, {text});
+  const std::string of_materials = library(model);
+  write_together({{materials, of_materials}, {path, text}});
 }
 
 }  // namespace lightwell

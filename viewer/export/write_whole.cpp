@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <fstream>
+#include <list>
 #include <stdexcept>
 #include <system_error>
 
@@ -11,9 +12,10 @@
 
 namespace lightwell {
 
-void write_whole(const std::filesystem::path& path,
-                 std::initializer_list<std::string_view> pieces) {
-  AtomicFile file(path);
+namespace {
+
+void write_temporary(const AtomicFile& file, const std::filesystem::path& path,
+                     std::initializer_list<std::string_view> pieces) {
   errno = 0;
   std::ofstream stream(file.temporary(), std::ios::binary);
   for (const std::string_view piece : pieces) {
@@ -25,7 +27,23 @@ void write_whole(const std::filesystem::path& path,
         "{}: cannot be written: {}", path.string(),
         errno != 0 ? std::generic_category().message(errno) : std::string("the disk may be full")));
   }
+}
+
+}  // namespace
+
+void write_whole(const std::filesystem::path& path,
+                 std::initializer_list<std::string_view> pieces) {
+  AtomicFile file(path);
+  write_temporary(file, path, pieces);
   file.commit();
+}
+
+void write_together(std::initializer_list<FileText> files) {
+  std::list<AtomicFile> written;
+  for (const auto& [path, text] : files) {
+    write_temporary(written.emplace_back(path), path, {text});
+  }
+  for (AtomicFile& file : written) file.commit();
 }
 
 std::string one_line(std::string name) {

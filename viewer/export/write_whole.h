@@ -12,6 +12,13 @@ namespace lightwell {
 /// std::runtime_error naming the file and the system's reason if writing fails.
 void write_whole(const std::filesystem::path& path, std::initializer_list<std::string_view> pieces);
 
+struct FileText {
+  const std::filesystem::path& path;
+  std::string_view text;
+};
+/// Writes files that belong together: none gets its name before all are written.
+void write_together(std::initializer_list<FileText> files);
+
 /// Appends the bytes of a value in memory order. The formats written here are little-endian, as
 /// x86-64 is.
 template <typename T>

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/io/text_file.h"
-
 #include "scene/io/luminaires/luminaire_file.h"
+#include "scene/io/text_file.h"
+#include "scene/utf8.h"
 
 namespace lightwell {
 namespace {

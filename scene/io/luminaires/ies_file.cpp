@@ -5,9 +5,9 @@
 #include <cctype>
 #include <cmath>
 
-#include "scene/io/text_file.h"
-
 #include "scene/io/luminaires/luminaire_file.h"
+#include "scene/io/text_file.h"
+#include "scene/utf8.h"
 
 namespace lightwell {
 namespace {

@@ -10,41 +10,6 @@
 #include "scene/io/text_file.h"
 
 namespace lightwell {
-namespace {
-
-// Length in bytes of the UTF-8 character at `at`; 0 if there is none.
-std::size_t utf8_length(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char lead = byte(at);
-  const std::size_t length = lead < 0x80u                    ? 1
-                             : lead >= 0xc2u && lead < 0xe0u ? 2
-                             : lead >= 0xe0u && lead < 0xf0u ? 3
-                                                             : 0;
-  if (length == 0 || at + length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i) {
-    if ((byte(at + i) & 0xc0u) != 0x80u) return 0;
-  }
-  return length;
-}
-
-}  // namespace
-
-std::string as_utf8(std::string_view text) {
-  std::string result;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = utf8_length(text, at);
-    const auto byte = static_cast<unsigned char>(text[at]);
-    if (length > 0) {
-      if (byte >= 0x20u) result += text.substr(at, length);
-      at += length;
-      continue;
-    }
-    result += static_cast<char>(0xc0u | (byte >> 6u));
-    result += static_cast<char>(0x80u | (byte & 0x3fu));
-    ++at;
-  }
-  return result;
-}
 
 bool is_luminaire_file(const std::filesystem::path& path) {
   const std::string extension = lower_extension(path);

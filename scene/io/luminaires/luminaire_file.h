@@ -59,9 +59,6 @@ LuminaireFile read_eulumdat(const std::filesystem::path& path, int lamp_set = 1)
 /// for a luminaire without light in that plane.
 double beam_angle(const PhotometricWeb& web, double plane, double share);
 
-/// Converts 8-bit text to UTF-8. Bytes that are not valid UTF-8 are taken as Latin-1.
-std::string as_utf8(std::string_view text);
-
 /// C-planes in degrees, rising in [0, 360), and the intensities in each (one row per plane).
 struct PlaneTable {
   std::vector<double> planes{};

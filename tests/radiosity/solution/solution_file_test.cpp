@@ -137,6 +137,25 @@ TEST_F(SolutionFile, RestoresTheParts) {
   EXPECT_THROW(read_solution(folder_ / "s.vtp"), InputError) << "there is no third part";
 }
 
+// Names in any encoding, from a file system and an old program, and what no XML may hold.
+TEST_F(SolutionFile, RestoresNamesThatAreNotUtf8) {
+  SolvedScene solved = small_solution(3);
+  RadiositySolution& solution = solved.solution;
+  solution.provenance.scene_file = "B\xfcro \x01<&>?>\xef\xbf\xbf.obj";
+  solution.provenance.looked_from = {"fen\xeatre"};
+  solution.bands.names = {"\xfc", "gr\xfcn", "\x02"};
+  solution.parts = {.of_patch = {1, 0},
+                    .parts = {{.name = "K\xfc"
+                                       "che"},
+                              {.name = "\xc3"}}};
+  write_solution(file(), solved);
+  const SolvedScene again = read_solution(file());
+  expect_same_solution(solution, again.solution);
+  EXPECT_EQ(again.solution.parts.parts.front().name,
+            "K\xfc"
+            "che");
+}
+
 TEST_F(SolutionFile, RestoresASolutionWithoutHistoryOrSpheres) {
   SolvedScene solved = small_solution(3);
   solved.mesh.sphere_grids.clear();

@@ -186,6 +186,29 @@ TEST(BadPaths, AreNamedWithWhatIsPossible) {
             std::string::npos);
 }
 
+// 218 bytes that made the PLY library allocate 8 GB: it takes the name for a count.
+TEST(HostileFiles, PlyNamesThatBeginWithDigitsAreRefused) {
+  const TemporaryFolder temporary;
+  temporary.write("bomb.ply",
+                  "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                  "property float z\nelement 200000000x 0\nproperty float a\nelement face 1\n"
+                  "property list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
+                  "3 0 1 2\n");
+  EXPECT_NE(message_of(temporary / "bomb.ply").find("bomb.ply:7: the name of an element"),
+            std::string::npos);
+}
+
+TEST(HostileFiles, TomlKeysOfManyPartsAreRefused) {
+  const TemporaryFolder temporary;
+  std::string key = "a";
+  for (int i = 0; i < 30000; ++i) key += ".a";
+  for (const std::string& text : {key + " = 1\n", "[" + key + "]\n"}) {
+    temporary.write("deep.toml", "title = \"deep\"\n" + text);
+    EXPECT_NE(message_of(temporary / "deep.toml").find("deep.toml:2: the key has more than 100"),
+              std::string::npos);
+  }
+}
+
 // Reading a truncated file results in a scene or in an InputError.
 TEST(CutOffFiles, AreRefusedOrReadButNeverCrash) {
   const TemporaryFolder temporary;

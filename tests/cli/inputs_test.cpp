@@ -1,0 +1,90 @@
+// What a command reads is never overwritten, and names of any kind do no harm.
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "radiosity/solution/solution_file.h"
+#include "tests/cli/program.h"
+
+namespace lightwell::inputs_test {
+namespace {
+using Words = std::vector<std::string>;
+namespace fs = std::filesystem;
+
+class Inputs : public CommandTest {
+ protected:
+  void SetUp() override {
+    folder.write("cube.obj", "mtllib cube.mtl\nusemtl lamp\n" + unit_cube());
+    folder.write("cube.mtl", "newmtl lamp\nKd 0.5 0.5 0.5\nKe 1 1 1\n");
+    folder.write("room.toml", small_room());
+    folder.write("points.csv", "x,y,z,nx,ny,nz\n1,1,0,0,0,1\n");
+    const Words quiet{"--quiet"};
+    ASSERT_EQ(run(Words{"solve", "room.toml", "-o", "room.vtp"} + quick() + quiet).code, 0);
+    ASSERT_EQ(run(Words{"solve", "cube.obj", "-o", "cube.vtp"} + quick() + quiet).code, 0);
+  }
+
+  void expect_kept(const std::string& file, const Words& arguments) {
+    SCOPED_TRACE(arguments.front() + " over " + file);
+    const std::string before = content_of(folder / file);
+    const int files = folder.file_count();
+    const Ended ended = run(arguments);
+    EXPECT_EQ(ended.code, 1) << ended.err;
+    EXPECT_TRUE(says(ended.err, "name another output"));
+    EXPECT_EQ(content_of(folder / file), before);
+    EXPECT_EQ(folder.file_count(), files);
+  }
+};
+
+TEST_F(Inputs, AreNeverReplaced) {
+  expect_kept("cube.obj", {"form-factors", "cube.obj", "-o", "F.txt", "--view3d", "cube.obj"});
+  expect_kept("points.csv",
+              {"probe", "room.toml", "room.vtp", "--points", "points.csv", "-o", "points.csv"});
+  expect_kept("cube.obj", {"export", "cube.vtp", "--scene", "cube.obj", "-o", "cube.obj"});
+  expect_kept("room.vtp", {"solve", "room.toml", "--start-from", "room.vtp", "-o", "room.vtp"});
+}
+
+TEST_F(Inputs, AreKnownByEveryName) {
+  fs::create_hard_link(folder / "points.csv", folder / "linked.csv");
+  fs::create_symlink("points.csv", folder / "link.csv");
+  for (const std::string output : {"linked.csv", "link.csv", "./points.csv"}) {
+    expect_kept("points.csv",
+                {"probe", "room.toml", "room.vtp", "--points", "points.csv", "-o", output});
+  }
+}
+
+// Of a scene all files are inputs: an export writes room.mtl beside room.obj.
+TEST_F(Inputs, OfASceneAreAllItsFiles) {
+  fs::create_directory(folder / "models");
+  folder.write("models/shelf.obj", "mtllib ../shelf.mtl\nusemtl lamp\n" + unit_cube());
+  folder.write("shelf.mtl", content_of(folder / "cube.mtl"));
+  expect_kept("shelf.mtl",
+              {"export", "cube.vtp", "--scene", "models/shelf.obj", "-o", "shelf.obj"});
+}
+
+TEST_F(Inputs, MaterialsThatNoExportWroteAreKept) {
+  folder.write("out.mtl", "newmtl mine\n");
+  const Words exports{"export", "cube.vtp", "-o", "out.obj", "--quiet"};
+  expect_kept("out.mtl", exports);
+  fs::remove(folder / "out.mtl");
+  EXPECT_EQ(run(exports).code, 0);
+  EXPECT_EQ(run(exports).code, 0) << "of an earlier export";
+}
+
+// Names in Latin-1, and with characters that terminals and spreadsheets obey.
+TEST_F(Inputs, OfAnyNameMakeReadableSolutions) {
+  const std::string odd = "b\xfcro\x1b[31m";
+  folder.write(odd + ".obj", "mtllib cube.mtl\no " + odd + "\nusemtl lamp\n" + unit_cube());
+  const Ended solved =
+      run(Words{"solve", odd + ".obj", "-o", "odd.vtp", "--channels", "per-luminaire"} + quick());
+  EXPECT_EQ(solved.code, 0) << solved.err;
+  EXPECT_EQ(solved.err.find('\x1b'), std::string::npos);
+  const SolvedScene read = read_solution(folder / "odd.vtp");
+  ASSERT_FALSE(read.solution.channels.empty());
+  EXPECT_EQ(read.solution.channels.front().name.find('\x1b'), std::string::npos);
+  EXPECT_EQ(run({"info", "odd.vtp"}).code, 0);
+  EXPECT_EQ(run({"export", "odd.vtp", "-o", "odd.ply", "--quiet"}).code, 0);
+}
+
+}  // namespace
+}  // namespace lightwell::inputs_test
