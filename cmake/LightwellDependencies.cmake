@@ -20,7 +20,7 @@ find_package(ZLIB REQUIRED)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
 
-set(vtk_components CommonCore CommonDataModel IOXML)
+set(vtk_components CommonCore CommonDataModel IOCore IOXML)
 if(LIGHTWELL_VIEWER)
   list(APPEND vtk_components CommonTransforms CommonExecutionModel FiltersCore FiltersGeneral IOImage
        InteractionStyle RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI)

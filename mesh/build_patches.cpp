@@ -227,19 +227,20 @@ double area_to_mesh(const Scene& scene) {
 }
 
 // Patch size of `count` patches of even size, or of up to 2.5 times as many in a scene with much
-// area in little space, such as a house of furnished rooms. There the patches must not be large
-// beside the way of light from surface to surface: 4 V / A in the mean (Cauchy). In an empty room
-// of 4 m x 5 m x 3 m that is 2.6 m, and the edge of 1600 patches is a tenth of it.
+// area in little space, such as a house of furnished rooms. There patches must not be large beside
+// the way of light from surface to surface, 4 V / A in the mean (Cauchy) for the area A within the
+// scene's box. The box's own surface does not count, since an empty room has no other.
 double even_patch_size(const Scene& scene, int count) {
-  constexpr double largest = 0.3, most_times = 2.5;
-  constexpr double thickest = 0.1;  // of a flat scene, beside its largest extent
+  constexpr double largest = 0.25, usual_count = 1600.0, most_times = 2.5;
   const double area = area_to_mesh(scene), size = std::sqrt(area / count);
-  if (!(area > 0.0)) return size;
   const Bounds bounds = scene_bounds(scene);
-  const Eigen::Array3d extent = (bounds.high - bounds.low).array();
-  const double volume = extent.max(thickest * extent.maxCoeff()).prod();
-  const double of_way = largest * 4.0 * volume / area;
-  return std::clamp(of_way, size / std::sqrt(most_times), size);
+  const Eigen::Vector3d extent = bounds.high - bounds.low;
+  const double of_box =
+      2.0 * (extent.x() * extent.y() + extent.y() * extent.z() + extent.z() * extent.x());
+  if (!(area > of_box)) return size;
+  const double way = 4.0 * extent.prod() / (area - of_box);
+  return std::clamp(largest * std::sqrt(usual_count / count) * way, size / std::sqrt(most_times),
+                    size);
 }
 
 // Meshes with the smallest tolerance that keeps all contact lines, or else with the one that leaves

@@ -13,6 +13,7 @@
 #include "radiosity/solution/solution_arrays.h"
 #include "radiosity/solution/solution_file.h"
 #include "radiosity/solution/solution_seal.h"
+#include "radiosity/solution/solution_structure.h"
 #include "radiosity/solution/vtk_messages.h"
 
 namespace lightwell {
@@ -233,6 +234,7 @@ void read_record(const SolutionArrays& in, RadiositySolution& s) {
 
 SolvedScene read_solution(const std::filesystem::path& path) {
   check_seal(path);
+  check_structure(path);
   const VtkMessages messages;
   vtkNew<vtkXMLPolyDataReader> reader;
   reader->SetFileName(path.c_str());

@@ -37,7 +37,7 @@ class Inputs : public CommandTest {
 };
 
 TEST_F(Inputs, AreNeverReplaced) {
-  expect_kept("cube.obj", {"form-factors", "cube.obj", "-o", "F.txt", "--view3d", "cube.obj"});
+  expect_kept("cube.obj", {"form-factors", "cube.obj", "-o", "F.mtx", "--view3d", "cube.obj"});
   expect_kept("points.csv",
               {"probe", "room.toml", "room.vtp", "--points", "points.csv", "-o", "points.csv"});
   expect_kept("cube.obj", {"export", "cube.vtp", "--scene", "cube.obj", "-o", "cube.obj"});

@@ -7,10 +7,15 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
 #include <functional>
+#include <vector>
 
 #include "radiosity/solution/solution_file.h"
 #include "radiosity/solution/solution_seal.h"
+#include "scene/sampling.h"
 #include "tests/radiosity/small_solution.h"
 
 namespace lightwell::solution_seal_test {
@@ -94,6 +99,7 @@ class ResealedSolution : public SolutionFile {
     writer->SetInputData(reader->GetOutput());
     writer->SetFileName(file("changed.vtp").c_str());
     writer->SetEncodeAppendedData(0);
+    writer->SetHeaderTypeToUInt64();
     writer->Write();
     put(file("changed.vtp"), solution_preamble("") + contents(file("changed.vtp")));
     seal_solution(file("changed.vtp"));
@@ -104,6 +110,77 @@ class ResealedSolution : public SolutionFile {
     expect_refused(changed(change), reason);
   }
 };
+
+// Random numbers of one damage.
+class Choice {
+ public:
+  explicit Choice(std::uint64_t seed) : seed_(seed) {}
+  std::size_t below(std::size_t count) {
+    const double u = random_uniform(random_key(seed_, 0xda3a6e, ++number_));
+    return static_cast<std::size_t>(u * static_cast<double>(count));
+  }
+
+ private:
+  std::uint64_t seed_, number_ = 0;
+};
+
+// Replaces an attribute's value in the XML, which ends at `end`, or the whole attribute.
+void damage_attribute(std::string& text, std::size_t end, bool is_whole, Choice& choice) {
+  std::size_t value = text.find("=\"", choice.below(end));
+  if (value == std::string::npos || value > end) value = text.find("=\"");
+  const std::size_t close = text.find('"', value + 2);
+  const std::size_t name = text.rfind(' ', value);
+  const std::vector<std::string> odd{
+      "-1",         "0",    "1",     "3",       "99999999999999999999",
+      "4294967295", "",     "Int32", "Float64", "String",
+      "UInt8",      "Name", "ascii"};
+  if (is_whole) {
+    text.erase(name, close + 1 - name);
+  } else {
+    text.replace(value + 2, close - value - 2, odd[choice.below(odd.size())]);
+  }
+}
+
+void damage(std::string& text, Choice& choice) {
+  const std::size_t data = text.find("<AppendedData"), length = text.size() - data;
+  const std::size_t at = data + 31 + choice.below(length - 60);
+  switch (choice.below(5)) {
+    case 0:
+      return damage_attribute(text, data, false, choice);
+    case 1:
+      return damage_attribute(text, data, true, choice);
+    case 2:
+      text[at] = static_cast<char>(text[at] ^ (1 << choice.below(8)));
+      return;
+    case 3:
+      for (std::size_t i = 0; i < 8; ++i) text[at + i] = static_cast<char>(choice.below(256));
+      return;
+    default:
+      text.erase(at, 1 + choice.below(std::min<std::size_t>(200, text.size() - at)));
+  }
+}
+
+// VTK takes names, counts, blocks and the ends of strings on trust.
+TEST_F(ResealedSolution, DamageOfAnyKindIsRefusedOrDoesNoHarm) {
+  write_solution(file(), small_solution(3));
+  std::string whole = contents(file());
+  whole.resize(whole.rfind("<?lightwell-checksum"));
+  constexpr int count = 3000;
+  int refused = 0;
+  for (int seed = 0; seed < count; ++seed) {
+    SCOPED_TRACE(seed);
+    Choice choice(static_cast<std::uint64_t>(seed));
+    std::string text = whole;
+    damage(text, choice);
+    put(file("damaged.vtp"), text);
+    seal_solution(file("damaged.vtp"));
+    refused += refusal(file("damaged.vtp")).empty() ? 0 : 1;
+  }
+  std::printf("%d of %d refused\n", refused, count);
+  // A seventh of the attributes are labels and ranges, which nothing reads, and bits of values are
+  // values.
+  EXPECT_GT(refused, count / 2);
+}
 
 TEST_F(ResealedSolution, LightIsInWattsWhereAnOldFileDoesNotSay) {
   const fs::path old = changed([](vtkPolyData* p) { p->GetFieldData()->RemoveArray("light"); });
