@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <csetjmp>
@@ -22,6 +23,14 @@ namespace {
 
 // 10 000 x 10 000: larger pictures take seconds and gigabytes.
 constexpr double most_picture_pixels = 1e8;
+
+// Pixels of one byte of a JPEG. The emptiest picture has a bit for each of six blocks in 16 x 16
+// pixels: 340.
+constexpr double most_of_a_jpeg_byte = 1024.0;
+
+// Scans of a progressive JPEG, each of which costs time as for the whole picture. Programs write
+// ten.
+constexpr int most_jpeg_scans = 100;
 
 // Eight bits each of r, g, b and alpha, rows from the top.
 struct PicturePixels {
@@ -75,6 +84,19 @@ void leave(j_common_ptr decoder) {
   std::longjmp(error->jump, 1);
 }
 
+void leave_after_many_scans(j_common_ptr decoder) {
+  if (reinterpret_cast<j_decompress_ptr>(decoder)->input_scan_number <= most_jpeg_scans) return;
+  auto* error = reinterpret_cast<JpegError*>(decoder->err);
+  std::snprintf(error->message.data(), error->message.size(), "it has more than %d scans",
+                most_jpeg_scans);
+  std::longjmp(error->jump, 1);
+}
+
+bool is_too_large(const jpeg_decompress_struct& decoder, std::size_t bytes) {
+  const double pixels = static_cast<double>(decoder.image_width) * decoder.image_height;
+  return pixels > std::min(most_picture_pixels, most_of_a_jpeg_byte * static_cast<double>(bytes));
+}
+
 // longjmp skips destructors, so no object with a destructor is created here: `rgb` belongs to the
 // caller.
 bool read_jpeg(std::string_view bytes, JpegError& error, jpeg_decompress_struct& decoder,
@@ -83,8 +105,7 @@ bool read_jpeg(std::string_view bytes, JpegError& error, jpeg_decompress_struct&
   jpeg_mem_src(&decoder, reinterpret_cast<const unsigned char*>(bytes.data()),
                static_cast<unsigned long>(bytes.size()));
   jpeg_read_header(&decoder, TRUE);
-  if (static_cast<double>(decoder.image_width) * decoder.image_height > most_picture_pixels)
-    return true;
+  if (is_too_large(decoder, bytes.size())) return true;
   decoder.out_color_space = JCS_RGB;
   jpeg_start_decompress(&decoder);
   const std::size_t width = std::size_t{3} * decoder.output_width;
@@ -103,12 +124,20 @@ PicturePixels decode_jpeg(std::string_view bytes, const std::string& called) {
   error.base.error_exit = &leave;
   error.base.emit_message = [](j_common_ptr, int) {};  // warnings: parts of the picture are missing
   jpeg_create_decompress(&decoder);
+  jpeg_progress_mgr progress{};
+  progress.progress_monitor = &leave_after_many_scans;
+  decoder.progress = &progress;
   std::vector<unsigned char> rgb;
   const bool is_read = read_jpeg(bytes, error, decoder, rgb);
   const double width = decoder.image_width, height = decoder.image_height;
   jpeg_destroy_decompress(&decoder);
   if (!is_read) fail_damaged(called, error.message.data());
   check_picture_size(width, height, called);
+  if (rgb.empty()) {
+    throw InputError(
+        fmt::format("{} is too short for its {} x {} pixels; it was damaged or cut off", called,
+                    width, height));
+  }
   PicturePixels pixels{.width = static_cast<std::size_t>(width),
                        .height = static_cast<std::size_t>(height),
                        .count = rgb.size() / 3};

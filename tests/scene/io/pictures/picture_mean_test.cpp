@@ -58,5 +58,31 @@ TEST(PictureMean, DamageAndHugeSizesAreRefusedByName) {
   }
 }
 
+std::string refusal(const std::string& bytes) {
+  try {
+    picture_mean(bytes, PictureCode::srgb, "it");
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+// A few bytes that say so would take 12 MB and more.
+TEST(PictureMean, AJpegIsNoLargerThanItsBytesAllow) {
+  std::string jpeg = content_of(folder / "grey.jpg");
+  jpeg.replace(jpeg.find("\xff\xc0") + 5, 4, "\x07\xd0\x07\xd0");
+  EXPECT_NE(refusal(jpeg).find("too short for its 2000 x 2000 pixels"), std::string::npos);
+}
+
+// The last scan again and again: each costs as much time as the picture.
+TEST(PictureMean, AJpegOfVeryManyScansIsRefused) {
+  const std::string jpeg = content_of(folder / "progressive.jpg");
+  EXPECT_EQ(refusal(jpeg), "");
+  const auto scan = jpeg.rfind("\xff\xda"), end = jpeg.rfind("\xff\xd9");
+  std::string many = jpeg.substr(0, end);
+  for (int i = 0; i < 200; ++i) many += jpeg.substr(scan, end - scan);
+  EXPECT_NE(refusal(many + jpeg.substr(end)).find("more than 100 scans"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace lightwell::picture_mean_test

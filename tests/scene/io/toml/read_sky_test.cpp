@@ -220,6 +220,8 @@ TEST(EnvironmentFile, TornAndForeignFilesAreRefused) {
   }
   std::ofstream(folder / "huge.hdr") << "#?RADIANCE\n\n-Y 100000 +X 100000\n";
   EXPECT_THROW(read_environment_map(folder / "huge.hdr"), InputError);
+  std::ofstream(folder / "bold.hdr") << "#?RADIANCE\n\n-Y 4096 +X 8192\n" << std::string(99, 'x');
+  EXPECT_THROW(read_environment_map(folder / "bold.hdr"), InputError);
   std::ofstream(folder / "text.exr") << "no picture";
   EXPECT_THROW(read_environment_map(folder / "text.exr"), InputError);
   std::ofstream(folder / "sky.png") << "no map";
