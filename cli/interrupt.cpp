@@ -1,16 +1,26 @@
 #include "cli/interrupt.h"
 
+#include <unistd.h>
+
 #include <atomic>
 #include <csignal>
+#include <string_view>
+
+#include "cli/commands.h"
 
 namespace lightwell {
 namespace {
 
 volatile std::sig_atomic_t requested = 0;  // the type that a signal handler may write
 std::atomic<bool> ends_early{false};
+volatile std::sig_atomic_t ends_at_once = 0;
 
 void request(int signal) {
   requested = signal;
+  if (ends_at_once == 0) return;
+  constexpr std::string_view sentence = "\ninterrupted; nothing is left half-written\n";
+  [[maybe_unused]] const auto written = ::write(STDERR_FILENO, sentence.data(), sentence.size());
+  ::_exit(exit_interrupted);
 }
 
 }  // namespace
@@ -40,6 +50,15 @@ InterruptEndsEarly::InterruptEndsEarly() {
 
 InterruptEndsEarly::~InterruptEndsEarly() {
   ends_early = false;
+}
+
+InterruptEndsAtOnce::InterruptEndsAtOnce() {
+  ends_at_once = 1;
+  stop_if_interrupted();
+}
+
+InterruptEndsAtOnce::~InterruptEndsAtOnce() {
+  ends_at_once = 0;
 }
 
 void stop_if_interrupted() {

@@ -28,6 +28,16 @@ class InterruptEndsEarly {
   InterruptEndsEarly& operator=(const InterruptEndsEarly&) = delete;
 };
 
+/// While one lives, SIGINT, SIGTERM and SIGHUP end the process at once: for work of libraries that
+/// nothing can stop, and that writes nothing. One lives at a time.
+class InterruptEndsAtOnce {
+ public:
+  InterruptEndsAtOnce();
+  ~InterruptEndsAtOnce();
+  InterruptEndsAtOnce(const InterruptEndsAtOnce&) = delete;
+  InterruptEndsAtOnce& operator=(const InterruptEndsAtOnce&) = delete;
+};
+
 /// An Interrupted with a message of its own in place of the usual one.
 class InterruptedWith : public Interrupted {
  public:

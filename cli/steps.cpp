@@ -136,7 +136,10 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report,
                       CleanUpReport* clean_up) {
   const Stopwatch watch;
   console.begin("reading");
-  const Scene scene = read_scene(file);
+  const Scene scene = [&] {
+    const InterruptEndsAtOnce at_once;
+    return read_scene(file);
+  }();
   console.finish_phase();
   for (const fs::path& read : scene.files) note_input(read);
   refuse_losses(scene, console.options());
@@ -147,7 +150,10 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report,
   const Stopwatch clean_up_watch;
   CleanUpReport done;
   console.begin("clean-up");
-  Scene clean = merge_planar_regions(scene, &done);
+  Scene clean = [&] {
+    const InterruptEndsAtOnce at_once;
+    return merge_planar_regions(scene, &done);
+  }();
   console.finish_phase();
   console.say_verbose(sentence(done));
   report.add("cleaned", clean_up_json(done));

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <new>
 #include <stdexcept>
 
 #include "scene/parallel.h"
@@ -68,7 +69,12 @@ EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
 #else
   device = rtcNewDevice(nullptr);
 #endif
-  if (!device) throw std::runtime_error("Embree could not be started on this processor.");
+  if (!device && rtcGetDeviceError(nullptr) == RTC_ERROR_OUT_OF_MEMORY) throw std::bad_alloc();
+  if (!device) {
+    throw std::runtime_error(
+        "Embree, which casts the rays, could not be started: it needs a processor with SSE2, and "
+        "some hundred megabytes of memory");
+  }
   scene = rtcNewScene(device);
   // Allows the filter, without measurable cost where none is given.
 #if RTC_VERSION_MAJOR >= 4

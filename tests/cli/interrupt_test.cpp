@@ -57,6 +57,30 @@ TEST_F(InterruptTest, SigtermStopsASolveWithinAMomentAndLeavesNothing) {
   EXPECT_LT(taken, 5s * test::slowdown);
 }
 
+// Reading takes seconds; notes on the scene follow it.
+TEST_F(InterruptTest, CtrlCEndsReadingAtOnce) {
+  constexpr int count = 400000;
+  std::string obj;
+  for (int i = 0; i < count; ++i) {
+    const int x = i % 1000, y = i / 1000;
+    obj +=
+        "v " + std::to_string(x) + " " + std::to_string(y) + " " + std::to_string(x * y % 7) + "\n";
+  }
+  for (int i = 1; i + 1002 < count; ++i) {
+    const std::string a = std::to_string(i), b = std::to_string(i + 1),
+                      c = std::to_string(i + 1001);
+    obj += "f " + a + " " + b + " " + c + "\n";
+  }
+  folder.write("large.obj", obj);
+  Running running(folder / "", {"solve", "large.obj", "-o", "S.vtp"});
+  std::this_thread::sleep_for(300ms);
+  running.signal(SIGINT);
+  const Ended ended = running.wait();
+  EXPECT_EQ(ended.code, 130) << ended.err;
+  EXPECT_TRUE(says(ended.err, "interrupted"));
+  EXPECT_EQ(ended.err.find("note:"), std::string::npos) << ended.err;
+}
+
 TEST_F(InterruptTest, SigtermRemovesTheFolderThatRunMade) {
   EXPECT_EQ(ended_by(SIGTERM, {"run", "room.toml", "-o", "deep/results"}).code, 130);
   EXPECT_EQ(folder.file_count(), 1);
