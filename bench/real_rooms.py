@@ -14,7 +14,6 @@ reference are left out: they show lamps. Mitsuba's own error is sqrt(mean (A - B
 Lightwell's error over Lightwell's: a path tracer's error falls as 1 / sqrt(time).
 """
 import json
-import os
 import pathlib
 import re
 import resource

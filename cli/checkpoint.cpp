@@ -108,8 +108,10 @@ void CheckpointArguments::add_reuse_to(CLI::App& command, HelpOn help_on) {
 Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& of,
                        const std::vector<fs::path>& outputs, Console& console)
     : arguments_(arguments), console_(console) {
-  if (!arguments.reuse.empty()) note_input(arguments.reuse);
-  if (!arguments.reuse.empty()) journal_ = Journal::of_another_solve(arguments.reuse, of.version);
+  if (!arguments.reuse.empty()) {
+    note_input(arguments.reuse);
+    journal_ = Journal::of_another_solve(arguments.reuse, of.version);
+  }
   const fs::path& file = arguments.file;
   if (file.empty()) return;
   for (const fs::path& output : outputs) {

@@ -9,7 +9,7 @@ namespace lightwell {
 struct MeshOptions {
   /// Longest patch edge, metres. 0: chosen so that the diffuse surfaces make about
   /// `auto_patch_count` patches, or up to 2.5 times as many in a scene with much area in little
-  /// space: of 1600 patches, no edge is longer than a quarter of the mean way of light, 4 V / A
+  /// space: of 1600 patches, no edge is longer than a quarter of the mean free path, 4 V / A
   /// with the volume V of the scene's box and the area A within.
   double max_patch_size = 0.0;
   int auto_patch_count = 1600;

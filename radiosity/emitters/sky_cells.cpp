@@ -31,14 +31,29 @@ int on_hilbert_curve(int size, int x, int y) {
   return distance;
 }
 
-// The point (u, v) of a cell in axes of north, east and up, of `rings` times `around` cells. The
+// The point (u, v) of a cell in axes of north, east and up. The
 // rings have equal height, so that all cells have the same solid angle and the horizon lies between
 // two rings.
-Eigen::Vector3d dome_direction(int cell, int around, int rings, double u, double v) {
-  const double z = -1.0 + 2.0 * (cell / around + v) / rings;
+Eigen::Vector3d dome_direction(int cell, double u, double v) {
+  constexpr int around = SkyCells::around;
+  static const std::array<Eigen::Vector2d, around> middles = [] {
+    std::array<Eigen::Vector2d, around> columns;
+    for (int i = 0; i < around; ++i) {
+      const double phi = 2.0 * pi * (i + 0.5) / around;
+      columns[static_cast<std::size_t>(i)] = {std::cos(phi), std::sin(phi)};
+    }
+    return columns;
+  }();
+  // The azimuth is turned from the middle of the column, by 2.8 degrees at most: the Taylor series
+  // are exact to 1e-13.
+  const Eigen::Vector2d& middle = middles[static_cast<std::size_t>(cell % around)];
+  const double turn = 2.0 * pi * (u - 0.5) / around, t2 = turn * turn;
+  const double cosine = 1.0 + t2 * (-1.0 / 2 + t2 * (1.0 / 24 - t2 / 720));
+  const double sine = turn * (1.0 + t2 * (-1.0 / 6 + t2 * (1.0 / 120 - t2 / 5040)));
+  const double z = -1.0 + 2.0 * (cell / around + v) / SkyCells::rings;
   const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-  const double phi = 2.0 * std::numbers::pi * (cell % around + u) / around;
-  return {r * std::cos(phi), r * std::sin(phi), z};
+  return {r * (cosine * middle.x() - sine * middle.y()),
+          r * (sine * middle.x() + cosine * middle.y()), z};
 }
 
 // Directions of a grid of n x n squares in each cell, cell after cell: the middles of the squares,
@@ -49,7 +64,7 @@ std::vector<Eigen::Vector3f> dome_grid(int around, int rings, int n) {
   const auto at = [n](int i) { return n == 2 ? static_cast<double>(i) : (i + 0.5) / n; };
   for (int c = 0; c < around * rings; ++c) {
     for (int i = 0; i < n * n; ++i) {
-      grid.push_back(dome_direction(c, around, rings, at(i % n), at(i / n)).cast<float>());
+      grid.push_back(dome_direction(c, at(i % n), at(i / n)).cast<float>());
     }
   }
   return grid;
@@ -58,10 +73,6 @@ std::vector<Eigen::Vector3f> dome_grid(int around, int rings, int n) {
 }  // namespace
 
 SkyCells::SkyCells(const Sky& sky, int bands) {
-  for (std::size_t i = 0; i < columns_.size(); ++i) {
-    const double phi = 2.0 * pi * (static_cast<double>(i) + 0.5) / around;
-    columns_[i] = {std::cos(phi), std::sin(phi)};
-  }
   axes_ << sky.north, sky.north.cross(sky.up), sky.up;
   std::iota(order_.begin(), order_.end(), 0);
   std::sort(order_.begin(), order_.end(), [](int a, int b) {
@@ -80,16 +91,7 @@ SkyCells::SkyCells(const Sky& sky, int bands) {
 }
 
 Eigen::Vector3d SkyCells::direction(int cell, double u, double v) const {
-  // The azimuth is turned from the middle of the column, by 2.8 degrees at most: the Taylor series
-  // are exact to 1e-13.
-  const Eigen::Vector2d& middle = columns_[static_cast<std::size_t>(cell % around)];
-  const double turn = 2.0 * pi * (u - 0.5) / around, t2 = turn * turn;
-  const double cosine = 1.0 + t2 * (-1.0 / 2 + t2 * (1.0 / 24 - t2 / 720));
-  const double sine = turn * (1.0 + t2 * (-1.0 / 6 + t2 * (1.0 / 120 - t2 / 5040)));
-  const double z = -1.0 + 2.0 * (cell / around + v) / rings;
-  const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-  return axes_ * Eigen::Vector3d(r * (cosine * middle.x() - sine * middle.y()),
-                                 r * (sine * middle.x() + cosine * middle.y()), z);
+  return axes_ * dome_direction(cell, u, v);
 }
 
 void SkyCells::tabulate(const Sky& sky, int c) {

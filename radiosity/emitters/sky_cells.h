@@ -51,7 +51,6 @@ class SkyCells {
   float cut_irradiance(int c, const Eigen::Vector3f& normal, float whole) const;
 
   Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  // columns: north, east, up
-  std::array<Eigen::Vector2d, around> columns_{};       // cosine and sine of the middle azimuths
   std::array<double, count> power_{};
   Eigen::MatrixX3f middle_{};  // unit, of each cell
   Eigen::MatrixX3f vector_{};  // int L w dw over each cell, W/m^2, mean of the bands

@@ -39,17 +39,13 @@ SkyLight::SkyLight(const Scene& scene, const PatchMesh& mesh)
   number_ = ++count;
 }
 
-// Sets the weights of the cells' rays. At most a third as many rays as go to open cells go
-// elsewhere; if no cell is known as open, all do. Fewer would be as exact in the mean, but each ray
-// that gets out would weigh more and leave a bright dot in a picture.
+// Sets the weights of the cells' rays.
 void SkyLight::set_weights(Shares& shares) const {
-  constexpr double most_elsewhere = 1.0 / 3.0;
   double open = 0.0, elsewhere = 0.0, sum = 0.0;
   for (const Share& share : shares.cells) {
     (share.is_open() ? open : elsewhere) += share.E * (share.is_open() ? share.likely : 1.0);
   }
-  const double thinning =
-      open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
+  const double thinning = thinning_elsewhere(open, elsewhere);
   shares.cdf.clear();
   shares.cdf.reserve(shares.cells.size());
   for (Share& share : shares.cells) {

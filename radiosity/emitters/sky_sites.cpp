@@ -258,12 +258,15 @@ SkySites::Weights SkySites::weights_of(const CellVisibility& own,
   return weights;
 }
 
-// Rays to cells that are not known as open are thinned to a third of the others, as in
-// SkyLight::set_weights.
+double thinning_elsewhere(double open, double elsewhere) {
+  constexpr double most_elsewhere = 1.0 / 3.0;
+  return open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
+}
+
 SkySites::Site SkySites::site_of(const Weights& weights, const Eigen::Vector3d& axis) const {
   // Normals of a site lie up to 55 degrees from its axis, so cells at its horizon count, too. Cells
   // more than 145 degrees away are below the horizon of all normals.
-  constexpr double least_cosine = 0.2, below_all = -0.82, most_elsewhere = 1.0 / 3.0;
+  constexpr double least_cosine = 0.2, below_all = -0.82;
   Site site{.weights = weights};
   std::vector<double> facing(SkyCells::count);
   double open = 0.0, elsewhere = 0.0;
@@ -273,8 +276,7 @@ SkySites::Site SkySites::site_of(const Weights& weights, const Eigen::Vector3d& 
     facing[i] = cosine < below_all ? 0.0 : cells_.power(c) * std::max(cosine, least_cosine);
     (weights[i] > 0.0f ? open : elsewhere) += facing[i] * (weights[i] > 0.0f ? weights[i] : 1.0f);
   }
-  const double thinning =
-      open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
+  const double thinning = thinning_elsewhere(open, elsewhere);
   double sum = 0.0;
   for (std::size_t i = 0; i < SkyCells::count; ++i) {
     sum += facing[i] * (weights[i] > 0.0f ? double{weights[i]} : thinning);

@@ -13,6 +13,12 @@
 
 namespace lightwell {
 
+/// Factor on the rays to cells that are not known as open, for the `open` and `elsewhere` sums of
+/// sampling weights: at most a third as many rays go there as to open cells; if no cell is known as
+/// open, all do. Fewer would be as exact in the mean, but each ray that gets out would weigh more
+/// and leave a bright dot in a picture.
+double thinning_elsewhere(double open, double elsewhere);
+
 /// Visibility of the sky from *sites*: cubes of space, by the side that the surfaces in them face.
 /// Rays cast beforehand from surfaces of each site find through which cells of the sky rays get
 /// out, so that points near by can send their rays there.

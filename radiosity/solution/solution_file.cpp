@@ -306,7 +306,7 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
   const std::string failure = write_appended(writer, poly, file.temporary());
   if (!failure.empty()) fail_solution_write(path, failure);
   if (!can_be_parsed(file.temporary())) {
-    fail_solution_write(path, "what was written cannot be read back; a checkpoint is kept");
+    fail_solution_write(path, "what was written cannot be read back");
   }
   seal_solution(file.temporary());
   file.commit();

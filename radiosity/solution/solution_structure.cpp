@@ -6,12 +6,13 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
+#include <iterator>
 #include <limits>
 #include <pugixml.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "radiosity/solution/vtk_messages.h"
@@ -41,7 +42,7 @@ class StoredArray {
   }
 
   [[noreturn]] void reject(const std::string& reason) const {
-    throw InputError(fmt::format("cannot read the solution '{}': in its array '{}' {}",
+    throw InputError(fmt::format("cannot read the solution '{}': its array '{}' is damaged: {}",
                                  path_.string(), name_, reason));
   }
   void require(bool holds, const std::string& what_is_wrong) const {
@@ -161,7 +162,7 @@ class StructureCheck {
   void check_cells(const pugi::xml_node& parent, std::int64_t cells) {
     for (const pugi::xml_node& node : parent) {
       const StoredArray array(path_, node);
-      const std::int64_t bytes = uncompressed(array), each = bytes_of(array.type());
+      const std::int64_t bytes = blocks_of(array).bytes(), each = bytes_of(array.type());
       array.require(each == 8 || each == 4, "the type is no whole number");
       const bool is_offset = array.name() == "offsets";
       array.require(is_offset ? bytes == cells * each : bytes <= 4 * cells * each,
@@ -172,75 +173,72 @@ class StructureCheck {
   void check_array(const StoredArray& array, std::int64_t tuples) {
     const std::int64_t components = array.number("NumberOfComponents", 1);
     array.require(components >= 1, "there are no components");
-    const std::int64_t bytes = uncompressed(array);
+    const Blocks blocks = blocks_of(array);
     if (array.is_text()) {
       array.require(array.type() == "String" && components == 1, "the type is unknown");
-      check_strings(array, tuples, bytes);
+      check_strings(array, tuples, blocks);
       return;
     }
     const std::int64_t each = bytes_of(array.type());
     array.require(each > 0, "the type is unknown");
-    array.require(tuples <= most / components && bytes == tuples * components * each,
+    array.require(tuples <= most / components && blocks.bytes() == tuples * components * each,
                   "the count of values is wrong");
   }
 
-  std::uint64_t word_at(std::int64_t place) {
-    std::uint64_t word = 0;
+  // `count` words of 8 bytes from `place` on, which lie within the file.
+  std::vector<std::uint64_t> words_at(std::int64_t place, std::size_t count) {
+    std::vector<std::uint64_t> words(count);
     file_.seekg(static_cast<std::streamoff>(place));
-    file_.read(reinterpret_cast<char*>(&word), sizeof word);
+    file_.read(reinterpret_cast<char*>(words.data()), static_cast<std::streamsize>(8 * count));
     require(static_cast<bool>(file_), "its appended data end early");
-    return word;
+    return words;
   }
 
   struct Blocks {
     std::vector<std::uint64_t> compressed{};  // bytes of each
     std::uint64_t size = 0, last = 0;         // bytes of the others and of the last, uncompressed
     std::int64_t place = 0;                   // of the first in the file
+    // Uncompressed, of all. No sum overflows: a file has less than 2^53 bytes, each makes 1032.
+    std::int64_t bytes() const {
+      if (compressed.empty()) return 0;
+      return static_cast<std::int64_t>((compressed.size() - 1) * size + last);
+    }
   };
 
+  // The head of an array: the number of blocks, two sizes, and the compressed size of each block.
   Blocks blocks_of(const StoredArray& array) {
-    constexpr std::int64_t word = 8;
+    constexpr std::int64_t word = 8, before_sizes = 3;
     array.require(array.offset() <= layout_.end - layout_.data - word, "the offset is too large");
     const std::int64_t place = layout_.data + array.offset();
-    const std::uint64_t count = word_at(place);
+    const std::uint64_t count = words_at(place, 1).front();
+    if (count == 0) return {};
     array.require(count <= static_cast<std::uint64_t>((layout_.end - place) / word),
                   "there are more blocks than the file has room for");
-    Blocks blocks;
-    if (count == 0) return blocks;
-    blocks.size = word_at(place + word);
-    blocks.last = word_at(place + 2 * word);
-    if (blocks.last == 0) blocks.last = blocks.size;
-    blocks.place = place + word * (3 + static_cast<std::int64_t>(count));
-    std::int64_t left = layout_.end - blocks.place;
+    std::vector<std::uint64_t> head =
+        words_at(place, static_cast<std::size_t>(count) + before_sizes);
+    Blocks blocks{.size = head[1],
+                  .last = head[2] == 0 ? head[1] : head[2],
+                  .place = place + word * static_cast<std::int64_t>(head.size())};
+    head.erase(head.begin(), head.begin() + before_sizes);
+    blocks.compressed = std::move(head);
+    array.require(blocks.last <= blocks.size, "the size of a block is wrong");
+    auto left = static_cast<std::uint64_t>(layout_.end - blocks.place);
     for (std::uint64_t b = 0; b < count; ++b) {
-      const std::uint64_t bytes = word_at(place + word * (3 + static_cast<std::int64_t>(b)));
       // Deflate makes at most 1032 bytes of one (Deutsch 1996: 258 bytes from two bits).
       constexpr std::uint64_t most_of_one = 1032;
       const std::uint64_t whole = b + 1 == count ? blocks.last : blocks.size;
-      array.require(
-          left >= 0 && bytes <= static_cast<std::uint64_t>(left) && whole / most_of_one <= bytes,
-          "a block is longer than the file");
-      left -= static_cast<std::int64_t>(bytes);
-      blocks.compressed.push_back(bytes);
+      const std::uint64_t bytes = blocks.compressed[b];
+      array.require(bytes <= left && whole / most_of_one <= bytes,
+                    "a block is longer than the file");
+      left -= bytes;
     }
     return blocks;
   }
 
-  std::int64_t uncompressed(const StoredArray& array) {
-    const Blocks blocks = blocks_of(array);
-    if (blocks.compressed.empty()) return 0;
-    constexpr auto largest = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
-    const std::uint64_t before = blocks.compressed.size() - 1;
-    array.require(blocks.last <= blocks.size &&
-                      (before == 0 || blocks.size <= (largest - blocks.last) / before),
-                  "the size of a block is wrong");
-    return static_cast<std::int64_t>(before * blocks.size + blocks.last);
-  }
-
-  void check_strings(const StoredArray& array, std::int64_t count, std::int64_t bytes) {
+  void check_strings(const StoredArray& array, std::int64_t count, const Blocks& blocks) {
     constexpr std::int64_t longest = std::int64_t{1} << 30u;
+    const std::int64_t bytes = blocks.bytes();
     array.require(count <= bytes && bytes <= longest, "the count of values is wrong");
-    const Blocks blocks = blocks_of(array);
     vtkNew<vtkZLibDataCompressor> compressor;
     std::string text(static_cast<std::size_t>(bytes), '\1');
     std::size_t begin = 0;

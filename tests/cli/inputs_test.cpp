@@ -1,4 +1,4 @@
-// What a command reads is never overwritten, and names of any kind do no harm.
+// Commands never overwrite what they read, and names of any kind do no harm.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -53,7 +53,7 @@ TEST_F(Inputs, AreKnownByEveryName) {
   }
 }
 
-// Of a scene all files are inputs: an export writes room.mtl beside room.obj.
+// All files of a scene are inputs: an export writes shelf.mtl beside shelf.obj.
 TEST_F(Inputs, OfASceneAreAllItsFiles) {
   fs::create_directory(folder / "models");
   folder.write("models/shelf.obj", "mtllib ../shelf.mtl\nusemtl lamp\n" + unit_cube());
@@ -71,7 +71,7 @@ TEST_F(Inputs, MaterialsThatNoExportWroteAreKept) {
   EXPECT_EQ(run(exports).code, 0) << "of an earlier export";
 }
 
-// Names in Latin-1, and with characters that terminals and spreadsheets obey.
+// The names are in Latin-1, and hold characters that terminals obey.
 TEST_F(Inputs, OfAnyNameMakeReadableSolutions) {
   const std::string odd = "b\xfcro\x1b[31m";
   folder.write(odd + ".obj", "mtllib cube.mtl\no " + odd + "\nusemtl lamp\n" + unit_cube());

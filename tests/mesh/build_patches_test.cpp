@@ -272,10 +272,10 @@ TEST(BuildPatches, SidesFollowTheMaterial) {
   for (int m = 0; m < 5; ++m) EXPECT_NEAR(side_area(mesh, m, true), back_area[m], 1e-14);
 }
 
-// Shelves of 4 m x 5 m in a room of 4 m x 5 m x 3 m, both sides of each: light flies 4 V / A, and
-// an edge is a quarter of that, but neither longer than that of even patches nor so short that
-// there are more than 2.5 times as many.
-TEST(BuildPatches, AutomaticSizeFollowsTheWayOfLight) {
+// Shelves of 4 m x 5 m in a room of 4 m x 5 m x 3 m, both sides of each: the mean free path is 4 V
+// / A, and an edge is a quarter of that, but neither longer than that of even patches nor so short
+// that there are more than 2.5 times as many.
+TEST(BuildPatches, AutomaticSizeFollowsTheMeanFreePath) {
   for (const int shelves : {0, 3, 5, 10}) {
     Scene scene = empty_scene();
     add_box(scene, "room", {0, 0, 0}, {4, 5, 3}, true, 1);
@@ -284,9 +284,10 @@ TEST(BuildPatches, AutomaticSizeFollowsTheWayOfLight) {
       add_polygon(scene, "shelf", {{0, 0, z}, {4, 0, z}, {4, 5, z}, {0, 5, z}});
     }
     const double area = 94.0 + 2 * 20.0 * shelves, even = std::sqrt(area / 1600);
-    const double of_way = 0.25 * 4.0 * 60.0 / (2 * 20.0 * shelves);
-    const double expected = std::clamp(of_way, even / std::sqrt(2.5), even);
-    EXPECT_NEAR(cut_size(scene, {}).patch_size, expected, 1e-12) << shelves;
+    const double of_path = 0.25 * 4.0 * 60.0 / (2 * 20.0 * shelves);
+    const double expected = std::clamp(of_path, even / std::sqrt(2.5), even);
+    // A sum of 16 areas, a product and a root round by some 20 * 2^-53 of less than 1 m.
+    EXPECT_NEAR(cut_size(scene, {}).patch_size, expected, 1e-14) << shelves;
   }
 }
 

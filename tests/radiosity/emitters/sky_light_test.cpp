@@ -190,7 +190,8 @@ TEST(SkyLight, MeetsAGoalOfNoise) {
   }
 }
 
-// At surfaces, at a normal between the axes of sites, and where no site is near.
+// The points lie on surfaces, have a normal between the axes of sites, or lie where no site is
+// near.
 TEST(SkyLight, SingleRaysHaveTheRightMean) {
   const UnderSky room{room_with_window()};
   constexpr int floor = 4, wall = 0, count = 40000;
@@ -208,6 +209,7 @@ TEST(SkyLight, SingleRaysHaveTheRightMean) {
     }
     const double deviation = std::sqrt(squares - sum * sum);
     std::printf("deviation of a ray: %.2f of %.4f\n", deviation / expected, expected);
+    // Four standard errors: chance exceeds one once in 16 000 times.
     EXPECT_NEAR(sum, expected, 4.0 * deviation / std::sqrt(double{count}));
   }
 }

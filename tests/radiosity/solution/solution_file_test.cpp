@@ -137,7 +137,7 @@ TEST_F(SolutionFile, RestoresTheParts) {
   EXPECT_THROW(read_solution(folder_ / "s.vtp"), InputError) << "there is no third part";
 }
 
-// Names in any encoding, from a file system and an old program, and what no XML may hold.
+// Names come in any encoding from file systems and old programs, and hold what no XML may hold.
 TEST_F(SolutionFile, RestoresNamesThatAreNotUtf8) {
   SolvedScene solved = small_solution(3);
   RadiositySolution& solution = solved.solution;

@@ -74,7 +74,7 @@ TEST(PictureMean, AJpegIsNoLargerThanItsBytesAllow) {
   EXPECT_NE(refusal(jpeg).find("too short for its 2000 x 2000 pixels"), std::string::npos);
 }
 
-// The last scan again and again: each costs as much time as the picture.
+// The last scan is repeated; each scan costs as much time as the picture.
 TEST(PictureMean, AJpegOfVeryManyScansIsRefused) {
   const std::string jpeg = content_of(folder / "progressive.jpg");
   EXPECT_EQ(refusal(jpeg), "");
