@@ -38,6 +38,11 @@ std::string plain_lines(std::string_view text) {
   return lines;
 }
 
+void print_error(std::string_view text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
 double Stopwatch::seconds() const {
   return seconds_between(start_, std::chrono::steady_clock::now());
 }
@@ -69,8 +74,7 @@ Progress Console::progress() {
 
 void Console::draw(const std::string& line) {
   // Carriage return, then the ANSI sequence that clears to the end of the line.
-  fmt::print(stderr, "\r\033[K{}", line);
-  std::fflush(stderr);
+  print_error("\r\033[K" + line);
 }
 
 void Console::begin(std::string_view phase) {
@@ -112,11 +116,11 @@ void Console::show(std::string_view phase, double share) {
 
 void Console::finish_phase() {
   if (phase_.empty()) return;
-  if (on_terminal_) fmt::print(stderr, "\r\033[K");
+  if (on_terminal_) print_error("\r\033[K");
   constexpr double worth_a_line = 1.0;
   const double seconds = phase_time_.seconds();
   if (!is_without_progress_ || seconds > worth_a_line) {
-    fmt::print(stderr, "{}: {:.1f} s\n", phase_, seconds);
+    print_error(fmt::format("{}: {:.1f} s\n", phase_, seconds));
   }
   phase_.clear();
 }
@@ -124,7 +128,7 @@ void Console::finish_phase() {
 void Console::say(std::string_view line) {
   if (options_.quiet) return;
   finish_phase();
-  fmt::print(stderr, "{}\n", plain_lines(line));
+  print_error(plain_lines(line) + "\n");
 }
 
 void Console::say_notes(const Scene& scene) {

@@ -26,6 +26,10 @@ struct CommonOptions {
 /// terminals obey.
 std::string plain_lines(std::string_view text);
 
+/// Prints to standard error. A failure, such as a full disk behind a log file, is left out: no
+/// place remains that would report the failure.
+void print_error(std::string_view text);
+
 /// A clock that starts with its construction.
 class Stopwatch {
  public:

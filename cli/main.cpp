@@ -5,11 +5,14 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cstdio>
+#include <iostream>
 #include <map>
 #include <memory>
 #include <new>
 #include <optional>
+#include <system_error>
 #include <utility>
 
 #include "cli/arguments.h"
@@ -114,8 +117,8 @@ void add_strict(CLI::App& command, CommonOptions& options) {
 }
 
 int wrong_usage(const std::string& sentence, const std::string& command = {}) {
-  fmt::print(stderr, "error: {}\n'lightwell{} --help' lists the options.\n", sentence,
-             command.empty() ? "" : " " + command);
+  print_error(fmt::format("error: {}\n'lightwell{} --help' lists the options.\n", sentence,
+                          command.empty() ? "" : " " + command));
   return exit_wrong_usage;
 }
 
@@ -152,29 +155,33 @@ std::string usage_sentence(const CLI::ParseError& error, const CLI::App& app,
 }
 
 int fail(ExitCode code, const std::string& sentence) {
-  fmt::print(stderr, "error: {}\n", plain_lines(sentence));
+  print_error(fmt::format("error: {}\n", plain_lines(sentence)));
   return code;
+}
+
+// `code`, unless what was printed does not reach its destination.
+int with_all_written(int code) {
+  // CLI11 prints help and versions to std::cout. Either way errno is that of the write that failed.
+  if (std::cout.flush() && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  return fail(exit_failed, fmt::format("standard output could not be written: {}",
+                                       std::generic_category().message(errno != 0 ? errno : EIO)));
 }
 
 int act(const Action& action, const CommonOptions& options) {
   Console console(options);
   try {
     const ThreadLimit limit(options.threads);
-    const int code = action(console);
-    if (std::fflush(stdout) != 0) {
-      return fail(exit_failed, "standard output could not be written");
-    }
-    return code;
+    return with_all_written(action(console));
   } catch (const InputError& error) {
     console.finish_phase();
     return fail(exit_bad_input, error.what());
   } catch (const InterruptedWith& interrupted) {
     console.finish_phase();
-    fmt::print(stderr, "{}\n", interrupted.what());
+    print_error(fmt::format("{}\n", interrupted.what()));
     return exit_interrupted;
   } catch (const Interrupted&) {
     console.finish_phase();
-    fmt::print(stderr, "interrupted; nothing is left half-written\n");
+    print_error("interrupted; nothing is left half-written\n");
     return exit_interrupted;
   } catch (const std::bad_alloc&) {
     console.finish_phase();
@@ -212,7 +219,7 @@ int run_program(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& success) {
-    return app.exit(success);  // --help and --version
+    return with_all_written(app.exit(success));  // --help and --version
   } catch (const CLI::ParseError& error) {
     const auto parsed = app.get_subcommands();
     const CLI::App& at = parsed.empty() ? app : *parsed.front();
@@ -221,7 +228,7 @@ int run_program(int argc, char** argv) {
   const auto parsed = app.get_subcommands();
   if (parsed.empty()) {
     fmt::print("{}", recipes);
-    return exit_done;
+    return with_all_written(exit_done);
   }
   return act(actions.at(parsed.front()), options);
 }

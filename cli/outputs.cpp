@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "scene/atomic_file.h"
+
 namespace lightwell {
 namespace fs = std::filesystem;
 namespace {
@@ -53,12 +55,12 @@ void require_writable(const fs::path& file) {
   // Results are written beside `file` and renamed, which would replace a device by a plain file.
   if (fs::exists(status) && !fs::is_regular_file(status)) refuse(file, "it is not a plain file");
 
-  fs::path trial = file;
-  trial += fmt::format(".{}.trial", ::getpid());
-  const int descriptor = ::open(trial.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0600);
+  // The trial has the name of a part, so that what a kill leaves of the trial goes like a part.
+  const AtomicFile trial(file);
+  const int descriptor =
+      ::open(trial.temporary().c_str(), O_CREAT | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, 0600);
   if (descriptor < 0) refuse(file, std::generic_category().message(errno));
   ::close(descriptor);
-  fs::remove(trial, error);
 }
 
 OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {

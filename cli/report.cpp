@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <stdexcept>
 #include <utility>
 
@@ -307,11 +306,8 @@ void print_json(const Json& json) {
 }
 
 void write_json(const std::filesystem::path& file, const Json& json) {
-  AtomicFile target(file);
-  std::ofstream out(target.temporary(), std::ios::binary);
-  out << to_text(json);
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: could not be written", file.string()));
+  AtomicStream target(file);
+  target.stream() << to_text(json);
   target.commit();
 }
 

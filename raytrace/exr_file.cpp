@@ -13,11 +13,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
+#include <new>
+#include <ostream>
 #include <stdexcept>
 
 #include "raytrace/image.h"
 #include "raytrace/picture_output.h"
+#include "scene/atomic_file.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -26,20 +28,20 @@ namespace {
 const std::array<const char*, 3> rgb_names = {"R", "G", "B"};
 
 // Output stream that throws on errors. OpenEXR writes its line table in a destructor, which
-// swallows exceptions, but the underlying ofstream keeps its error state for
-// PictureOutput::finish().
+// swallows exceptions, but the underlying stream keeps its error state for AtomicStream::commit().
 class ExrStream : public Imf::OStream {
  public:
-  ExrStream(std::ofstream& stream, const std::string& name)
-      : Imf::OStream(name.c_str()), stream_(stream) {}
+  ExrStream(AtomicStream& file, const std::string& name)
+      : Imf::OStream(name.c_str()), file_(file), stream_(file.stream()) {}
   void write(const char c[], int n) override {
-    if (!stream_.write(c, n)) throw std::runtime_error("the disk may be full");
+    if (!stream_.write(c, n)) throw std::runtime_error(file_.failure());
   }
   std::uint64_t tellp() override { return static_cast<std::uint64_t>(stream_.tellp()); }
   void seekp(std::uint64_t pos) override { stream_.seekp(static_cast<std::streamoff>(pos)); }
 
  private:
-  std::ofstream& stream_;
+  AtomicStream& file_;
+  std::ostream& stream_;
 };
 
 void check_size(const Image& image, const std::filesystem::path& path) {
@@ -222,7 +224,7 @@ void write_exr(const std::filesystem::path& path, const Image& image, const Band
   for (const ChannelPlane& plane : planes) {
     if (options.half && plane.may_be_half) kept.push_back(halves(plane, image, path));
   }
-  PictureOutput output(path);
+  AtomicStream output(path);
   try {
     Imf::Header header(image.width, image.height);
     header.compression() = imf_compression(options.compression);
@@ -238,14 +240,17 @@ void write_exr(const std::filesystem::path& path, const Image& image, const Band
                         ? slice(Imf::HALF, (next_half++)->data(), sizeof(half), image.width)
                         : slice(Imf::FLOAT, plane.first, plane.step * sizeof(float), image.width));
     }
-    ExrStream exr_stream(output.stream(), path.string());
+    ExrStream exr_stream(output, path.string());
     Imf::OutputFile file(exr_stream, header);
     file.setFrameBuffer(buffer);
     file.writePixels(image.height);
+  } catch (const std::bad_alloc&) {
+    throw;  // the file is not to blame
   } catch (const std::exception& error) {
+    if (!output.stream()) output.close();  // throws with the reason alone
     fail_write(path, error.what());
   }
-  output.finish();
+  output.commit();
 }
 
 Image read_exr(const std::filesystem::path& path, ExrChannels which) {
@@ -258,6 +263,8 @@ Image read_exr(const std::filesystem::path& path, ExrChannels which) {
     return read_image(file, name, which);
   } catch (const InputError&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw;  // the file is not to blame
   } catch (const std::exception& error) {
     throw InputError(fmt::format("{}: cannot be read as OpenEXR: {}", name, error.what()));
   }

@@ -11,6 +11,7 @@
 #include "raytrace/encode_png.h"
 #include "raytrace/image.h"
 #include "raytrace/picture_output.h"
+#include "scene/atomic_file.h"
 
 namespace lightwell {
 namespace {
@@ -30,7 +31,7 @@ struct PngJob {
 void png_write_bytes(png_structp png, png_bytep data, png_size_t size) {
   auto& stream = *static_cast<std::ostream*>(png_get_io_ptr(png));
   if (!stream.write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size))) {
-    png_error(png, "the disk may be full");
+    png_error(png, "a write failed");
   }
 }
 
@@ -128,7 +129,7 @@ void write_png(const std::filesystem::path& path, int width, int height,
     }
     texts.push_back(png_entry(key, values[i]));
   }
-  PictureOutput output(path);
+  AtomicStream output(path);
   PngJob job{.stream = &output.stream(),
              .width = width,
              .height = height,
@@ -136,8 +137,11 @@ void write_png(const std::filesystem::path& path, int width, int height,
              .rows = rows.data(),
              .texts = texts.data(),
              .text_count = static_cast<int>(texts.size())};
-  if (!run_png(job)) fail_write(path, job.message);
-  output.finish();
+  if (!run_png(job)) {
+    if (!output.stream()) output.close();  // throws with the reason
+    fail_write(path, job.message);
+  }
+  output.commit();
 }
 
 }  // namespace lightwell

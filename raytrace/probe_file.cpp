@@ -128,12 +128,8 @@ std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_p
 void write_probes(const std::filesystem::path& csv, std::span<const Probe> probes,
                   const BandArray& irradiance, const Bands& bands, double metres_per_unit,
                   const Eigen::ArrayXd& lux_within) {
-  AtomicFile file(csv);
-  std::ofstream stream(file.temporary());
-  if (!stream) {
-    throw std::runtime_error(fmt::format(
-        "{}: cannot be written: is its folder there, and may you write to it?", csv.string()));
-  }
+  AtomicStream file(csv);
+  std::ostream& stream = file.stream();
   stream << "x,y,z,nx,ny,nz";
   for (const std::string& name : bands.names) stream << ",E_" << name;
   stream << (lux_within.size() > 0 ? ",lux,lux_within\n" : ",lux\n");
@@ -150,11 +146,6 @@ void write_probes(const std::filesystem::path& csv, std::span<const Probe> probe
       stream << (std::isnan(within) ? "," : fmt::format(",{:.3g}", within));
     }
     stream << '\n';
-  }
-  stream.close();
-  if (!stream) {
-    throw std::runtime_error(
-        fmt::format("{}: cannot be written: the disk may be full", csv.string()));
   }
   file.commit();
 }

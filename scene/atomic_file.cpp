@@ -1,5 +1,6 @@
 #include "scene/atomic_file.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -46,6 +47,22 @@ void remove_leftovers(const fs::path& target) {
   }
 }
 
+// Waits until the content of a file, or the names in a folder, are on the disk. Returns errno.
+int wait_for_disk(const fs::path& path, int flags) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | flags);
+  if (file < 0) return errno;
+  int error = 0;
+  while ((error = ::fsync(file) == 0 ? 0 : errno) == EINTR) {
+  }
+  ::close(file);
+  return error;
+}
+
+[[noreturn]] void fail(const fs::path& target, int error) {
+  throw std::runtime_error(fmt::format("{}: cannot be written: {}", target.string(),
+                                       std::generic_category().message(error)));
+}
+
 }  // namespace
 
 AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(target), temporary_(target) {
@@ -61,6 +78,9 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::commit() {
+  // EINVAL: the file system has nothing to wait for.
+  const int unwritten = wait_for_disk(temporary_, 0);
+  if (unwritten != 0 && unwritten != EINVAL) fail(target_, unwritten);
   std::error_code error;
   std::filesystem::rename(temporary_, target_, error);
   if (error) {
@@ -68,6 +88,55 @@ void AtomicFile::commit() {
         fmt::format("{}: cannot be replaced: {}", target_.string(), error.message()));
   }
   committed_ = true;
+  // Some file systems cannot wait for names; the file is whole under either name there, too.
+  wait_for_disk(target_.has_parent_path() ? target_.parent_path() : fs::path("."), O_DIRECTORY);
+}
+
+AtomicStream::AtomicStream(const fs::path& target)
+    : target_(target), file_(target), stream_(&buffer_) {
+  errno = 0;
+  if (!buffer_.open(file_.temporary(), std::ios::out | std::ios::binary | std::ios::trunc)) {
+    fail(target, errno != 0 ? errno : EIO);
+  }
+}
+
+std::string AtomicStream::failure() const {
+  return std::generic_category().message(buffer_.error() != 0 ? buffer_.error() : EIO);
+}
+
+void AtomicStream::close() {
+  if (buffer_.is_open() && !buffer_.close()) stream_.setstate(std::ios::failbit);
+  if (!stream_ || buffer_.error() != 0) fail(target_, buffer_.error() != 0 ? buffer_.error() : EIO);
+}
+
+void AtomicStream::commit() {
+  close();
+  file_.commit();
+}
+
+void AtomicStream::Buffer::note_error() {
+  if (error_ == 0) error_ = errno != 0 ? errno : EIO;
+}
+
+AtomicStream::Buffer::int_type AtomicStream::Buffer::overflow(int_type c) {
+  errno = 0;
+  const int_type written = std::filebuf::overflow(c);
+  if (traits_type::eq_int_type(written, traits_type::eof())) note_error();
+  return written;
+}
+
+std::streamsize AtomicStream::Buffer::xsputn(const char* text, std::streamsize size) {
+  errno = 0;
+  const std::streamsize written = std::filebuf::xsputn(text, size);
+  if (written < size) note_error();
+  return written;
+}
+
+int AtomicStream::Buffer::sync() {
+  errno = 0;
+  const int result = std::filebuf::sync();
+  if (result != 0) note_error();
+  return result;
 }
 
 }  // namespace lightwell

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <filesystem>
+#include <fstream>
+#include <ostream>
+#include <string>
 
 namespace lightwell {
 
@@ -17,13 +20,47 @@ class AtomicFile {
 
   /// The temporary file, for the caller to write.
   const std::filesystem::path& temporary() const { return temporary_; }
-  /// Renames the temporary file to the target. Throws std::runtime_error naming the target if the
-  /// renaming fails.
+  /// Renames the temporary file to the target once its content is on the disk, so that the target
+  /// is whole after a power cut, too. Throws std::runtime_error with the target and the reason.
   void commit();
 
  private:
   std::filesystem::path target_, temporary_;
   bool committed_ = false;
+};
+
+/// An AtomicFile with a stream that remembers why a write failed. std::ofstream forgets the reason.
+class AtomicStream {
+ public:
+  /// Throws std::runtime_error with the target and the reason if the file cannot be made.
+  explicit AtomicStream(const std::filesystem::path& target);
+  std::ostream& stream() { return stream_; }
+  /// Reason of the first write that failed.
+  std::string failure() const;
+  /// Throws std::runtime_error with the target and the reason if a write has failed.
+  void close();
+  /// close(), and AtomicFile::commit().
+  void commit();
+
+ private:
+  class Buffer : public std::filebuf {
+   public:
+    int error() const { return error_; }
+
+   protected:
+    int_type overflow(int_type c) override;
+    std::streamsize xsputn(const char* text, std::streamsize size) override;
+    int sync() override;
+
+   private:
+    void note_error();
+    int error_ = 0;  // errno of the first failure
+  };
+
+  std::filesystem::path target_;
+  AtomicFile file_;
+  Buffer buffer_;
+  std::ostream stream_;
 };
 
 }  // namespace lightwell

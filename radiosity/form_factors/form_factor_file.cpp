@@ -6,9 +6,6 @@
 #include <vtkPolyData.h>
 #include <vtkXMLPolyDataWriter.h>
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <iterator>
 #include <stdexcept>
 
@@ -27,10 +24,7 @@ namespace {
 /// Text output in large pieces, to a temporary file.
 class TextOutput {
  public:
-  explicit TextOutput(const std::filesystem::path& target)
-      : target_(target), file_(target), stream_(file_.temporary(), std::ios::binary) {
-    check();
-  }
+  explicit TextOutput(const std::filesystem::path& target) : file_(target) {}
   template <typename... T>
   void add(fmt::format_string<T...> format, T&&... values) {
     fmt::format_to(std::back_inserter(buffer_), format, std::forward<T>(values)...);
@@ -39,25 +33,17 @@ class TextOutput {
   }
   void commit() {
     flush();
-    stream_.close();
-    check();
     file_.commit();
   }
 
  private:
   void flush() {
-    errno = 0;  // streams give no reason for a failure
-    stream_.write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
+    file_.stream().write(buffer_.data(), static_cast<std::streamsize>(buffer_.size()));
     buffer_.clear();
-    check();
-  }
-  void check() {
-    if (!stream_) fail_form_factor_write(target_, std::strerror(errno != 0 ? errno : EIO));
+    if (!file_.stream()) file_.close();  // throws with the reason, before more rows are made
   }
 
-  std::filesystem::path target_;
-  AtomicFile file_;
-  std::ofstream stream_;
+  AtomicStream file_;
   fmt::memory_buffer buffer_;
 };
 

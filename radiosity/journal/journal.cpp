@@ -50,19 +50,16 @@ class Descriptor {
   int number_ = -1;
 };
 
-// Header and directory entry are on disk before any work is, so a power loss leaves no torn header.
+// AtomicFile has header and directory entry on disk before any work is, so a power loss leaves no
+// torn header.
 void make_file(const fs::path& file, const Provenance& of) {
   const std::string header = journal_header(of);
   AtomicFile atomic(file);
   Descriptor out(atomic.temporary(), O_CREAT | O_TRUNC | O_WRONLY);
   if (out.number() < 0) fail_to_write(file, errno);
-  int error = write_at(out.number(), 0, std::as_bytes(std::span(header)));
-  if (error == 0) error = confirm(out.number());
+  const int error = write_at(out.number(), 0, std::as_bytes(std::span(header)));
   if (error != 0) fail_to_write(file, error);
   atomic.commit();
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  const Descriptor names(folder, O_RDONLY | O_DIRECTORY);
-  if (names.number() >= 0) ::fsync(names.number());  // not possible on some file systems
 }
 
 }  // namespace

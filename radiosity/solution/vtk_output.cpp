@@ -71,7 +71,12 @@ std::string write_appended(vtkXMLPolyDataWriter* writer, vtkPolyData* poly,
   writer->SetDataModeToAppended();
   writer->EncodeAppendedDataOff();
   writer->SetHeaderTypeToUInt64();
+  errno = 0;
   if (writer->Write() != 0 && writer->GetErrorCode() == vtkErrorCode::NoError) return "";
+  // VTK knows full disks alone, and not all of them; the write that failed set errno.
+  const int reason = errno;
+  const bool is_of_a_write = reason == ENOSPC || reason == EDQUOT || reason == EFBIG;
+  if (is_of_a_write) return std::strerror(reason);
   const bool full = writer->GetErrorCode() == vtkErrorCode::OutOfDiskSpaceError;
   return std::strerror(full ? ENOSPC : EIO);
 }

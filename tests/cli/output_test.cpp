@@ -1,10 +1,13 @@
 // Files, standard output and JSON, as scripts read them.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -291,6 +294,57 @@ TEST_F(Output, StoppedBeforeTheToleranceIsCodeFourAndStillWritten) {
   EXPECT_EQ(ended.code, 4);
   EXPECT_TRUE(says(ended.err, "warning"));
   EXPECT_TRUE(std::filesystem::exists(folder / "S.vtp"));
+}
+
+// RLIMIT_FSIZE of the child stands for a full disk: no file may grow beyond the limit. Messages are
+// shorter than the limit, results are longer.
+TEST_F(Output, AFailedWriteNamesTheCauseAndTheOldFileStays) {
+  ASSERT_EQ(run(Words{"solve", "room.toml", "-o", "S.vtp"} + quick()).code, 0);
+  std::string points = "x,y,z,nx,ny,nz\n";
+  for (int i = 0; i < 99; ++i) points += "2,1.5,0.5,0,0,1\n";
+  folder.write("points.csv", points);
+  const Words writers[] = {
+      Words{"solve", "room.toml"} + quick() + Words{"-o", "old.vtp"},
+      {"mesh", "room.toml", "-o", "old.vtp"},
+      {"render", "room.toml", "S.vtp", "-o", "old.png"},
+      {"render", "room.toml", "S.vtp", "-o", "old.exr"},
+      {"probe", "room.toml", "S.vtp", "--points", "points.csv", "-o", "old.csv"},
+      {"export", "S.vtp", "-o", "old.glb"},
+      {"form-factors", "room.toml", "--max-patch-size", "1", "-o", "old.mtx"}};
+  for (const Words& words : writers) {
+    folder.write(words.back(), "old");
+    const int files = folder.file_count();
+    rlimit before{};
+    ::getrlimit(RLIMIT_FSIZE, &before);
+    const rlimit limit{1000, before.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    Running running(folder / "", words);
+    ::setrlimit(RLIMIT_FSIZE, &before);
+    const Ended ended = running.wait();
+    EXPECT_EQ(ended.code, 1) << words[0] << ": " << ended.err;
+    EXPECT_TRUE(says(ended.err, words.back()));
+    EXPECT_TRUE(says(ended.err, ": File too large"));
+    EXPECT_EQ(content_of(folder / words.back()), "old");
+    EXPECT_EQ(folder.file_count(), files);
+  }
+}
+
+// The code of `words`, given to a shell that redirects standard output or standard error.
+int code_in_shell(const std::filesystem::path& folder, const std::string& words) {
+  const int status =
+      std::system(("cd '" + folder.string() + "' && " LIGHTWELL_PROGRAM " " + words).c_str());
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+}
+
+TEST_F(Output, AFullStandardOutputIsAnErrorAndAFullLogIsNone) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  for (const std::string words : {"", "--help", "--version", "solve --help", "info room.toml"}) {
+    EXPECT_EQ(code_in_shell(folder.path(), words + " >/dev/full 2>err"), 1) << words;
+    EXPECT_TRUE(says(content_of(folder / "err"), "No space left on device")) << words;
+  }
+  EXPECT_EQ(code_in_shell(folder.path(), "mesh room.toml -o M.vtp >out 2>/dev/full"), 0);
+  EXPECT_EQ(code_in_shell(folder.path(), "solve nothing.toml -o S.vtp 2>/dev/full"), 3);
+  EXPECT_EQ(code_in_shell(folder.path(), "solve 2>/dev/full"), 2);
 }
 
 }  // namespace

@@ -172,11 +172,8 @@ void write_views(const std::filesystem::path& file, const KeptViews& views) {
     camera["seconds"] = views.path.seconds[i];
     json["path"].push_back(std::move(camera));
   }
-  AtomicFile target(file);
-  std::ofstream out(target.temporary());
-  out << json.dump(1) << '\n';
-  out.close();
-  if (!out) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
+  AtomicStream target(file);
+  target.stream() << json.dump(1) << '\n';
   target.commit();
 }
 
