@@ -18,6 +18,8 @@ display_packages=(xvfb xauth libgl1-mesa-dri)
 format_packages=(clang-format-14)
 # What opens exported pages and checks exported models, in the tests.
 browser_packages=(chromium nodejs)
+# What tests/run --long needs besides: the language of tests/faults, and a list of the program's system calls.
+fault_packages=(python3 strace)
 # A second browser (0.3 GB), and hands for the window: without them the tests with them are skipped.
 extra_packages=(firefox-esr xdotool)
 
