@@ -20,7 +20,7 @@ class Changer(threading.Thread):
 
     def run(self):
         while not self.is_stopped.is_set():
-            content = self.content
+            content, kind = self.content, 0
             if self.whole:
                 # Renaming gives readers either file, whole.
                 scenes.write(self.path + ".next", self.random.choice(self.whole))
@@ -38,7 +38,8 @@ class Changer(threading.Thread):
                     os.truncate(self.path, self.random.randrange(len(content)))
                 else:
                     scenes.write(self.path, content)
-            self.is_stopped.wait(self.random.expovariate(1000.0))
+            # Pauses after whole files let some reads end well.
+            self.is_stopped.wait(self.random.expovariate(40.0 if kind == 4 else 1000.0))
 
     def stop(self):
         self.is_stopped.set()

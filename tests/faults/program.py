@@ -43,7 +43,7 @@ class Program:
                                  stdout=out or subprocess.PIPE, stderr=err or subprocess.PIPE, preexec_fn=limit)
         if signal_number is not None:
             while until and not until() and child.poll() is None:
-                pass
+                time.sleep(0.0002)
             time.sleep(delay)
             child.send_signal(signal_number)
             start = time.monotonic()
