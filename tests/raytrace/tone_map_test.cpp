@@ -130,6 +130,14 @@ TEST(ToneMap, ExposureDoesNotDependOnTheUnitOfRadiance) {
   EXPECT_EQ(tone_map(image, rgb_bands()), bytes);
 }
 
+// The key of the automatic exposure (docs/tone-mapping.md).
+TEST(ToneMap, TypicalLuminanceIsAFifthOfWhite) {
+  for (const float L : {0.01f, 1.0f, 300.0f}) {
+    const Image image = flat_image(4, 3, {L, L, L});
+    EXPECT_NEAR(L * exposure_scale(image, rgb_bands()), 0.2, 1e-6);  // float radiance
+  }
+}
+
 TEST(ToneMap, LampsAndBlackDoNotMoveTheExposure) {
   const double without = exposure_scale(wall(1000), rgb_bands());
   Image image{.width = 1300, .height = 1};
