@@ -19,6 +19,8 @@ namespace {
 constexpr double share_of_interpolation = 0.95, share_of_gather_noise = 0.55;
 constexpr int most_attempts = 6;
 
+constexpr double sky_rays_for_one_percent = 2048.0, sky_rays_law = 4.0 / 3.0;
+
 }  // namespace
 
 double noise_share(double target) {
@@ -81,9 +83,13 @@ ShadowOptions Effort::shadows() const {
 }
 
 int sky_rays(double target) {
-  constexpr double for_one_percent = 2048.0, fewest = 128.0, most = 16384.0, law = 4.0 / 3.0;
-  const double rays = for_one_percent * std::pow(0.01 / target, law);
+  constexpr double fewest = 128.0, most = 16384.0;
+  const double rays = sky_rays_for_one_percent * std::pow(0.01 / target, sky_rays_law);
   return static_cast<int>(std::lround(std::clamp(rays, fewest, most)));
+}
+
+double target_of_sky_rays(int rays) {
+  return 0.01 * std::pow(sky_rays_for_one_percent / rays, 1.0 / sky_rays_law);
 }
 
 Effort first_effort(double target, bool refines) {

@@ -49,6 +49,9 @@ Effort first_effort(double target, bool refines);
 /// rays^(-3/4); see ShadowOptions.
 int sky_rays(double target);
 
+/// The target for which sky_rays() gives `rays`.
+double target_of_sky_rays(int rays);
+
 /// The noise that the final gather may leave, relative to the mean irradiance: 55 % of `target`.
 double noise_share(double target);
 

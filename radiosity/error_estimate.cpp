@@ -342,7 +342,7 @@ void choose_rays(const SolveOptions& options, const PatchMesh& mesh, const PartS
   const auto& efforts = options.refine.efforts;
   for (std::size_t p = 0; p + 1 < samples.begin.size(); ++p) {
     const int rays = efforts.empty() ? options.gather.rays : efforts[p].rays;
-    const double noise = efforts.empty() ? 0.0 : of_noise_share * efforts[p].noise;
+    const double noise = efforts.empty() ? 0.0 : of_noise_share * efforts[p].sky_noise;
     for (int i = samples.begin[p]; i < samples.begin[p + 1]; ++i) {
       sampled.points[i].sky_noise = noise_goal(means.of_part(static_cast<int>(p)), noise);
       sampled.points[i].rays = estimate_rays(rays, mesh.vertex_count(), points);

@@ -164,18 +164,25 @@ class GatherAttempts {
     for (std::size_t p = 0; p < efforts_.size(); ++p) {
       most.refine_tolerance = std::min(most.refine_tolerance, efforts_[p].refine_tolerance);
       most.gather_rays = std::max(most.gather_rays, efforts_[p].gather_rays);
-      if (target_ > 0.0 || efforts_.size() > 1) {
-        options_.refine.efforts.push_back({.tolerance = efforts_[p].refine_tolerance,
-                                           .noise = noise_share(targets_[p]),
-                                           .rays = efforts_[p].gather_rays,
-                                           .irradiance = irradiances_[p]});
-      }
+      options_.refine.efforts.push_back({.tolerance = efforts_[p].refine_tolerance,
+                                         .noise = noise_share(targets_[p]),
+                                         .sky_noise = sky_noise_share(targets_[p]),
+                                         .rays = efforts_[p].gather_rays,
+                                         .irradiance = irradiances_[p]});
     }
     options_.refine.tolerance = most.refine_tolerance;
     options_.gather.rays = most.gather_rays;
     if (!(target_ > 0.0)) return;
     options_.gather.shadows = most.shadows();
     options_.gather.shadows.sky_rays = sky_rays(*std::ranges::min_element(targets_));
+  }
+
+  // The noise that the sky's light may have: without a target, that of the default's rays in a
+  // typical room, so that they are not cast where fewer will do.
+  double sky_noise_share(double target) const {
+    const int rays = options_.gather.shadows.sky_rays;
+    if (target > 0.0) return noise_share(target);
+    return rays > 0 ? noise_share(target_of_sky_rays(rays)) : 0.0;
   }
 
   // Splits elements and gathers to their vertices with few rays.

@@ -181,16 +181,15 @@ class SkyLight::Estimate {
   // cells may still be of the other kind.
   int rays_after(const Tally& pilot, int first, const SkyEffort& effort) const {
     if (!effort.goal.is_set()) return effort.most;
-    constexpr int most_times = 16;
     const bool is_even = pilot.clear == 0 || pilot.clear == pilot.rays;
     const double unseen = is_even ? shares_->E_open.mean() / first : 0.0;
     const double square = pilot.squared_noise + unseen * unseen;
     const double enough =
         std::max(effort.goal.irradiance, effort.goal.share * result(pilot).mean());
     const double rays = enough > 0.0 ? first * square / (enough * enough) : effort.most;
-    return static_cast<int>(
-        std::lround(std::clamp(rays - first, std::max(1.0, 0.5 * first),
-                               std::min(1.0 * most_times * effort.most, 1.0 * most_sky_rays))));
+    return static_cast<int>(std::lround(
+        std::clamp(rays - first, std::max(1.0, 0.5 * first),
+                   std::min(1.0 * effort.goal.most_times * effort.most, 1.0 * most_sky_rays))));
   }
 
   const std::vector<Share>& cells() const { return shares_->cells; }

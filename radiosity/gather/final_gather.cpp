@@ -308,6 +308,7 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
     print.add(rays);
     print.add(sky_noise.irradiance);
     print.add(sky_noise.share);
+    print.add(sky_noise.most_times);
   }
   // The run decides no bit of a result.
   const auto& [rays, max_specular_depth, shadows, replica, portals, run] = options;

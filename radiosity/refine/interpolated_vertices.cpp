@@ -168,7 +168,40 @@ int rays_by_importance(int rays, float importance) {
   return std::max(1, rays >> shift);
 }
 
+// The vertices in each part.
+std::vector<std::vector<int>> vertices_by_part(const std::vector<int>& patch_of_vertex,
+                                               const SceneParts& parts) {
+  std::vector<std::vector<int>> vertices(static_cast<std::size_t>(parts.judged_count()));
+  for (std::size_t v = 0; v < patch_of_vertex.size(); ++v) {
+    vertices[parts.judged_with(patch_of_vertex[v])].push_back(static_cast<int>(v));
+  }
+  return vertices;
+}
+
+std::vector<double> values_at(const std::vector<double>& all, const std::vector<int>& at) {
+  std::vector<double> values;
+  values.reserve(at.size());
+  for (const int i : at) values.push_back(all[i]);
+  return values;
+}
+
 }  // namespace
+
+std::vector<float> vertex_fineness(const PatchMesh& mesh, const SceneParts& parts) {
+  constexpr double most = 64.0;
+  const std::vector<double> area = vertex_areas(mesh);
+  std::vector<float> fineness(area.size(), 1.0f);
+  for (const std::vector<int>& vertices : vertices_by_part(vertex_patches(mesh), parts)) {
+    const double typical = typical_area(values_at(area, vertices));
+    for (const int v : vertices) {
+      const double least = typical / (most * most);
+      if (!(typical > 0.0)) continue;
+      const double times = std::sqrt(typical / std::max(area[v], least));
+      fineness[v] = static_cast<float>(std::max(times, 1.0));
+    }
+  }
+  return fineness;
+}
 
 std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedVertex> interpolated,
                             const SceneParts& parts, std::span<const int> rays) {
@@ -178,12 +211,10 @@ std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedV
     area[t->vertex] = 0.0;
   }
   const std::vector<int> patch = vertex_patches(mesh);
-  std::vector<std::vector<int>> vertices(static_cast<std::size_t>(parts.judged_count()));
-  for (int v = 0; v < mesh.vertex_count(); ++v) vertices[parts.judged_with(patch[v])].push_back(v);
+  const std::vector<std::vector<int>> vertices = vertices_by_part(patch, parts);
   std::vector<int> shares(area.size(), 0);
   for (std::size_t p = 0; p < vertices.size(); ++p) {
-    std::vector<double> of_part;
-    for (const int v : vertices[p]) of_part.push_back(area[v]);
+    const std::vector<double> of_part = values_at(area, vertices[p]);
     const std::vector<int> shared = share_rays(of_part, rays[p]);
     for (std::size_t i = 0; i < shared.size(); ++i) {
       const int v = vertices[p][i];

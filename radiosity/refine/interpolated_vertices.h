@@ -74,6 +74,10 @@ double typical_area(std::span<const double> area);
 /// two from 1/8 to 2.
 std::vector<int> share_rays(std::span<const double> area, int rays);
 
+/// Per vertex, sqrt(typical_area() of the vertex's part / area that the vertex stands for), from 1
+/// to 64: how many times fewer rays than a typical vertex the vertex needs (see share_rays()).
+std::vector<float> vertex_fineness(const PatchMesh& mesh, const SceneParts& parts);
+
 /// Rays of each vertex of a mesh, shared by area within each of the `parts`, whose `rays` are
 /// given. Interpolated vertices take 0 rays, and their area counts for their ends.
 std::vector<int> share_rays(const PatchMesh& mesh, std::span<const InterpolatedVertex> interpolated,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "radiosity/gather/gap_light.h"
@@ -63,6 +64,7 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
       has_noise_goal_(!refine.efforts.empty() && refine.efforts.front().noise > 0.0),
       efforts_(refine.efforts),
       inset_(std::ldexp(finest_inset, -refine.max_level)),
+      fineness_(vertex_fineness(elements.base(), parts_)),
       visibility_(lit.direct_light.light_count()),
       unread_patch_(unread_patches(lit.scene, elements.base())),
       shared_(find_shared_gathers(lit.scene, elements.base())) {
@@ -113,14 +115,19 @@ NoiseGoal VertexGathers::sky_noise_at(int vertex) const {
   // Interpolation averages vertices, so that half of the square is left on surfaces.
   constexpr double averaged = 0.7;
   constexpr float least_importance = 1.0f / 64.0f;
-  if (!has_noise_goal_) return {};
+  if (efforts_.empty()) return {};
   const int patch = elements_.base().patch[elements_.inside(vertex, 0.0).element];
   const auto part = static_cast<std::size_t>(parts_.judged_with(patch));
-  const double typical = pilot_rays(rays_of_part_[part], true);
-  const double few = typical / rays_[static_cast<std::size_t>(vertex)];
+  const double typical = pilot_rays(rays_of_part_[part], has_noise_goal_);
+  const auto v = static_cast<std::size_t>(vertex);
+  const double few = std::max(typical / rays_[v], static_cast<double>(fineness_[v]));
   const float importance = std::max(parts_.importance_of(patch), least_importance);
   const double times = std::sqrt(std::max(few, 1.0) / static_cast<double>(importance));
-  return noise_goal(efforts_[part].irradiance, averaged * times * efforts_[part].noise);
+  NoiseGoal goal =
+      noise_goal(efforts_[part].irradiance, averaged * times * efforts_[part].sky_noise);
+  // Without an accuracy the goal saves rays, and asks for no more than the options do.
+  if (!has_noise_goal_) goal.most_times = 1;
+  return goal;
 }
 
 Spectrum VertexGathers::total(int vertex) const {
@@ -142,8 +149,14 @@ void VertexGathers::make_room() {
   // the differences that decide over the next split.
   for (int v = static_cast<int>(rays_.size()); v < count; ++v) {
     int most = 0;
-    for (const int end : elements_.ends(v)) most = end < 0 ? most : std::max(most, rays_[end]);
+    float coarsest = std::numeric_limits<float>::max();
+    for (const int end : elements_.ends(v)) {
+      if (end < 0) continue;
+      most = std::max(most, rays_[end]);
+      coarsest = std::min(coarsest, fineness_[end]);
+    }
     rays_.push_back(most);
+    fineness_.push_back(coarsest);
   }
   visibility_.resize(count);
 }
@@ -155,6 +168,7 @@ void VertexGathers::shrink_to_fit() {
   has_direct_.shrink_to_fit();
   indirect_.shrink_to_fit();
   rays_.shrink_to_fit();
+  fineness_.shrink_to_fit();
   visibility_.shrink_to_fit();
 }
 

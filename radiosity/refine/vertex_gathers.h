@@ -116,7 +116,8 @@ class VertexGathers {
   std::vector<char> has_direct_;
   enum class Indirect : char { unknown, interpolated, gathered };
   std::vector<Indirect> indirect_;
-  std::vector<int> rays_;  // of each of the two gathers of indirect light
+  std::vector<int> rays_;        // of each of the two gathers of indirect light
+  std::vector<float> fineness_;  // see vertex_fineness()
   BandArray direct_, first_, second_;
   EmitterVisibilityList visibility_;
   std::vector<char> unread_patch_;  // per patch
