@@ -21,11 +21,12 @@ namespace lightwell {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::array<std::pair<const char*, ToneCurve>, 4> tone_curves = {
+constexpr std::array<std::pair<const char*, ToneCurve>, 5> tone_curves = {
     {{"auto", ToneCurve::shoulder},
      {"linear", ToneCurve::linear},
      {"reinhard", ToneCurve::reinhard},
-     {"filmic", ToneCurve::filmic}}};
+     {"filmic", ToneCurve::filmic},
+     {"aces", ToneCurve::aces}}};
 constexpr std::array<std::pair<const char*, ExrCompression>, 5> compressions = {
     {{"none", ExrCompression::none},
      {"rle", ExrCompression::rle},
@@ -46,6 +47,46 @@ bool is_photometric(Layer layer) {
 
 bool holds(const std::vector<Layer>& layers, Layer layer) {
   return std::find(layers.begin(), layers.end(), layer) != layers.end();
+}
+
+// Sets the white balance named by `words`: "as-lit", "auto", "2700K" or "2700".
+void set_white(const std::string& words, FilmArguments& film) {
+  film.white = FilmArguments::White::as_lit;
+  if (words == "as-lit") return;
+  film.white = FilmArguments::White::automatic;
+  if (words == "auto") return;
+  film.white = FilmArguments::White::black_body;
+  std::string_view number = words;
+  if (number.ends_with('K') || number.ends_with('k')) number.remove_suffix(1);
+  const auto kelvin = parse_finite(number);
+  if (!kelvin || !(*kelvin >= coldest_white && *kelvin <= hottest_white)) {
+    throw CLI::ValidationError(
+        "--white-balance",
+        fmt::format("'as-lit', 'auto' or a temperature from {:g}K to {:g}K is needed, not '{}'",
+                    coldest_white, hottest_white, words));
+  }
+  film.white_kelvin = *kelvin;
+}
+
+std::string white_text(const FilmArguments& film) {
+  switch (film.white) {
+    case FilmArguments::White::automatic:
+      return " --white-balance auto";
+    case FilmArguments::White::black_body:
+      return fmt::format(" --white-balance {:g}K", film.white_kelvin);
+    case FilmArguments::White::as_lit:
+      break;
+  }
+  return "";
+}
+
+Eigen::Array3f balance_for(const FilmArguments& film, const Picture& picture) {
+  using White = FilmArguments::White;
+  if (film.white == White::black_body) {
+    return white_balance(colour_of_black_body(film.white_kelvin));
+  }
+  const bool is_automatic = film.white == White::automatic && picture.incident;
+  return is_automatic ? white_balance(picture.incident->colour) : Eigen::Array3f::Ones();
 }
 
 // Adds the layers named by `words` ("albedo,normal") to `film`.
@@ -73,7 +114,7 @@ ImageMetadata metadata(const Picture& picture, const FilmArguments& film, bool i
   const RadiositySolution& solution = picture.solution;
   const Camera& camera = picture.camera;
   const Provenance& made = solution.provenance;
-  const ToneMapping tones = film.tones(picture.exposure_ev);
+  const ToneMapping tones = film.tones(picture);
   const double scale = exposure_scale(picture.image, solution.bands, tones);
   ImageMetadata all = {
       {"software", fmt::format("lightwell {}", LIGHTWELL_VERSION)},
@@ -172,7 +213,7 @@ void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn h
       ->group(more);
   command
       .add_option("--tone-map", tone_map,
-                  "tone curve of the .png: auto (default), linear, reinhard, filmic")
+                  "tone curve of the .png: auto (default), linear, reinhard, filmic, aces")
       ->type_name("CURVE")
       ->check(one_of("tone mapping", names_of(tone_curves)))
       ->group(more);
@@ -191,6 +232,13 @@ void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn h
           "exposure value at ISO 100 of the .png: white is 1.2 * 2^EV cd/m^2 (default: by the "
           "picture)")
       ->type_name("EV")
+      ->group(more);
+  command
+      .add_option_function<std::string>(
+          "--white-balance", [this](const std::string& words) { set_white(words, *this); },
+          "light that shows white in the .png: as-lit (default), auto, or a temperature such as "
+          "2700K")
+      ->type_name("WHITE")
       ->group(more);
 }
 
@@ -257,8 +305,10 @@ std::vector<Layer> FilmArguments::rendered_layers(const Scene& scene) const {
   return rendered;
 }
 
-ToneMapping FilmArguments::tones(double exposure_ev) const {
-  ToneMapping tones{.exposure_ev = exposure_ev, .ev100 = ev100};
+ToneMapping FilmArguments::tones(const Picture& picture) const {
+  ToneMapping tones{
+      .exposure_ev = picture.exposure_ev, .ev100 = ev100, .balance = balance_for(*this, picture)};
+  if (picture.incident) tones.metered_scale = picture.incident->exposure;
   for (const auto& [name, curve] : tone_curves) {
     if (tone_map == name) tones.curve = curve;
   }
@@ -267,7 +317,8 @@ ToneMapping FilmArguments::tones(double exposure_ev) const {
 
 std::string FilmArguments::tones_text(double exposure_ev) const {
   return fmt::format("--tone-map {} --exposure {:g}{}", tone_map, exposure_ev,
-                     ev100 ? fmt::format(" --ev100 {:g}", *ev100) : "");
+                     ev100 ? fmt::format(" --ev100 {:g}", *ev100) : "") +
+         white_text(*this);
 }
 
 void write_picture(const fs::path& file, const Picture& picture, const FilmArguments& film) {
@@ -278,8 +329,7 @@ void write_picture(const fs::path& file, const Picture& picture, const FilmArgum
   } else if (film.false_colour) {
     write_false_colour(file, picture, film);
   } else {
-    write_png(file, image.width, image.height,
-              tone_map(image, bands, film.tones(picture.exposure_ev)),
+    write_png(file, image.width, image.height, tone_map(image, bands, film.tones(picture)),
               metadata(picture, film, true));
   }
 }

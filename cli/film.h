@@ -10,10 +10,13 @@
 #include "radiosity/solution/solution.h"
 #include "raytrace/image.h"
 #include "raytrace/layers.h"
+#include "raytrace/light_meter.h"
 #include "scene/scene.h"
 #include "viewer/export/appearance.h"
 
 namespace lightwell {
+
+struct Picture;
 
 /// Options of picture files: layers and pixel format of EXR, tone mapping or false colours of PNG.
 struct FilmArguments {
@@ -22,11 +25,14 @@ struct FilmArguments {
   ExrOptions exr{};
   std::string tone_map = "auto";
   std::optional<double> ev100{};
+  enum class White { as_lit, automatic, black_body };
+  White white = White::as_lit;
+  double white_kelvin = 6500.0;         ///< of White::black_body
   std::optional<Layer> false_colour{};  ///< layer that PNG files show in false colours
   std::optional<LuxRange> range{};      ///< of the false colours; unset: of the picture's values
 
   enum class HelpOn { shown, hidden };  ///< whether --help shows the options
-  /// Adds --layers, --half, --compression, --tone-map and --ev100.
+  /// Adds --layers, --half, --compression, --tone-map, --ev100 and --white-balance.
   void add_to(CLI::App& command, const std::string& group, HelpOn help_on);
   /// Adds --false-colour and --range.
   void add_false_colour_to(CLI::App& command, const std::string& group);
@@ -39,7 +45,7 @@ struct FilmArguments {
   void check(const Scene& scene, const std::vector<std::filesystem::path>& files) const;
   /// Layers to render: `layers`, all layers if `all_layers`, and the one of `false_colour`.
   std::vector<Layer> rendered_layers(const Scene& scene) const;
-  ToneMapping tones(double exposure_ev) const;
+  ToneMapping tones(const Picture& picture) const;
   /// Command-line options that repeat the tone mapping of PNG files.
   std::string tones_text(double exposure_ev) const;
 };
@@ -51,6 +57,7 @@ struct Picture {
   const Camera& camera;
   std::string render_options{};
   double exposure_ev = 0.0;
+  std::optional<IncidentLight> incident{};  ///< light on what the camera sees
 };
 
 /// Writes the picture in the format of the file's extension, .exr or .png.

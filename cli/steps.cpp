@@ -289,7 +289,8 @@ bool render_step(RenderableScene& renderable, const PictureTask& task, Checkpoin
                         .solution = renderable.solved.solution,
                         .camera = view,
                         .render_options = rendered.arguments.text(),
-                        .exposure_ev = asked.exposure_ev};
+                        .exposure_ev = asked.exposure_ev,
+                        .incident = renderable.renderer.incident_light(view)};
   for (const fs::path& file : task.files) {
     write_picture(file, picture, asked.film);
     report.add_file(file);

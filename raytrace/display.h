@@ -8,6 +8,9 @@ namespace lightwell {
 
 /// Display values: 1 is the white of the screen.
 
+/// Luminance Y of linear RGB (ITU-R BT.709).
+double luminance(const Eigen::Array3f& rgb);
+
 /// The shoulder of the automatic tone mapping, one channel: x up to 0.5, above that
 /// 0.5 + 0.5 (1 - exp(-(x - 0.5) / 0.5)), which continues value and slope and tends to 1.
 float shoulder(float x);
@@ -15,6 +18,11 @@ float shoulder(float x);
 /// Hable's curve, one channel, as published with its white at 11.2 and twice the exposure: x = 5.6
 /// and more is white. (J. Hable, "Uncharted 2: HDR Lighting", GDC 2010.)
 float filmic(float x);
+
+/// Narkowicz's fit to the tone curve of the Academy Color Encoding System, one channel: x (2.51 x +
+/// 0.03) / (x (2.43 x + 0.59) + 0.14), at most 1, which shows x = 1 as 0.8. (K. Narkowicz 2015,
+/// "ACES filmic tone mapping curve".)
+float aces_like(float x);
 
 /// sRGB transfer function (IEC 61966-2-1) of a linear value, clipped to [0,1].
 float srgb_encode(float linear);

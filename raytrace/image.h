@@ -60,15 +60,21 @@ enum class ToneCurve {
   linear,    ///< linear, clipped at white
   reinhard,  ///< Reinhard et al. 2002, equation 4, of luminance; white is 4 times the exposed white
   filmic,    ///< toe and shoulder of photographic film (Hable 2010)
+  aces,      ///< Narkowicz's fit (2015) to the curve of the Academy Color Encoding System
 };
 
 struct ToneMapping {
   double exposure_ev = 0.0;  ///< stops, added to the exposure of the other options
   bool automatic = true;     ///< automatic exposure; false: radiance 1 is white
+  /// Automatic exposure by the light that falls on what the camera sees (see incident_exposure());
+  /// empty: by the picture's own luminances, whose typical one becomes 0.2 of white.
+  std::optional<double> metered_scale{};
   /// Exposure value at ISO 100 of a camera, in place of `automatic`: white is 1.2 * 2^EV100 cd/m^2,
   /// see luminance_of_white. Meaningful only if the unit of light is known.
   std::optional<double> ev100{};
   ToneCurve curve = ToneCurve::shoulder;
+  /// Factors of linear RGB before the curve (see white_balance()).
+  Eigen::Array3f balance = Eigen::Array3f::Ones();
 };
 
 /// Luminance of white at an exposure value, cd/m^2: the largest that the sensor records, L = 78 /

@@ -1,6 +1,7 @@
 #include "raytrace/scene_renderer.h"
 
 #include <utility>
+#include <vector>
 
 #include "raytrace/caustic_map.h"
 
@@ -26,6 +27,17 @@ Image SceneRenderer::render(const Camera& camera, RenderOptions options, RenderR
   validate(options);
   options.caustics = caustics(options);
   return lightwell::render(scene_, caster_, direct_light_, solution_, camera, options, report);
+}
+
+std::optional<IncidentLight> SceneRenderer::incident_light(const Camera& camera) const {
+  const PatchMesh& mesh = caster_.mesh();
+  std::vector<char> clear(static_cast<std::size_t>(mesh.element_count()), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto m = static_cast<std::size_t>(mesh.material[mesh.patch[e]]);
+    const bool is_clear = m < scene_.materials.size() && scene_.materials[m].dielectric;
+    clear[static_cast<std::size_t>(e)] = is_clear ? 1 : 0;
+  }
+  return meter_incident_light(caster_, solution_.irradiance(), clear, solution_.bands, camera);
 }
 
 }  // namespace lightwell

@@ -2,10 +2,12 @@
 
 #include <memory>
 #include <mutex>
+#include <optional>
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/solution/solution.h"
+#include "raytrace/light_meter.h"
 #include "raytrace/render.h"
 
 namespace lightwell {
@@ -20,6 +22,8 @@ class SceneRenderer {
   /// Renders a picture as render() does, with RenderOptions::caustics set here. May be called by
   /// any number of threads at once, of which one traces the photons while the others wait.
   Image render(const Camera& camera, RenderOptions options = {}, RenderReport* report = nullptr);
+  /// The light that falls on what a camera sees, as meter_incident_light() returns it.
+  std::optional<IncidentLight> incident_light(const Camera& camera) const;
 
  private:
   std::shared_ptr<const CausticMap> caustics(const RenderOptions& options);

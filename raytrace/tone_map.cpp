@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "raytrace/display.h"
 #include "raytrace/image.h"
+#include "raytrace/light_meter.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -11,52 +13,19 @@ namespace {
 
 constexpr int pixel_grain = 4096;
 
-// Luminance Y of linear RGB (ITU-R BT.709).
-double luminance(const Eigen::Array3f& rgb) {
-  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
-}
-
 Eigen::Array3f pixel_rgb(const Image& image, const Bands& bands, Eigen::Index i) {
   const Spectrum L = image.radiance.row(i).transpose();
   return linear_rgb(bands, L);
 }
 
-// Luminances of all pixels that are positive and finite.
-std::vector<double> positive_luminances(const Image& image, const Bands& bands) {
-  std::vector<double> result;
-  result.reserve(image.radiance.rows());
-  for (Eigen::Index i = 0; i < image.radiance.rows(); ++i) {
-    const double Y = luminance(pixel_rgb(image, bands, i));
-    if (Y > 0.0 && std::isfinite(Y)) result.push_back(Y);
-  }
-  return result;
-}
-
-// Geometric mean of the luminances within a factor `spread` of the median, so that lamps and
-// windows above and black corners below do not shift the exposure.
-double typical_luminance(std::vector<double> Y) {
-  constexpr double spread = 10.0;
-  const auto middle = Y.begin() + static_cast<std::ptrdiff_t>(Y.size() / 2);
-  std::nth_element(Y.begin(), middle, Y.end());
-  const double median = *middle;
-  double sum = 0.0;
-  int count = 0;
-  for (double y : Y) {
-    if (y < median / spread || y > median * spread) continue;
-    sum += std::log(y);
-    ++count;
-  }
-  return std::exp(sum / count);
-}
-
-// Picture in linear RGB after exposure; white is 1.
+// Picture in linear RGB after exposure and white balance; white is 1.
 class ScaledPicture {
  public:
-  ScaledPicture(const Image& image, const Bands& bands, double scale)
+  ScaledPicture(const Image& image, const Bands& bands, const Eigen::Array3f& scale)
       : width_(image.width), height_(image.height), rgb_(image.radiance.rows()) {
     parallel_for(static_cast<int>(rgb_.size()), pixel_grain, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
-        rgb_[i] = pixel_rgb(image, bands, i) * static_cast<float>(scale);
+        rgb_[i] = pixel_rgb(image, bands, i) * scale;
       }
     });
   }
@@ -101,6 +70,10 @@ class ScaledPicture {
 
 }  // namespace
 
+double luminance(const Eigen::Array3f& rgb) {
+  return 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
+}
+
 float shoulder(float x) {
   constexpr float knee = 0.5f;
   if (x <= knee) return x;
@@ -121,11 +94,18 @@ float filmic(float x) {
   return curve(std::clamp(bias * x, 0.0f, white)) / curve(white);
 }
 
+float aces_like(float x) {
+  constexpr float brightest = 65536.0f;
+  const float y = std::clamp(x, 0.0f, brightest);
+  return std::min(1.0f, y * (2.51f * y + 0.03f) / (y * (2.43f * y + 0.59f) + 0.14f));
+}
+
 Eigen::Array3f display_rgb(const Eigen::Array3f& linear, double scale, ToneCurve curve) {
   const Eigen::Array3f x = linear * static_cast<float>(scale);
   Eigen::Array3f shown = x;
   if (curve == ToneCurve::shoulder) shown = x.unaryExpr([](float c) { return shoulder(c); });
   if (curve == ToneCurve::filmic) shown = x.unaryExpr([](float c) { return filmic(c); });
+  if (curve == ToneCurve::aces) shown = x.unaryExpr([](float c) { return aces_like(c); });
   if (curve == ToneCurve::reinhard) {
     constexpr double white = 4.0;
     const double Y = luminance(x);
@@ -147,17 +127,19 @@ double exposure_scale(const Image& image, const Bands& bands, const ToneMapping&
   const double stops = std::exp2(options.exposure_ev);
   if (options.ev100) return stops * bands.lumens_per_watt / luminance_of_white(*options.ev100);
   if (!options.automatic) return stops;
+  if (options.metered_scale) return stops * *options.metered_scale;
   // Display luminance of the typical luminance of the picture, with white = 1 (sRGB byte 124). The
   // value is a little above the photographic 0.18, since a room seen whole has no sky that needs
   // headroom.
   constexpr double key = 0.2;
-  const std::vector<double> Y = positive_luminances(image, bands);
-  return Y.empty() ? stops : stops * key / typical_luminance(Y);
+  const std::optional<double> Y = typical_luminance(image, bands);
+  return Y ? stops * key / *Y : stops;
 }
 
 std::vector<std::uint8_t> tone_map(const Image& image, const Bands& bands,
                                    const ToneMapping& options) {
-  const ScaledPicture picture(image, bands, exposure_scale(image, bands, options));
+  const auto scale = static_cast<float>(exposure_scale(image, bands, options));
+  const ScaledPicture picture(image, bands, scale * options.balance);
   // Under the linear curve equal radiance gives equal bytes, so nothing is softened.
   const bool is_soft = options.curve != ToneCurve::linear;
   std::vector<std::uint8_t> bytes(std::size_t{3} * image.width * image.height);

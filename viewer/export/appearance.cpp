@@ -7,6 +7,7 @@
 
 #include "raytrace/camera_ray.h"
 #include "raytrace/display.h"
+#include "raytrace/light_meter.h"
 #include "scene/parallel.h"
 #include "scene/specular.h"
 
@@ -272,8 +273,14 @@ Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>
 }
 
 double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                     const BandArray& radiance, const Bands& bands, const Camera& camera,
+                     const ShownLight& light, const Bands& bands, const Camera& camera,
                      const Sky* sky) {
+  std::vector<char> clear(kinds.size());
+  std::ranges::transform(kinds, clear.begin(),
+                         [](ElementKind kind) { return kind == ElementKind::glass ? 1 : 0; });
+  const auto metered = incident_exposure(caster, light.irradiance, clear, bands, camera);
+  if (metered) return *metered;
+  const BandArray& radiance = light.radiance;
   const Image seen = coarse_picture(caster, kinds, radiance, camera, metering_width, sky);
   if ((seen.radiance > 0.0f).any()) return exposure_scale(seen, bands);
   return exposure_scale({static_cast<int>(radiance.rows()), 1, radiance}, bands);

@@ -109,10 +109,17 @@ Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>
                      const BandArray& radiance, const Camera& camera, int width,
                      const Sky* sky = nullptr);
 
-/// The exposure_scale of the second pass's picture from a camera, estimated from a coarse picture.
-/// Where the coarse picture is black, the exposure_scale of all vertices alike.
+/// Light at vertices, vertices x bands: irradiance, W/m^2, and what shown_radiance() returns.
+struct ShownLight {
+  const BandArray& irradiance;
+  const BandArray& radiance;
+};
+
+/// The exposure of the second pass's picture from a camera: incident_exposure(). Where no light
+/// falls on what the camera sees, the exposure_scale of a coarse picture; where the coarse picture
+/// is black, that of all vertices alike.
 double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
-                     const BandArray& radiance, const Bands& bands, const Camera& camera,
+                     const ShownLight& light, const Bands& bands, const Camera& camera,
                      const Sky* sky = nullptr);
 
 }  // namespace lightwell

@@ -237,9 +237,10 @@ void add_cameras(const SolvedScene& solved, const Scene& scene,
   }
   const Bands& bands = solved.solution.bands;
   const std::optional<Sky> sky = effective_sky(scene, solved.mesh);
+  const BandArray irradiance = solved.solution.irradiance();
   for (const Camera& camera : cameras) {
     const double scale =
-        metered_scale(caster, kinds, radiance, bands, camera, sky ? &*sky : nullptr);
+        metered_scale(caster, kinds, {irradiance, radiance}, bands, camera, sky ? &*sky : nullptr);
     model.cameras.push_back({.camera = camera, .scale = scale * std::exp2(exposure_ev)});
   }
 }

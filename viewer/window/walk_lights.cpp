@@ -9,10 +9,6 @@
 namespace lightwell {
 namespace {
 
-/// Shots during which the exposure is metered again. Afterwards the picture has about its final
-/// brightness.
-constexpr int shots_to_meter = 64;
-
 /// Returns the first free name of STEM-1.vtp, STEM-2.vtp ...
 std::filesystem::path free_name(const std::filesystem::path& folder, const std::string& stem,
                                 const char* extension) {
@@ -89,11 +85,7 @@ void WalkWindow::watch() {
   if (auto light = live_->take_light()) {
     arrived_ = std::move(*light);
     show_arriving_light();
-    if (arrived_.shots <= shots_to_meter) {
-      Look look = current_look();
-      look.metered_scale = view_->meter(look.camera);
-      change(look);
-    }
+    meter_unless_exposed();
   }
   const LiveState state = live_->state();
   if (text_of(state) != text_of(live_state_)) changed_ = true;
@@ -118,7 +110,7 @@ void WalkWindow::show_solution(SolvedScene solved) {
   replace_view(*solution);
   own_ = std::move(solution);
   pointer_.light_changed(*view_, false);
-  expose_for_view();
+  meter_unless_exposed();
   update_pointer();
   if (std::exchange(save_when_solved_, false)) save_solution();
 }

@@ -210,6 +210,13 @@ void WalkWindow::expose_for_view() {
   change(look);
 }
 
+void WalkWindow::meter_unless_exposed() {
+  Look look = current_look();
+  if (look.exposure_ev != options_.exposure_ev) return;
+  look.metered_scale = view_->meter(look.camera);
+  change(look);
+}
+
 void WalkWindow::switch_false_colours() {
   Look look = current_look();
   const bool is_shown = look.illuminance && look.measure == Measure::illuminance;

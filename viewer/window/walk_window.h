@@ -97,6 +97,8 @@ class WalkWindow {
   void brighter() { light_up(1); }
   void darker() { light_up(-1); }
   void expose_for_view();
+  /// Meters again while light arrives, as long as the user has not changed the exposure.
+  void meter_unless_exposed();
   void switch_false_colours();
   void switch_measure();
   void switch_mesh();

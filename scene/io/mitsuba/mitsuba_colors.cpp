@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "scene/black_body.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
 #include "scene/io/spectrum_samples.h"
 #include "scene/io/text_file.h"
@@ -77,13 +78,6 @@ SpectrumSamples samples_of_file(const std::filesystem::path& path) {
     samples.values.push_back(*value);
   });
   return samples;
-}
-
-// Planck's law, spectral radiance in W/(m^2 sr nm).
-double planck(double nm, double kelvin) {
-  constexpr double h = 6.62607015e-34, c = 299792458.0, k = 1.380649e-23;
-  const double metres = 1e-9 * nm;
-  return 1e-9 * 2.0 * h * c * c / std::pow(metres, 5.0) / std::expm1(h * c / (metres * k * kelvin));
 }
 
 // Mitsuba 0.5 and 0.6 use "gamma", 2 and 3 "raw".
@@ -325,7 +319,7 @@ Spectrum MitsubaColors::read_blackbody(const MitsubaNode& node) const {
   SpectrumSamples samples;
   for (double nm = 400.0; nm <= 700.0; nm += 5.0) {
     samples.wavelengths_nm.push_back(nm);
-    samples.values.push_back(scale * planck(nm, kelvin));
+    samples.values.push_back(scale * black_body_radiance(nm, kelvin));
   }
   return band_means(node, std::move(samples));
 }

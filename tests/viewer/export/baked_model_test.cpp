@@ -102,7 +102,8 @@ TEST(BakedModel, ExposureIsThatOfThePictureFromTheCamera) {
   const std::vector<ElementKind> kinds = element_kinds(box, scene.materials);
   const BandArray radiance = shown_radiance(box, scene.materials);
   const double scale =
-      metered_scale(ElementCaster(box.mesh), kinds, radiance, rgb_bands(), scene.cameras[0]);
+      metered_scale(ElementCaster(box.mesh), kinds, {box.solution.irradiance(), radiance},
+                    rgb_bands(), scene.cameras[0]);
   EXPECT_DOUBLE_EQ(bake_model(box, scene).cameras[0].scale, scale);
   EXPECT_DOUBLE_EQ(bake_model(box, scene, 1.0).cameras[0].scale, 2.0 * scale);
 }

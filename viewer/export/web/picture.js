@@ -37,7 +37,7 @@ precision highp sampler2D;
 in vec3 L;
 in float E;
 out vec4 pixel;
-uniform int shows;         // 0: light, 1: illuminance and 2: luminance in false colours, 3: radiance for the light meter
+uniform int shows;         // 0: light, 1: illuminance and 2: luminance in false colours, 3: illuminance for the light meter
 uniform float scale;       // exposure
 uniform float opacity;
 uniform vec2 range;        // of the false colours; even from 0, else logarithmic
@@ -62,7 +62,7 @@ void main() {
   if (!gl_FrontFacing) {
     pixel = vec4(0.0, 0.0, 0.0, 1.0);
   } else if (shows == 3) {
-    pixel = vec4(L, 1.0);
+    pixel = vec4(E, 0.0, 0.0, 1.0);
   } else if (shows != 0) {
     float value = shows == 1 ? E : lumens_per_watt * dot(shown, vec3(0.2126729, 0.7151522, 0.0721750));
     float place = range.x == 0.0 ? value / range.y
@@ -95,24 +95,21 @@ void main() {
 const glass_opacity = 0.2;
 const metering_width = 160;
 
-/** ITU-R BT.709. */
-function luminance_of(r, g, b) { return 0.2126 * r + 0.7152 * g + 0.0722 * b; }
-
 /**
- * The multiplier that brings the typical luminance to 0.2 of white; null without light. The typical one is the
- * geometric mean of what lies within a factor 10 of the median. `pixels`: r, g, b, a of each.
+ * The multiplier of radiance for which white paper under the typical light shows white; null without light. The typical
+ * illuminance is the geometric mean of what lies within a factor 10 of the median. `pixels`: lx, three more numbers.
  */
-function exposure_scale(pixels) {
-  const Y = [];
+function exposure_scale(pixels, lumens_per_watt) {
+  const E = [];
   for (let i = 0; i < pixels.length; i += 4) {
-    const y = luminance_of(pixels[i], pixels[i + 1], pixels[i + 2]);
-    if (y > 0 && Number.isFinite(y)) Y.push(y);
+    if (pixels[i] > 0 && Number.isFinite(pixels[i])) E.push(pixels[i]);
   }
-  if (Y.length === 0) return null;
-  Y.sort((a, b) => a - b);
-  const median = Y[Math.floor(Y.length / 2)];
-  const typical = Y.filter((y) => y >= median / 10 && y <= 10 * median);
-  return 0.2 / Math.exp(typical.reduce((sum, y) => sum + Math.log(y), 0) / typical.length);
+  if (E.length === 0) return null;
+  E.sort((a, b) => a - b);
+  const median = E[Math.floor(E.length / 2)];
+  const typical = E.filter((e) => e >= median / 10 && e <= 10 * median);
+  const mean = Math.exp(typical.reduce((sum, e) => sum + Math.log(e), 0) / typical.length);
+  return Math.PI * lumens_per_watt / mean;
 }
 
 function palette_texture(hex) {
@@ -306,6 +303,6 @@ class Picture {
     this.uniforms.shows.value = shown;
     this.glass.visible = true;
     this.show_outlines(Boolean(outlined));
-    return exposure_scale(pixels);
+    return exposure_scale(pixels, this.uniforms.lumens_per_watt.value);
   }
 }
