@@ -14,11 +14,12 @@ namespace lightwell {
 
 /// The switches that every sub-command has.
 struct CommonOptions {
-  bool quiet = false;    ///< no progress, notes or report; errors and requested values only
-  bool json = false;     ///< standard output is one JSON object
-  bool verbose = false;  ///< print the effective options
-  bool strict = false;   ///< what a reader leaves out, approximates or misses is an error
-  int threads = 0;       ///< 0: one per core
+  bool quiet = false;          ///< no progress, notes or report; errors and requested values only
+  bool json = false;           ///< standard output is one JSON object
+  bool verbose = false;        ///< print the effective options
+  bool strict = false;         ///< what a reader leaves out, approximates or misses is an error
+  bool inside_folder = false;  ///< scenes may name files in their own folder only
+  int threads = 0;             ///< 0: one per core
   std::vector<std::string> command_line{};  ///< argv
 };
 

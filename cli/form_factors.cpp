@@ -238,7 +238,10 @@ std::string shortfall(const FormFactorArguments& arguments, double error) {
 int form_factors(const FormFactorArguments& arguments, Console& console) {
   Report report(console.options());
   Stopwatch watch;
-  const NumberedScene numbered = read_numbered_scene(arguments.scene);
+  const NumberedScene numbered = [&] {
+    const InterruptEndsAtOnce at_once;
+    return read_numbered_scene(arguments.scene, allowed_references(console.options()));
+  }();
   for (const auto& file : numbered.scene.files) note_input(file);
   refuse_losses(numbered.scene, console.options());
   if (arguments.show_row > 0) require_writable(arguments.row_file());

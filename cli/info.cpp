@@ -10,6 +10,7 @@
 #include "cli/arguments.h"
 #include "cli/channels.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "mesh/cleaning/mesh_quality.h"
@@ -308,7 +309,10 @@ Json describe(const std::string& file, const CommonOptions& options) {
   if (extension == ".vtp") return solution_json(read_solution(file));
   if (extension == ".exr") return picture_json(read_exr(file));
   if (is_luminaire_file(file)) return luminaire_json(read_luminaire(file));
-  const Scene scene = read_scene(file);
+  const Scene scene = [&] {
+    const InterruptEndsAtOnce at_once;
+    return read_scene(file, allowed_references(options));
+  }();
   refuse_losses(scene, options);
   return scene_json(scene);
 }

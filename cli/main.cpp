@@ -109,10 +109,14 @@ void add_common(CLI::App& app, CommonOptions& options) {
   app.set_help_flag("-h,--help", "this text")->group(group);
 }
 
-void add_strict(CLI::App& command, CommonOptions& options) {
+void add_reading(CLI::App& command, CommonOptions& options) {
   command
       .add_flag("--strict", options.strict,
                 "refuse a scene of which something is left out, approximated or missing")
+      ->group("Everywhere");
+  command
+      .add_flag("--inside-folder", options.inside_folder,
+                "refuse a scene that names files outside of its folder")
       ->group("Everywhere");
 }
 
@@ -208,7 +212,8 @@ int run_program(int argc, char** argv) {
     CLI::App* const command = app.add_subcommand(named.name);
     actions[command] = named.add(*command);
     add_common(*command, options);
-    if (named.reads_scene) add_strict(*command, options);
+    command->get_option("--version")->group("");  // CLI11: hidden, so that the help fits a screen
+    if (named.reads_scene) add_reading(*command, options);
     names.push_back(named.name);
   }
   if (const auto word = unknown_command(argc, argv, names)) {

@@ -11,7 +11,6 @@
 #include "radiosity/dark_rooms.h"
 #include "radiosity/solution/solution_file.h"
 #include "scene/errors.h"
-#include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -123,6 +122,10 @@ bool is_as_asked(const Camera& camera, const RenderArguments& asked, const Pictu
 
 }  // namespace
 
+References allowed_references(const CommonOptions& options) {
+  return options.inside_folder ? References::inside_folder : References::anywhere;
+}
+
 void refuse_losses(const Scene& scene, const CommonOptions& options) {
   if (!options.strict || scene.losses.empty()) return;
   std::string list;
@@ -138,7 +141,7 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report,
   console.begin("reading");
   const Scene scene = [&] {
     const InterruptEndsAtOnce at_once;
-    return read_scene(file);
+    return read_scene(file, allowed_references(console.options()));
   }();
   console.finish_phase();
   for (const fs::path& read : scene.files) note_input(read);

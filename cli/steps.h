@@ -13,6 +13,7 @@
 #include "radiosity/solve.h"
 #include "raytrace/image.h"
 #include "raytrace/scene_renderer.h"
+#include "scene/io/read_scene.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -22,6 +23,9 @@ namespace lightwell {
 
 /// Under --strict, throws an InputError that lists all losses of the scene (Scene::losses); without
 /// losses or --strict, does nothing.
+/// The files that a scene may name, by --inside-folder.
+References allowed_references(const CommonOptions& options);
+
 void refuse_losses(const Scene& scene, const CommonOptions& options);
 
 /// Reads a scene and cleans its polygons by merge_planar_regions(): facet numbers and hash are

@@ -19,8 +19,9 @@ void name_rows(NumberedScene& numbered) {
 
 }  // namespace
 
-NumberedScene read_numbered_scene(const std::filesystem::path& path) {
-  const FilesRead read;
+NumberedScene read_numbered_scene(const std::filesystem::path& path, References references) {
+  const FilesRead read =
+      references == References::inside_folder ? FilesRead::inside_folder_of(path) : FilesRead();
   const std::string extension = lower_extension(path);
   NumberedScene numbered;
   if (extension == ".vs3") {

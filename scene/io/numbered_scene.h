@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/io/read_scene.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -26,7 +27,8 @@ struct NumberedScene {
 /// less those combined with an earlier one (.vs3), and facets and spheres of the scene (other
 /// formats; a dropped polygon has no row). Throws InputError naming file, line or object, value and
 /// remedy.
-NumberedScene read_numbered_scene(const std::filesystem::path& path);
+NumberedScene read_numbered_scene(const std::filesystem::path& path,
+                                  References references = References::anywhere);
 
 /// read_numbered_scene() for a .vs3 file.
 NumberedScene read_numbered_vs3(const std::filesystem::path& path);

@@ -34,8 +34,9 @@ Scene read_any(const std::filesystem::path& path) {
 
 }  // namespace
 
-Scene read_scene(const std::filesystem::path& path) {
-  const FilesRead read;
+Scene read_scene(const std::filesystem::path& path, References references) {
+  const FilesRead read =
+      references == References::inside_folder ? FilesRead::inside_folder_of(path) : FilesRead();
   Scene scene = read_any(path);
   scene.files = read.files();
   clean_names(scene);

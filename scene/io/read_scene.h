@@ -6,10 +6,14 @@
 
 namespace lightwell {
 
+/// Files that a scene may refer to: any, or those in the folder of the scene file alone.
+enum class References { anywhere, inside_folder };
+
 /// Reads a scene whose format follows from the extension: .toml (native, docs/scene-format.md),
 /// .obj, .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .rad and .rif (RADIANCE). The result has
-/// passed validate(). Throws InputError naming file, line or object, value and remedy.
-Scene read_scene(const std::filesystem::path& path);
+/// passed validate(). Throws InputError naming file, line or object, value and remedy; LimitError
+/// for a reference that `references` forbids.
+Scene read_scene(const std::filesystem::path& path, References references = References::anywhere);
 
 /// Reads the native format (grammar: docs/scene-format.md).
 Scene read_toml(const std::filesystem::path& path);

@@ -24,17 +24,62 @@ FilesRead::FilesRead() : outer_(innermost) {
   innermost = this;
 }
 
+FilesRead::FilesRead(const std::filesystem::path& scene) : outer_(innermost), scene_(scene) {
+  const std::filesystem::path folder = scene.has_parent_path() ? scene.parent_path() : ".";
+  std::error_code error;
+  folder_ = std::filesystem::canonical(folder, error);
+  if (error) folder_ = std::filesystem::absolute(folder);  // there is no such scene
+  innermost = this;
+}
+
 FilesRead::~FilesRead() {
   innermost = outer_;
 }
 
 void FilesRead::add(const std::filesystem::path& path) {
   for (FilesRead* list = innermost; list; list = list->outer_) {
-    if (std::ranges::find(list->files_, path) == list->files_.end()) list->files_.push_back(path);
+    if (!list->known_.insert(path).second) continue;
+    list->files_.push_back(path);
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(path, error);
+    if (!error) list->bytes_ += static_cast<std::int64_t>(bytes);
   }
 }
 
+void FilesRead::refuse_outside(const std::filesystem::path& path) {
+  for (const FilesRead* list = innermost; list; list = list->outer_) {
+    if (list->folder_.empty() || path == list->scene_) continue;
+    std::error_code error;
+    const auto at = std::filesystem::weakly_canonical(std::filesystem::absolute(path), error);
+    const auto [end, other] = std::ranges::mismatch(list->folder_, at);
+    if (!error && end == list->folder_.end()) continue;
+    throw LimitError(fmt::format(
+        "{}: the scene names this file, which is outside of its folder '{}', and --inside-folder "
+        "refuses that; copy the file into the folder, or leave out --inside-folder",
+        path.string(), list->folder_.string()));
+  }
+}
+
+std::int64_t FilesRead::bytes() {
+  std::int64_t bytes = 0;
+  for (const FilesRead* list = innermost; list; list = list->outer_) bytes = list->bytes_;
+  return bytes;
+}
+
+bool is_file(const std::filesystem::path& path) {
+  FilesRead::refuse_outside(path);
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error);
+}
+
+std::string excerpt(std::string_view word) {
+  constexpr std::size_t longest = 40;
+  return word.size() <= longest ? std::string(word)
+                                : std::string(word.substr(0, longest)).append("...");
+}
+
 void require_readable(const std::filesystem::path& path) {
+  FilesRead::refuse_outside(path);
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (!std::filesystem::exists(status)) {

@@ -86,5 +86,32 @@ TEST_F(Inputs, OfAnyNameMakeReadableSolutions) {
   EXPECT_EQ(run({"export", "odd.vtp", "-o", "odd.ply", "--quiet"}).code, 0);
 }
 
+// Every command that reads a scene refuses what lies outside of the scene's folder.
+TEST_F(Inputs, StayInTheFolderOfTheSceneIfAskedTo) {
+  fs::create_directory(folder / "own");
+  folder.write("own/room.obj", "mtllib ../cube.mtl\nusemtl lamp\n" + unit_cube());
+  const std::string scene = "own/room.obj";
+  const std::vector<Words> commands = {
+      {"run", scene},
+      {"solve", scene, "-o", "a.vtp"},
+      {"mesh", scene, "-o", "a.vtp"},
+      {"render", scene, "cube.vtp", "-o", "a.png"},
+      {"probe", scene, "cube.vtp", "--points", "points.csv", "-o", "a.csv"},
+      {"report", scene, "cube.vtp", "-o", "a.html"},
+      {"export", "cube.vtp", "--scene", scene, "-o", "a.obj"},
+      {"info", scene}};
+  for (const Words& command : commands) {
+    SCOPED_TRACE(command.front());
+    const Ended ended = run(command + Words{"--inside-folder"});
+    EXPECT_EQ(ended.code, 3) << ended.err;
+    EXPECT_TRUE(says(ended.err, "outside of its folder"));
+  }
+  folder.write("own/solar.toml",
+               "[materials.a]\nreflectance = 0\n[[surfaces]]\nmaterial = 'a'\n"
+               "mesh = '../cube.obj'\n");
+  EXPECT_EQ(run({"form-factors", "own/solar.toml", "-o", "F.mtx", "--inside-folder"}).code, 3);
+  EXPECT_EQ(run({"info", "cube.obj", "--inside-folder"}).code, 0);
+}
+
 }  // namespace
 }  // namespace lightwell::inputs_test

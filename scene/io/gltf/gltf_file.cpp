@@ -161,6 +161,8 @@ void GltfFile::read_buffers(std::string_view binary) {
       if (length > bytes.size()) {
         buffers[i].fail(fmt::format("needs {} bytes, but there are {}", length, bytes.size()));
       }
+    } catch (const LimitError&) {
+      throw;
     } catch (const InputError& error) {
       content_->buffer_faults[i] = error.what();
     }
@@ -173,9 +175,17 @@ std::string GltfFile::resource(const GltfObject& owner, const std::string& uri) 
     if (!bytes) owner.fail("has data that is not encoded in base64");
     return std::move(*bytes);
   }
-  const auto path = (path_.parent_path() / decode_percent(uri)).lexically_normal();
+  const std::string name = decode_percent(uri);
+  if (is_absolute_uri(name)) {
+    owner.fail(fmt::format(
+        "names '{}', and glTF allows no absolute names; name the file relative to the scene",
+        excerpt(name)));
+  }
+  const auto path = (path_.parent_path() / name).lexically_normal();
   try {
     return TextFile(path).text();
+  } catch (const LimitError&) {
+    throw;
   } catch (const InputError& error) {
     owner.fail(fmt::format("names a file that cannot be used: {}", error.what()));
   }

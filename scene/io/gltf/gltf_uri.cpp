@@ -1,5 +1,6 @@
 #include "scene/io/gltf/gltf_uri.h"
 
+#include <cctype>
 #include <charconv>
 
 namespace lightwell {
@@ -33,6 +34,15 @@ std::optional<std::string> decode_data_uri(std::string_view uri) {
     bytes += static_cast<char>(bits >> count & 0xffu);
   }
   return bytes;
+}
+
+bool is_absolute_uri(std::string_view uri) {
+  if (uri.starts_with('/') || uri.starts_with('\\')) return true;
+  // RFC 3986: a scheme is a letter, then letters, digits, +, - and . up to a colon.
+  const std::size_t end =
+      uri.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789+-.");
+  const bool begins_with_letter = !uri.empty() && std::isalpha(static_cast<unsigned char>(uri[0]));
+  return begins_with_letter && end != std::string_view::npos && uri[end] == ':';
 }
 
 std::string decode_percent(std::string_view text) {

@@ -13,4 +13,8 @@ std::optional<std::string> decode_data_uri(std::string_view uri);
 /// kept.
 std::string decode_percent(std::string_view text);
 
+/// True for a URI with a scheme ("file:", "https:") or a path from a root, which glTF 2.0 (3.6.1.1)
+/// keeps for data alone.
+bool is_absolute_uri(std::string_view uri);
+
 }  // namespace lightwell

@@ -128,12 +128,11 @@ MitsubaNode MitsubaLoader::convert(const Source& source, const pugi::xml_node& f
 void MitsubaLoader::include(const MitsubaNode& node, MitsubaNode& parent) {
   const std::string* name = node.attribute("filename");
   if (!name || name->empty()) node.fail("lacks the attribute 'filename'");
-  std::error_code error;
   auto path = (node.file->parent_path() / *name).lexically_normal();
-  if (!std::filesystem::is_regular_file(path, error)) {
+  if (!is_file(path)) {
     path = (tree_.files_.front()->parent_path() / *name).lexically_normal();
   }
-  if (!std::filesystem::is_regular_file(path, error)) {
+  if (!is_file(path)) {
     tree_.gaps_.push_back(
         {.what = "Included files are missing, with all that they hold",
          .name = *name,

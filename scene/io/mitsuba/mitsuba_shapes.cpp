@@ -224,6 +224,8 @@ const MitsubaShapes::MeshFile& MitsubaShapes::mesh_file(const MitsubaNode& shape
     }
   } catch (const NoAreaError&) {
     throw;
+  } catch (const LimitError&) {
+    throw;
   } catch (const InputError& error) {
     given->fail(fmt::format("cannot be used: {}", error.what()));
   }

@@ -32,6 +32,8 @@ void add_map(const MitsubaNode& emitter, const MitsubaTree& tree, Sky& sky) {
   const auto path = tree.file_named(emitter, name);
   try {
     sky.map = read_environment_map(path);
+  } catch (const LimitError&) {
+    throw;
   } catch (const InputError& error) {
     emitter.fail(fmt::format("cannot be used: {}", error.what()));
   }

@@ -162,10 +162,9 @@ std::optional<std::filesystem::path> MitsubaTree::found_file(const MitsubaNode& 
                                                              const std::string& name) const {
   std::string portable = name;
   std::replace(portable.begin(), portable.end(), '\\', '/');
-  std::error_code error;
   for (const auto* file : {node.file, root_.file}) {
     const auto path = (file->parent_path() / portable).lexically_normal();
-    if (!name.empty() && std::filesystem::is_regular_file(path, error)) return path;
+    if (!name.empty() && is_file(path)) return path;
   }
   return std::nullopt;
 }

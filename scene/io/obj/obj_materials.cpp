@@ -267,8 +267,7 @@ class MapReader {
   std::optional<Picture> open(const std::string& name, const MtlBlock& b,
                               PictureCode code = PictureCode::srgb) {
     const auto path = file_.path().parent_path() / name;
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error)) {
+    if (!is_file(path)) {
       remarks_.add("pictures that are missing were left out", path.string());
       return std::nullopt;
     }
@@ -276,6 +275,8 @@ class MapReader {
       auto picture = pictures_.picture(path, code);
       if (!picture) remarks_.add("pictures that are neither PNG nor JPEG were left out in", b.name);
       return picture;
+    } catch (const LimitError&) {
+      throw;
     } catch (const InputError& fault) {
       remarks_.add_unusable("pictures that cannot be read were left out", path.string(),
                             fault.what());

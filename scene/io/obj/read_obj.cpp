@@ -22,8 +22,7 @@ namespace {
 std::vector<std::filesystem::path> files_named(const std::filesystem::path& folder,
                                                std::string names) {
   std::replace(names.begin(), names.end(), '\\', '/');
-  std::error_code error;
-  if (std::filesystem::is_regular_file(folder / names, error)) return {folder / names};
+  if (is_file(folder / names)) return {folder / names};
   std::vector<std::filesystem::path> files;
   std::string_view rest = names;
   for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) {
@@ -37,8 +36,7 @@ std::vector<Material> read_material_files(const std::filesystem::path& path,
   std::vector<Material> materials;
   for (const std::string& names : content.material_files) {
     for (const auto& file : files_named(path.parent_path(), names)) {
-      std::error_code error;
-      if (!std::filesystem::is_regular_file(file, error)) {
+      if (!is_file(file)) {
         remarks.add(
             "Material files are missing, and their materials got a diffuse reflectance of 0.5",
             file.string());

@@ -224,7 +224,7 @@ class RgbeFile {
 }  // namespace
 
 std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem::path& path) {
-  if (!std::filesystem::is_regular_file(path)) fail_environment(path, "there is no such file");
+  require_readable(path);
   const std::string extension = lower_extension(path);
   EnvironmentPixels pixels;
   if (extension == ".exr") {

@@ -36,10 +36,9 @@ bool makes_a_sky(std::string_view program) {
 
 std::optional<std::filesystem::path> RadianceLoader::find_if_any(
     const std::string& name, const RadianceLocation& location) const {
-  std::error_code error;
   for (const auto& folder : {location.file->parent_path(), folder_, folder_ / "lib"}) {
     auto path = (folder / name).lexically_normal();
-    if (std::filesystem::exists(path, error)) return path;
+    if (is_file(path)) return path;
   }
   return std::nullopt;
 }

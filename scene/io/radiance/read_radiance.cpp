@@ -86,11 +86,10 @@ class RadianceReader {
 
   // Reads the view file beside a .rad file: room.vf or room.vp beside room.rad.
   void read_views_beside() {
-    std::error_code error;
     for (const char* extension : {".vf", ".vp"}) {
       auto beside = path_;
       beside.replace_extension(extension);
-      if (!std::filesystem::is_regular_file(beside, error)) continue;
+      if (!is_file(beside)) continue;
       remarks_.attempt(unusable_views, beside.filename().string(), [&] { read_views_of(beside); });
     }
   }
