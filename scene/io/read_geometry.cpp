@@ -40,17 +40,17 @@ void check_ply_header(const std::filesystem::path& path) {
     if (key != "element") continue;
     const std::string_view name = next_word(rest);
     if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) {
-      throw InputError(
-          fmt::format("{}:{}: the name of an element must begin with a letter ({}); the file was "
-                      "damaged",
-                      path.string(), number, trimmed(line)));
+      throw InputError(fmt::format(
+          "{}:{}: the name of an element must begin with a letter; the file was damaged",
+          path.string(), number));
     }
-    const auto count = parse_finite(next_word(rest));
+    const std::string_view given = next_word(rest);
+    const auto count = parse_finite(given);
     if (!count || !(*count >= 0.0 && *count <= bytes)) {
-      throw InputError(
-          fmt::format("{}:{}: the file is too short for so many of '{}' ({}); it was "
-                      "damaged or cut off",
-                      path.string(), number, name, trimmed(line)));
+      throw InputError(fmt::format(
+          "{}:{}: the file is too short for so many of '{}' ({}); it was damaged or cut "
+          "off",
+          path.string(), number, excerpt(name), excerpt(given)));
     }
   }
   fail_geometry(path, "the header does not end with 'end_header'; the file was damaged or cut off");

@@ -38,8 +38,7 @@ std::vector<std::string_view> split_cells(std::string_view line) {
 std::size_t find_column(const TextFile& file, int line, const std::vector<std::string_view>& header,
                         const std::string& column) {
   if (header.front() != "wavelength_nm") {
-    file.fail(line, fmt::format("the first column is called '{}'; it must be 'wavelength_nm'",
-                                header.front()));
+    file.fail(line, "the first column must be called 'wavelength_nm'");
   }
   const std::vector<std::string> names(header.begin() + 1, header.end());
   if (names.empty()) file.fail(line, "there is no column beside the wavelength");

@@ -138,6 +138,7 @@ void GltfFile::read_json(std::string_view json) {
       const std::string_view digits = what.substr(at + 5);
       line = fmt::format("{}:", digits.substr(0, digits.find_first_not_of("0123456789")));
     }
+    what = what.substr(0, what.find("; last read"));  // quotes the file, to any length
     throw InputError(
         fmt::format("{}:{} this is no well-formed JSON: {}", path_.string(), line, what));
   }

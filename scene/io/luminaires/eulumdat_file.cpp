@@ -40,7 +40,7 @@ class Lines {
   double number(const char* what) {
     const auto found = number_or_text(what);
     if (!found) {
-      fail(fmt::format("'{}' is no number; {} should be here", as_utf8(lines_[at_ - 1]), what));
+      fail(fmt::format("there is no number where {} should be", what));
     }
     return *found;
   }

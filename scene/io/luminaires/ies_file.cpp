@@ -47,7 +47,8 @@ class Numbers {
     line_ = line;
     const auto number = parse_finite(word.starts_with('+') ? word.substr(1) : word);
     if (!number) {
-      file_.fail(line, fmt::format("'{}' is no number; {} should be here", as_utf8(word), what));
+      file_.fail(line,
+                 fmt::format("'{}' is no number; {} should be here", as_utf8(excerpt(word)), what));
     }
     return *number;
   }

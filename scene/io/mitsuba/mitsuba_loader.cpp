@@ -82,9 +82,9 @@ MitsubaNode MitsubaLoader::load_file(const std::filesystem::path& path,
   }
   const pugi::xml_node root = source.document.document_element();
   if (std::string_view(root.name()) != "scene") {
-    text.fail(
-        source.line_at(std::max<std::ptrdiff_t>(root.offset_debug(), 0)),
-        fmt::format("the root element is <{}>; a Mitsuba scene begins with <scene>", root.name()));
+    text.fail(source.line_at(std::max<std::ptrdiff_t>(root.offset_debug(), 0)),
+              fmt::format("the root element is <{}>; a Mitsuba scene begins with <scene>",
+                          excerpt(root.name())));
   }
   MitsubaNode node = convert(source, root, 0);
   open_.pop_back();

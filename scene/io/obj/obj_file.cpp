@@ -78,9 +78,9 @@ class ObjParser {
       const std::string_view word = next_word(text);
       const auto value = parse_finite(word);
       if (!value) {
-        file_.fail(line_, word.empty()
-                              ? std::string("a vertex needs three coordinates")
-                              : fmt::format("coordinate '{}' is not a finite number", word));
+        file_.fail(line_, word.empty() ? std::string("a vertex needs three coordinates")
+                                       : fmt::format("coordinate '{}' is not a finite number",
+                                                     excerpt(word)));
       }
       x = *value;
     }
@@ -113,7 +113,7 @@ class ObjParser {
       long index = 0;
       const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), index);
       if (error != std::errc() || (end != word.data() + word.size() && *end != '/')) {
-        file_.fail(line_, fmt::format("'{}' is not a vertex index", word));
+        file_.fail(line_, fmt::format("'{}' is not a vertex index", excerpt(word)));
       }
       // OBJ indices count from 1, or backwards from the latest vertex.
       const long vertex =

@@ -97,7 +97,8 @@ class MtlParser {
 
   float number(std::string_view key, std::string_view word, float most) {
     const auto value = parse_finite(word);
-    if (!value) file_.fail(line_, fmt::format("{} is '{}', not a finite number", key, word));
+    if (!value)
+      file_.fail(line_, fmt::format("{} is '{}', not a finite number", key, excerpt(word)));
     if (!(*value >= 0.0 && *value <= most)) {
       file_.fail(line_, most == 1.0f
                             ? fmt::format("{} is {}; it must lie between 0 and 1", key, *value)

@@ -35,7 +35,8 @@ class Formulas {
   }
 
   RadianceExpression formula(std::size_t word, const std::vector<std::string>& variables) const {
-    return {definitions_.expanded(call_.words[word], call_.location), variables, call_.location};
+    return {definitions_.expanded(call_.words[word], call_.location), call_.words[word], variables,
+            call_.location};
   }
 
   int segments(std::size_t word) const {

@@ -98,7 +98,6 @@ void RadianceDefinitions::add(std::string_view text, const RadianceLocation& loc
     std::string_view part = trimmed(rest.substr(0, end));
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (part.empty()) continue;
-    const std::string_view whole = part;
     const std::size_t length = name_length(part);
     const std::string name(part.substr(0, length));
     part = trimmed(part.substr(length));
@@ -111,9 +110,8 @@ void RadianceDefinitions::add(std::string_view text, const RadianceLocation& loc
     }
     if (name.empty() || part.empty() || (part.front() != '=' && part.front() != ':')) {
       location.fail(
-          fmt::format("'{}' defines nothing; write 'name = formula' or 'name(x) = "
-                      "formula'",
-                      whole.substr(0, 80)));
+          "a part of its definitions defines nothing; write 'name = formula' or 'name(x) = "
+          "formula', with ';' between two");
     }
     body.text = part.substr(1);
     bodies_.insert_or_assign(name, std::move(body));

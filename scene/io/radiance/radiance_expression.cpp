@@ -90,11 +90,11 @@ struct RadianceExpression::Impl {
   RadianceLocation location;
 };
 
-RadianceExpression::RadianceExpression(const std::string& text,
+RadianceExpression::RadianceExpression(const std::string& text, const std::string& shown,
                                        const std::vector<std::string>& variables,
                                        const RadianceLocation& location)
     : impl_(std::make_unique<Impl>()) {
-  impl_->text = text;
+  impl_->text = shown;
   impl_->location = location;
   impl_->values.resize(variables.size());
   try {
@@ -106,11 +106,12 @@ RadianceExpression::RadianceExpression(const std::string& text,
     impl_->parser.SetExpr(text);
     impl_->parser.Eval();  // reports faults of the text
     if (impl_->parser.GetNumResults() != 1) {
-      location.fail(fmt::format("the formula '{}' gives several values", beginning(text)));
+      location.fail(fmt::format("the formula '{}' gives several values", beginning(shown)));
     }
   } catch (const mu::Parser::exception_type& error) {
-    location.fail(fmt::format("the formula '{}' cannot be read: {}", beginning(text),
-                              beginning(error.GetMsg())));
+    location.fail(fmt::format(
+        "the formula '{}' cannot be read: {}", beginning(shown),
+        text == shown ? beginning(error.GetMsg()) : "a definition that it uses is no formula"));
   }
 }
 

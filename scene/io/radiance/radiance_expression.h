@@ -16,7 +16,12 @@ class RadianceExpression {
  public:
   /// Throws InputError naming the place if the text is no formula of these variables.
   RadianceExpression(const std::string& text, const std::vector<std::string>& variables,
-                     const RadianceLocation& location);
+                     const RadianceLocation& location)
+      : RadianceExpression(text, text, variables, location) {}
+  /// A formula that messages call `shown`: definitions of a file, which may be no formulas at all,
+  /// are not quoted.
+  RadianceExpression(const std::string& text, const std::string& shown,
+                     const std::vector<std::string>& variables, const RadianceLocation& location);
   ~RadianceExpression();
   RadianceExpression(RadianceExpression&&) noexcept;
 

@@ -67,9 +67,8 @@ void RadianceLoader::read(const std::filesystem::path& path, const RadianceSink&
       const bool is_compiled = primitive->type == "instance" || primitive->type == "mesh";
       is_compiled ? read_source_of(*primitive, sink) : sink(*primitive);
     } else if (const auto* command = std::get_if<RadianceCommand>(&item)) {
-      constexpr std::size_t longest_name = 60;
       remarks_.attempt("Commands that cannot be evaluated were left out",
-                       trimmed(command->text).substr(0, longest_name),
+                       excerpt(trimmed(command->text)),
                        [&] { run(command->text, command->location, sink); });
     } else {
       break;
@@ -198,7 +197,7 @@ void RadianceLoader::run_last(std::span<const Program> pipe, const RadianceLocat
     location.fail(fmt::format(
         "the command '{}' is not evaluated here, and commands are never given to a shell; run it "
         "yourself and name a file with what it writes.{}",
-        name, did_you_mean(name, known_programs)));
+        excerpt(name), did_you_mean(name, known_programs)));
   }
 }
 

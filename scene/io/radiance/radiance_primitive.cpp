@@ -5,6 +5,7 @@
 #include <map>
 
 #include "scene/errors.h"
+#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace {
@@ -51,7 +52,7 @@ RadianceKind radiance_kind(std::string_view type) {
 }
 
 void RadiancePrimitive::fail(std::string_view problem) const {
-  location.fail(fmt::format("{} '{}' {}", type, name, problem));
+  location.fail(fmt::format("{} '{}' {}", type, excerpt(name), problem));
 }
 
 void RadiancePrimitive::require_reals(std::size_t count) const {

@@ -61,8 +61,8 @@ void RadianceProject::assign(std::string_view text, const RadianceLocation& loca
   if (found == std::end(variables)) {
     std::vector<std::string> names;
     for (const Variable& v : variables) names.emplace_back(v.name);
-    location.fail(
-        fmt::format("there is no variable '{}'.{}", name, did_you_mean(std::string(name), names)));
+    location.fail(fmt::format("there is no variable '{}'.{}", excerpt(name),
+                              did_you_mean(std::string(name), names)));
   }
   if (value == text.size()) return;
   values_.emplace_back(found->name, Value{std::string(text.substr(value)), location});

@@ -114,10 +114,7 @@ std::vector<Eigen::Vector2d> corners_from_file(const RadianceCall& call, const s
   for (auto word = text.next_word(); !word.empty(); word = text.next_word()) {
     const auto value = parse_finite(word);
     if (!value) {
-      text.location().fail(
-          fmt::format("'{}' is not a finite number, as the coordinates of a prism "
-                      "must be",
-                      word));
+      text.location().fail("this is not a finite number, as the coordinates of a prism must be");
     }
     numbers.push_back(*value);
   }

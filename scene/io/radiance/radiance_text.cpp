@@ -76,7 +76,7 @@ std::size_t RadianceText::count(const RadiancePrimitive& of, std::string_view wh
   constexpr double most = 1e9;
   if (!value || !(*value >= 0.0 && *value <= most) ||
       *value != static_cast<double>(static_cast<std::size_t>(*value))) {
-    of.fail(fmt::format("has '{}' (line {}) where the number of its {} should stand", word,
+    of.fail(fmt::format("has '{}' (line {}) where the number of its {} should stand", excerpt(word),
                         location_.line, what));
   }
   return static_cast<std::size_t>(*value);
@@ -89,10 +89,12 @@ RadiancePrimitive RadianceText::primitive() {
   result.name = next_word();
   const RadianceKind kind = result.kind();
   if (kind == RadianceKind::unknown) {
-    result.location.fail(
-        fmt::format("'{} {} {}' is no primitive: a modifier, a known type and a name are needed",
-                    result.modifier, result.type, result.name));
+    result.location.fail(fmt::format(
+        "{}: a modifier, a known type and a name are needed",
+        is_recognised_ ? fmt::format("'{}' is no type of a primitive", excerpt(result.type))
+                       : std::string("this is no primitive")));
   }
+  is_recognised_ = true;
   if (kind == RadianceKind::alias) {
     result.strings.emplace_back(word_of(result, "original"));
     return result;
@@ -109,8 +111,8 @@ RadiancePrimitive RadianceText::primitive() {
     const std::string_view word = word_of(result, fmt::format("{} real arguments", reals));
     const auto value = parse_finite(word);
     if (!value) {
-      result.fail(fmt::format("has '{}' (line {}) where real argument {} of {} should stand", word,
-                              location_.line, i + 1, reals));
+      result.fail(fmt::format("has '{}' (line {}) where real argument {} of {} should stand",
+                              excerpt(word), location_.line, i + 1, reals));
     }
     result.reals.push_back(*value);
   }

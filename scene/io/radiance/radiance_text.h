@@ -40,6 +40,7 @@ class RadianceText {
   void advance(std::size_t length);
 
   std::string_view rest_;
+  bool is_recognised_ = false;  // a primitive was read: messages may quote words of the file
   RadianceLocation location_;
 };
 

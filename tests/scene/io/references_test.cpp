@@ -1,4 +1,5 @@
-// Files that a scene names: those outside of its folder are refused where the user asks for that.
+// Files that a scene names: those outside of its folder are refused where the user asks for that,
+// and errors never show what a file that is no part of a scene holds.
 #include <gtest/gtest.h>
 
 #include "scene/io/numbered_scene.h"
@@ -123,6 +124,38 @@ TEST_F(References, OfGltfAreRelative) {
   EXPECT_TRUE(says(notes_of("../a.png"), "there is no such file"));
 }
 
+// Everything that readers say of a file that is no part of a scene.
+TEST_F(References, ToOtherFilesAreNotQuoted) {
+  const auto said = [&](const std::string& name, const std::string& content) {
+    std::string all;
+    try {
+      const Scene scene = read_file("own/" + name, content);
+      for (const std::string& note : scene.notes) all += note + "\n";
+      for (const std::string& loss : scene.losses) all += loss + "\n";
+    } catch (const InputError& error) {
+      all = error.what();
+    }
+    return all;
+  };
+  const std::vector<std::pair<std::string, std::string>> scenes = {
+      {"cat.rad", polygon_of_radiance + "!cat ../secret\n"},
+      {"prism.rad", polygon_of_radiance + "!genprism grey p ../secret\n"},
+      {"formula.rad", polygon_of_radiance + "!genrev grey p KEY 1 4 -f ../secret\n"},
+      {"definition.rad", polygon_of_radiance + "!genrev grey p t 1 4 -f ../secret\n"},
+      {"project.rif", "scene = ../secret\n"},
+      {"library.obj", "mtllib ../secret\nusemtl a\n" + triangle},
+      {"spectrum.toml", "[materials.grey]\nreflectance = { file = '../secret' }\n" + floor_of_grey},
+      {"lamp.toml", grey + floor_of_grey +
+                        "[[lamps]]\nposition = [0,0,1]\naim = [0,0,-1]\nfile = '../secret'\n"},
+      {"include.xml", mitsuba("<include filename=\"../secret\"/>")}};
+  for (const auto& [name, content] : scenes) {
+    const std::string all = said(name, content);
+    EXPECT_EQ(all.find("hunter2"), std::string::npos) << name << ": " << all;
+    EXPECT_EQ(all.find("root"), std::string::npos) << name << ": " << all;
+  }
+  EXPECT_TRUE(says(said("cat.rad", scenes[0].second), "secret:1: this is no primitive"));
+}
+
 TEST_F(References, ToFilesAreInputsOfTheScene) {
   folder.write("own/sky.hdr", "#?RADIANCE\n");
   const FilesRead read;
@@ -130,6 +163,11 @@ TEST_F(References, ToFilesAreInputsOfTheScene) {
       read_file("own/sky.toml", grey + floor_of_grey + "[sky]\nkind = 'map'\nfile = 'sky.hdr'\n"),
       InputError);
   EXPECT_EQ(read.files().size(), 2u);
+}
+
+TEST(Excerpt, IsShort) {
+  EXPECT_EQ(excerpt("word"), "word");
+  EXPECT_EQ(excerpt(std::string(1000, 'a')), std::string(40, 'a') + "...");
 }
 
 }  // namespace

@@ -345,7 +345,8 @@ TEST_F(Radiance, WrongPrimitivesAreNamedWithFileAndLine) {
   const auto wrong = [&](const std::string& text, const std::string& says_this) {
     EXPECT_TRUE(says(error(grey + text), says_this));
   };
-  wrong("grey " + square + "\ngrey polygone p 0 0 9\n", "scene.rad:4: 'grey polygone p'");
+  wrong("grey " + square + "\ngrey polygone p 0 0 9\n",
+        "scene.rad:4: 'polygone' is no type of a primitive");
   wrong("grey polygon p 0 0 12 1 2 three\n", "scene.rad:2: polygon 'p' has 'three' (line 2)");
   wrong("grey polygon p 0 0 12 1 2 3\n", "ends with the file, before its 12 real arguments");
   wrong("grey polygon p 0 0 6 1 2 3 4 5 6\n", "three corners");
