@@ -1,16 +1,12 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <vector>
 
 #include "scene/io/polygon.h"
 #include "scene/scene.h"
 
 namespace lightwell {
-
-/// Largest number of facets in a scene, some 5 GB: instances multiply quickly.
-inline constexpr std::int64_t most_facets = 20'000'000;
 
 /// Loops of simple shapes as the file formats define them, counter-clockwise seen from outside or
 /// from +z.

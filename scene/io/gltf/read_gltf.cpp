@@ -15,6 +15,7 @@
 #include "scene/io/polygon.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
+#include "scene/io/scene_size.h"
 
 namespace lightwell {
 namespace {
@@ -245,11 +246,9 @@ class GltfReader {
     const std::vector<Eigen::Vector2d> uv = texture_coordinates(primitive, attributes, vertices);
     const NormalLoop normals = vertex_normals(attributes, to_world, vertices.size());
     const std::size_t count = mode == triangle_list ? corners / 3 : corners < 3 ? 0 : corners - 2;
-    triangles_ += static_cast<std::int64_t>(count);
-    if (triangles_ > most_facets) {
-      throw LimitError(fmt::format("{}: {} brings the scene to more than {} triangles",
-                                   scene_.file.string(), primitive.place(), most_facets));
-    }
+    size_.add(static_cast<std::int64_t>(count), [&](const std::string& sentence) {
+      throw LimitError(fmt::format("{}: {} {}", scene_.file.string(), primitive.place(), sentence));
+    });
     const bool is_mirrored = to_world.linear().determinant() < 0.0;
     MeshBuilder mesh;
     for (std::size_t i = 0; i < count; ++i) {
@@ -311,7 +310,7 @@ class GltfReader {
   std::set<std::size_t> placed_lights_{};
   std::set<std::size_t> seen_;
   NumberedNames names_;
-  std::int64_t triangles_ = 0;
+  SceneSize size_;
 };
 
 }  // namespace

@@ -13,7 +13,7 @@
 #include "scene/errors.h"
 #include "scene/io/convex_cut.h"
 #include "scene/io/default_material.h"
-#include "scene/io/placed_mesh.h"
+#include "scene/io/scene_size.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -170,9 +170,9 @@ SerializedMesh read_mesh(const std::filesystem::path& path, std::string_view byt
   const std::size_t number = as_double ? sizeof(double) : sizeof(float);
   from.check_count(vertices, 3 * number, "vertices");
   from.check_count(triangles, 3 * sizeof(std::uint32_t), "triangles");
-  if (triangles > static_cast<std::uint64_t>(most_facets)) {
+  if (triangles > static_cast<std::uint64_t>(most_triangles)) {
     throw LimitError(fmt::format("{}: a mesh of {} triangles is more than the {} that are read",
-                                 path.string(), triangles, most_facets));
+                                 path.string(), triangles, most_triangles));
   }
   if (vertices > UINT32_MAX) fail_serialized(path, "the mesh has too many vertices");
   mesh.positions = from.numbers(3 * vertices, as_double);

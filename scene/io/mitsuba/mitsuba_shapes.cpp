@@ -80,19 +80,22 @@ void MitsubaShapes::add_instance(const MitsubaNode& instance) {
   }
 }
 
+void MitsubaShapes::account(const MitsubaNode& shape, std::int64_t triangles) {
+  size_.add(triangles,
+            [&](const std::string& sentence) { throw LimitError(shape.called(sentence)); });
+}
+
 void MitsubaShapes::add_placed(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
                                const std::string& prefix) {
-  if (facets_ > most_facets) {
-    throw LimitError(shape.called(fmt::format(
-        "brings the scene to more than {} polygons; use fewer instances", most_facets)));
-  }
   const std::string name = unique_name(shape, prefix);
   const bool flip = shape.boolean_or("flip_normals", false);
   const auto loops = [&](const std::vector<Loop>& local) {
+    account(shape, triangles_of(local));
     return placed_loops(local, to_world, flip, repairs_);
   };
   if (shape.type == "rectangle") {
     const std::vector<UvLoop> uv = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+    account(shape, 2);
     return add_surface(shape, name, placed_loops(rectangle_loops(), to_world, flip, repairs_, uv));
   }
   if (shape.type == "cube") return add_surface(shape, name, loops(cube_loops()));
@@ -122,7 +125,6 @@ void MitsubaShapes::add_surface(const MitsubaNode& shape, const std::string& nam
       remarks_.add(without_area, name);
       return;
     }
-    facets_ += static_cast<std::int64_t>(polygons->facets.size());
   }
   const int material = materials_.of_shape(shape, name);
   scene_.surfaces.push_back({.name = name, .material = material, .shape = std::move(placed)});
@@ -140,8 +142,10 @@ std::variant<PolygonMesh, Sphere> MitsubaShapes::sphere(const MitsubaNode& shape
   }
   remarks_.add("Spheres that are turned inside out or no longer round became polygons", name);
   const Eigen::Affine3d place = to_world * Eigen::Translation3d(center) * Eigen::Scaling(radius);
+  const std::vector<Loop> loops = sphere_loops();
+  account(shape, triangles_of(loops));
   // The corners of a unit sphere about the origin are its normals.
-  return placed_loops(sphere_loops(), place, flip, repairs_, {}, sphere_loops());
+  return placed_loops(loops, place, flip, repairs_, {}, loops);
 }
 
 PolygonMesh MitsubaShapes::cylinder(const MitsubaNode& shape, const Eigen::Affine3d& to_world) {
@@ -152,12 +156,14 @@ PolygonMesh MitsubaShapes::cylinder(const MitsubaNode& shape, const Eigen::Affin
   const Eigen::Affine3d place = Eigen::Translation3d(p0) *
                                 rotation_between(Eigen::Vector3d::UnitZ(), axis) *
                                 Eigen::Scaling(radius, radius, axis.stableNorm());
-  std::vector<NormalLoop> normals = cylinder_loops();
+  const std::vector<Loop> loops = cylinder_loops();
+  account(shape, triangles_of(loops));
+  std::vector<NormalLoop> normals = loops;
   for (NormalLoop& loop : normals) {
     for (Eigen::Vector3d& n : loop) n.z() = 0.0;
   }
-  return placed_loops(cylinder_loops(), to_world * place, shape.boolean_or("flip_normals", false),
-                      repairs_, {}, normals);
+  return placed_loops(loops, to_world * place, shape.boolean_or("flip_normals", false), repairs_,
+                      {}, normals);
 }
 
 void MitsubaShapes::add_mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
@@ -185,6 +191,7 @@ PolygonMesh MitsubaShapes::mesh(const MitsubaNode& shape, const Eigen::Affine3d&
   const bool with_uv = material.texture || material.mask;
   const MeshFile& file =
       mesh_file(shape, with_uv, by_normals ? MeshFronts::from_normals : MeshFronts::from_winding);
+  account(shape, file.triangles);
   repairs_.add(file.repairs);
   PolygonMesh placed = placed_mesh(file.mesh, to_world, shape.boolean_or("flip_normals", false),
                                    file.has_normals, repairs_);
@@ -232,6 +239,7 @@ const MitsubaShapes::MeshFile& MitsubaShapes::mesh_file(const MitsubaNode& shape
   MeshFile file{.mesh = joined(std::move(scene)),
                 .repairs = polygons.repairs,
                 .has_normals = polygons.has_normals};
+  file.triangles = triangles_of(file.mesh);
   return files_.emplace(std::tuple(path, number, with_uv, fronts), std::move(file)).first->second;
 }
 

@@ -13,6 +13,7 @@
 #include "scene/io/mitsuba/mitsuba_tree.h"
 #include "scene/io/numbered_names.h"
 #include "scene/io/remarks.h"
+#include "scene/io/scene_size.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -36,9 +37,11 @@ class MitsubaShapes {
     PolygonMesh mesh{};
     Repairs repairs{};
     bool has_normals = false;
+    std::int64_t triangles = 0;
   };
   void add_placed(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
                   const std::string& prefix);
+  void account(const MitsubaNode& shape, std::int64_t triangles);
   void add_instance(const MitsubaNode& instance);
   void add_surface(const MitsubaNode& shape, const std::string& name,
                    std::variant<PolygonMesh, Sphere> placed);
@@ -59,7 +62,7 @@ class MitsubaShapes {
   Repairs repairs_;
   std::map<std::tuple<std::filesystem::path, int, bool, MeshFronts>, MeshFile> files_;
   NumberedNames names_;
-  std::int64_t facets_ = 0;
+  SceneSize size_;
 };
 
 }  // namespace lightwell

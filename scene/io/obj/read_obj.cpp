@@ -8,6 +8,7 @@
 #include "scene/io/convex_cut.h"
 #include "scene/io/default_material.h"
 #include "scene/io/mesh_file.h"
+#include "scene/io/numbered_names.h"
 #include "scene/io/obj/obj_file.h"
 #include "scene/io/obj/obj_materials.h"
 #include "scene/io/polygon.h"
@@ -162,7 +163,7 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
     const std::string& name = content.groups[static_cast<std::size_t>(group)];
     const bool alone = materials_of_group[group].size() == 1;
     const std::string& of = scene.materials[static_cast<std::size_t>(material)].name;
-    scene.surfaces.push_back({.name = alone ? name : fmt::format("{} ({})", name, of),
+    scene.surfaces.push_back({.name = shortened(alone ? name : fmt::format("{} ({})", name, of)),
                               .material = material,
                               .shape = meshes[i].mesh()});
     polygons.of_facet.insert(polygons.of_facet.end(), polygons_of[i].begin(), polygons_of[i].end());

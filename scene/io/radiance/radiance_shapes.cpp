@@ -16,7 +16,6 @@ namespace lightwell {
 namespace {
 
 constexpr std::int64_t most_primitives = 2'000'000;
-constexpr std::int64_t most_shape_polygons = 4'000'000;  // some 1 GB
 constexpr std::size_t most_corners = 2000;  // of a polygon: checks are quadratic in their number
 
 Eigen::Vector3d point(const RadiancePrimitive& p, std::size_t first) {
@@ -83,13 +82,11 @@ void RadianceShapes::finish() {
   material_ = -1;
 }
 
-void RadianceShapes::account(const RadiancePrimitive& primitive, std::size_t polygons) {
-  polygons_ += static_cast<std::int64_t>(polygons);
-  if (polygons_ > most_shape_polygons) {
+void RadianceShapes::account(const RadiancePrimitive& primitive, std::int64_t triangles) {
+  size_.add(triangles, [&](const std::string& sentence) {
     primitive.location.fail_limit(
-        fmt::format("{} '{}' makes more than {} polygons of the scene; use fewer copies",
-                    primitive.type, primitive.name, most_shape_polygons));
-  }
+        fmt::format("{} '{}' {}", primitive.type, primitive.name, sentence));
+  });
 }
 
 void RadianceShapes::add_polygon(const RadiancePrimitive& p, int material) {
@@ -101,7 +98,7 @@ void RadianceShapes::add_polygon(const RadiancePrimitive& p, int material) {
   if (corners > most_corners) {
     p.fail(fmt::format("has {} corners; at most {} are read, split it", corners, most_corners));
   }
-  account(p, 1);
+  account(p, triangles_of(corners));
   const std::string stem = stem_of(p.name);
   if (stem != stem_ || material != material_) finish();
   stem_ = stem;
@@ -127,7 +124,7 @@ bool RadianceShapes::sides_differ(int material) const {
 void RadianceShapes::add_surface(const RadiancePrimitive& p, int material,
                                  std::variant<PolygonMesh, Sphere> shape) {
   if (const auto* mesh = std::get_if<PolygonMesh>(&shape)) {
-    account(p, mesh->facets.size());
+    account(p, triangles_of(*mesh));
     if (mesh->facets.empty()) {
       remarks_.add("Shapes without area were left out", p.name);
       return;

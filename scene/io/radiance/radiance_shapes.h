@@ -9,6 +9,7 @@
 #include "scene/io/radiance/radiance_materials.h"
 #include "scene/io/radiance/radiance_primitive.h"
 #include "scene/io/remarks.h"
+#include "scene/io/scene_size.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -36,7 +37,7 @@ class RadianceShapes {
   void add_ring(const RadiancePrimitive& ring, int material);
   void add_surface(const RadiancePrimitive& primitive, int material,
                    std::variant<PolygonMesh, Sphere> shape);
-  void account(const RadiancePrimitive& primitive, std::size_t polygons);
+  void account(const RadiancePrimitive& primitive, std::int64_t triangles);
   bool sides_differ(int material) const;
 
   Scene& scene_;
@@ -44,7 +45,8 @@ class RadianceShapes {
   RadianceMaterials materials_;
   Repairs repairs_;
   NumberedNames names_;
-  std::int64_t primitives_ = 0, polygons_ = 0;
+  std::int64_t primitives_ = 0;
+  SceneSize size_;
   // The surface to which further polygons may be added.
   std::string stem_;
   int material_ = -1;

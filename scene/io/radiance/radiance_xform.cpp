@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "scene/io/numbered_names.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -14,6 +15,7 @@ namespace {
 
 constexpr int most_copies = 100'000;
 constexpr int most_repetitions = 1'000'000;
+constexpr std::size_t most_groups = 1000;  // groups are nested calls
 
 // A group of transformations between two of the options -i and -a, with its repeat count.
 struct Group {
@@ -46,7 +48,7 @@ class XformParser {
       result_.files.push_back(arguments_[next_]);
     }
     const std::string name = name_.empty() && copies_ > 1 ? "a" : name_;
-    add_copies(0, Eigen::Affine3d::Identity(), name, name_.empty());
+    add_copies(0, Eigen::Affine3d::Identity(), shortened(name), name_.empty());
     return std::move(result_);
   }
 
@@ -69,7 +71,7 @@ class XformParser {
       if (!(factor != 0.0)) location_.fail("xform is to scale by 0 (-s); give another factor");
       step = Eigen::Scaling(factor) * step;
     } else if (option == "-i") {
-      groups_.push_back({.count = std::max(0, whole(option, most_repetitions))});
+      add_group({.count = std::max(0, whole(option, most_repetitions))});
     } else if (option == "-a") {
       add_array(whole(option, most_copies));
     } else if (option == "-n") {
@@ -122,7 +124,15 @@ class XformParser {
       location_.fail(fmt::format("xform makes more than {} copies (-a); make fewer", most_copies));
     }
     copies_ *= count;
-    groups_.push_back({.count = count, .is_array = true});
+    add_group({.count = count, .is_array = true});
+  }
+
+  void add_group(const Group& group) {
+    if (groups_.size() > most_groups) {
+      location_.fail(
+          fmt::format("xform has more than {} of the options -i and -a; give fewer", most_groups));
+    }
+    groups_.push_back(group);
   }
 
   void add_copies(std::size_t group, const Eigen::Affine3d& before, const std::string& name,

@@ -183,9 +183,8 @@ Scene read_toml(const std::filesystem::path& path) {
   if (!surfaces) document.fail("the scene has no surfaces; add at least one [[surfaces]] table");
   if (!surfaces->is_array()) surfaces->fail("must be an array of tables; write [[surfaces]]");
   std::size_t number = 0;
-  for (const auto& surface : surfaces->elements("surface")) {
-    read_toml_surface(surface, ++number, scene);
-  }
+  TomlSurfaces read(scene);
+  for (const auto& surface : surfaces->elements("surface")) read.add(surface, ++number);
   if (number == 0) surfaces->fail("is empty; add at least one [[surfaces]] table");
   spread_power(materials, scene);
   drop_unused_uv(scene);

@@ -281,19 +281,21 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
 }
 
 void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene) {
+  std::vector<double> areas(scene.materials.size(), 0.0);
+  std::vector<char> used(scene.materials.size(), 0);
+  for (const Surface& surface : scene.surfaces) {
+    const auto i = static_cast<std::size_t>(surface.material);
+    used[i] = 1;
+    areas[i] += surface_area(surface);
+  }
   for (std::size_t i = 0; i < materials.size(); ++i) {
-    double area = 0.0;
-    bool used = false;
-    for (const Surface& surface : scene.surfaces) {
-      if (surface.material != static_cast<int>(i)) continue;
-      used = true;
-      area += surface_area(surface);
-    }
     Material& material = scene.materials[i];
-    if (!used) scene.notes.push_back(fmt::format("No surface uses material '{}'.", material.name));
-    if (!used || !materials[i].power) continue;
-    material.emission =
-        *materials[i].power / static_cast<float>(material.emits_both_sides ? 2.0 * area : area);
+    if (!used[i]) {
+      scene.notes.push_back(fmt::format("No surface uses material '{}'.", material.name));
+    }
+    if (!used[i] || !materials[i].power) continue;
+    const double area = material.emits_both_sides ? 2.0 * areas[i] : areas[i];
+    material.emission = *materials[i].power / static_cast<float>(area);
   }
 }
 

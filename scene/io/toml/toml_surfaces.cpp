@@ -10,6 +10,7 @@
 #include "scene/errors.h"
 #include "scene/io/mesh_file.h"
 #include "scene/io/nearest_name.h"
+#include "scene/io/numbered_names.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
 #include "scene/io/text_file.h"
@@ -85,16 +86,19 @@ Loop read_loop(const TomlValue& value, const Placement& place) {
   return loop;
 }
 
+}  // namespace
+
 // Builds the surface of one [[surfaces]] table.
-class SurfaceReader {
+class TomlSurfaces::Reader {
  public:
-  SurfaceReader(const TomlValue& value, const TomlTable& table, std::string name, Scene& scene)
+  Reader(const TomlValue& value, const TomlTable& table, std::string name, TomlSurfaces& all)
       : value_(value),
         table_(table),
         name_(std::move(name)),
-        scene_(scene),
-        place_(read_placement(table, scene.metres_per_unit)) {
-    if (const auto motion = table.find("motion")) motion_ = find_toml_motion(*motion, scene);
+        all_(all),
+        scene_(all.scene_),
+        place_(read_placement(table, scene_.metres_per_unit)) {
+    if (const auto motion = table.find("motion")) motion_ = find_toml_motion(*motion, scene_);
   }
 
   void read() {
@@ -134,11 +138,9 @@ class SurfaceReader {
  private:
   int find_material(const TomlValue& value) const {
     const std::string name = value.name();
+    if (const int found = all_.material_of(name); found >= 0) return found;
     std::vector<std::string> known;
-    for (const Material& m : scene_.materials) {
-      if (m.name == name) return static_cast<int>(&m - scene_.materials.data());
-      known.push_back(m.name);
-    }
+    for (const Material& m : scene_.materials) known.push_back(m.name);
     value.fail(fmt::format("is '{}', which is not among the materials of this file.{}", name,
                            did_you_mean(name, known)));
   }
@@ -149,8 +151,7 @@ class SurfaceReader {
   }
 
   void add_surface(const std::string& name, int material, std::variant<PolygonMesh, Sphere> shape) {
-    const auto same = [&](const Surface& s) { return s.name == name; };
-    if (std::any_of(scene_.surfaces.begin(), scene_.surfaces.end(), same)) {
+    if (!all_.names_.insert(name).second) {
       value_.fail("has a name that an earlier surface has; give it another");
     }
     scene_.surfaces.push_back(
@@ -288,10 +289,13 @@ class SurfaceReader {
       const auto wanted = !material                                 ? MeshMaterials::from_file
                           : shows_picture(find_material(*material)) ? MeshMaterials::with_uv
                                                                     : MeshMaterials::ignored;
-      mesh = extension == ".obj" ? read_obj_file(path, 1.0, wanted)
-                                 : read_geometry_file(path, 1.0, wanted);
+      mesh = all_.mesh_of(path, wanted);
     } catch (const InputError& error) {
       value.fail(fmt::format("cannot be used: {}", error.what()));
+    }
+    for (const Surface& surface : mesh.surfaces) {
+      all_.size_.add(triangles_of(std::get<PolygonMesh>(surface.shape)),
+                     [&](const std::string& sentence) { value_.fail(sentence); });
     }
     for (const std::string& note : mesh.notes) {
       scene_.notes.push_back(fmt::format("{}: {}", name_, note));
@@ -318,10 +322,8 @@ class SurfaceReader {
   // different materials, hence the qualified name.
   int import_material(Material material, const std::string& file, const TomlValue& value) {
     const std::string qualified = fmt::format("{} ({})", material.name, file);
-    for (const Material& m : scene_.materials) {
-      if (m.name == material.name || m.name == qualified) {
-        return static_cast<int>(&m - scene_.materials.data());
-      }
+    for (const std::string& known : {material.name, qualified}) {
+      if (const int found = all_.material_of(known); found >= 0) return found;
     }
     if (!scene_.bands.wavelengths_nm.empty()) {
       value.fail(
@@ -330,28 +332,55 @@ class SurfaceReader {
                       material.name, scene_.bands.count(), material.name));
     }
     material.name = qualified;
-    scene_.materials.push_back(std::move(material));
-    return static_cast<int>(scene_.materials.size()) - 1;
+    return all_.add_material(std::move(material));
   }
 
   const TomlValue& value_;
   const TomlTable& table_;
   std::string name_;
+  TomlSurfaces& all_;
   Scene& scene_;
   Placement place_;
   int motion_ = -1;
 };
 
-}  // namespace
+TomlSurfaces::TomlSurfaces(Scene& scene) : scene_(scene) {
+  for (std::size_t i = 0; i < scene.materials.size(); ++i) {
+    materials_.emplace(scene.materials[i].name, static_cast<int>(i));
+  }
+}
 
-void read_toml_surface(const TomlValue& value, std::size_t number, Scene& scene) {
+int TomlSurfaces::material_of(const std::string& name) const {
+  const auto found = materials_.find(name);
+  return found == materials_.end() ? -1 : found->second;
+}
+
+int TomlSurfaces::add_material(Material material) {
+  const int index = static_cast<int>(scene_.materials.size());
+  materials_.emplace(material.name, index);
+  scene_.materials.push_back(std::move(material));
+  return index;
+}
+
+Scene TomlSurfaces::mesh_of(const std::filesystem::path& path, MeshMaterials wanted) {
+  const auto known = meshes_.find({path, wanted});
+  if (known != meshes_.end()) return known->second;
+  Scene mesh = lower_extension(path) == ".obj" ? read_obj_file(path, 1.0, wanted)
+                                               : read_geometry_file(path, 1.0, wanted);
+  constexpr std::size_t small = 10'000;  // facets; larger meshes soon reach the limit of SceneSize
+  if (scene_facets(mesh).size() <= small) meshes_.emplace(std::pair(path, wanted), mesh);
+  return mesh;
+}
+
+void TomlSurfaces::add(const TomlValue& value, std::size_t number) {
   const auto given = value.member("name");
   const std::string name = given ? given->name() : fmt::format("surface{}", number);
+  if (name != shortened(name)) given->fail("is very long; 250 characters are enough");
   const TomlValue named = value.renamed(fmt::format("surface '{}'", name));
   const TomlTable table =
       named.table({"name", "material", "polygon", "holes", "polygons", "box", "sphere", "mesh",
                    "flip", "smooth", "scale", "rotate", "pivot", "translate", "uv", "motion"});
-  SurfaceReader(named, table, name, scene).read();
+  Reader(named, table, name, *this).read();
 }
 
 }  // namespace lightwell
