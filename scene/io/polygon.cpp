@@ -5,10 +5,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <set>
 #include <tuple>
 
 #include "scene/io/crossing_polygon.h"
+#include "scene/io/loop_tree.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -76,17 +77,66 @@ bool cross_properly(const Point& a, const Point& b, const Point& c, const Point&
 bool cross_or_touch(const Point& a, const Point& b, const Point& c, const Point& d) {
   if ((a.cwiseMax(b).array() < c.cwiseMin(d).array() - coincident).any()) return false;
   if ((c.cwiseMax(d).array() < a.cwiseMin(b).array() - coincident).any()) return false;
+  // Most edges with boxes that meet lie clearly on one side of each other.
+  const Point ab = b - a, ac = c - a, ad = d - a;
+  const double at_c = ab.x() * ac.y() - ab.y() * ac.x(), at_d = ab.x() * ad.y() - ab.y() * ad.x();
+  const double clear = 2.0 * coincident * ab.norm();
+  if (std::min(at_c, at_d) > clear || std::max(at_c, at_d) < -clear) return false;
   return cross_properly(a, b, c, d) || lies_on(c, a, b) || lies_on(d, a, b) || lies_on(a, c, d) ||
          lies_on(b, c, d);
 }
 
-std::string loop_fault(const FlatLoop& p) {
+bool are_apart(const LoopTree::Box& box, const LoopTree::Box& other) {
+  return (box.high.array() < other.low.array() - coincident).any() ||
+         (other.high.array() < box.low.array() - coincident).any();
+}
+
+LoopTree::Box box_of_edge(const FlatLoop& p, std::size_t i) {
+  LoopTree::Box box;
+  box.extend(p[i]);
+  box.extend(p[(i + 1) % p.size()]);
+  return box;
+}
+
+LoopTree tree_of_edges(const FlatLoop& p) {
+  return {p.size(), [&](std::size_t i) { return box_of_edge(p, i); }};
+}
+
+LoopTree tree_of_corners(const FlatLoop& p) {
+  return {p.size(), [&](std::size_t i) { return LoopTree::Box{.low = p[i], .high = p[i]}; }};
+}
+
+// The fault of a loop whose corners or edges crowd so much that checking them would take minutes.
+const char* const is_intricate =
+    "has too many corners that lie too close together; cut it into pieces";
+
+// Thrown where the tests of a loop exceed most_pair_tests.
+struct TooIntricate {};
+
+// Counts tests of pairs.
+class PairTests {
+ public:
+  void count() {
+    if (++count_ > most_pair_tests) throw TooIntricate();
+  }
+
+ private:
+  std::int64_t count_ = 0;
+};
+
+std::string loop_fault_within(const FlatLoop& p, PairTests& tests) {
   const std::size_t n = p.size();
+  const LoopTree corners = tree_of_corners(p), edges = tree_of_edges(p);
   for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i + 1; j < n; ++j) {
-      if ((p[i] - p[j]).norm() <= coincident) {
-        return fmt::format("has the same point as vertex {} and vertex {}", i + 1, j + 1);
-      }
+    const LoopTree::Box place{.low = p[i], .high = p[i]};
+    const std::size_t same = corners.find(
+        i + 1, [&](const LoopTree::Box& box) { return !are_apart(place, box); },
+        [&](std::size_t j) {
+          tests.count();
+          return (p[i] - p[j]).norm() <= coincident;
+        });
+    if (same < n) {
+      return fmt::format("has the same point as vertex {} and vertex {}", i + 1, same + 1);
     }
   }
   for (std::size_t i = 0; i < n; ++i) {
@@ -94,30 +144,56 @@ std::string loop_fault(const FlatLoop& p) {
     if (orientation(a, b, c) == 0.0 && (b - a).dot(c - b) < 0.0) {
       return fmt::format("folds back on itself at vertex {}", (i + 1) % n + 1);
     }
-    for (std::size_t j = i + 2; j < n; ++j) {
-      if (i == 0 && j == n - 1) continue;  // neighbours share a vertex
-      if (cross_or_touch(a, b, p[j], p[(j + 1) % n])) {
-        return fmt::format("has edges {} and {} that cross or touch", i + 1, j + 1);
-      }
-    }
+    const LoopTree::Box about = box_of_edge(p, i);
+    const std::size_t met = edges.find(
+        i + 2, [&](const LoopTree::Box& box) { return !are_apart(about, box); },
+        [&](std::size_t j) {
+          tests.count();
+          const bool are_neighbours = i == 0 && j == n - 1;
+          return !are_neighbours && cross_or_touch(a, b, p[j], p[(j + 1) % n]);
+        });
+    if (met < n) return fmt::format("has edges {} and {} that cross or touch", i + 1, met + 1);
   }
   return {};
 }
 
-bool crosses_itself_properly(const FlatLoop& p) {
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    for (std::size_t j = i + 2; j < p.size(); ++j) {
-      if (cross_properly(p[i], p[i + 1], p[j], p[(j + 1) % p.size()])) return true;
-    }
+std::string loop_fault(const FlatLoop& p) {
+  PairTests tests;
+  try {
+    return loop_fault_within(p, tests);
+  } catch (const TooIntricate&) {
+    return is_intricate;
+  }
+}
+
+bool crosses_itself_properly(const FlatLoop& p, PairTests& tests) {
+  const std::size_t n = p.size();
+  const LoopTree edges = tree_of_edges(p);
+  for (std::size_t i = 0; i + 2 < n; ++i) {
+    const LoopTree::Box about = box_of_edge(p, i);
+    const std::size_t crossed = edges.find(
+        i + 2, [&](const LoopTree::Box& box) { return !are_apart(about, box); },
+        [&](std::size_t j) {
+          tests.count();
+          return cross_properly(p[i], p[i + 1], p[j], p[(j + 1) % n]);
+        });
+    if (crossed < n) return true;
   }
   return false;
 }
 
-bool loops_meet(const FlatLoop& p, const FlatLoop& q) {
+// True if loop `p` meets the loop `q` with these edges.
+bool loops_meet(const FlatLoop& p, const FlatLoop& q, const LoopTree& edges_of_q,
+                PairTests& tests) {
   for (std::size_t i = 0; i < p.size(); ++i) {
-    for (std::size_t j = 0; j < q.size(); ++j) {
-      if (cross_or_touch(p[i], p[(i + 1) % p.size()], q[j], q[(j + 1) % q.size()])) return true;
-    }
+    const LoopTree::Box about = box_of_edge(p, i);
+    const std::size_t met = edges_of_q.find(
+        0, [&](const LoopTree::Box& box) { return !are_apart(about, box); },
+        [&](std::size_t j) {
+          tests.count();
+          return cross_or_touch(p[i], p[(i + 1) % p.size()], q[j], q[(j + 1) % q.size()]);
+        });
+    if (met < q.size()) return true;
   }
   return false;
 }
@@ -139,7 +215,11 @@ std::string count_fault(const Loop& loop) {
 }
 
 std::string holes_fault(const Polygon& polygon, const Plane& plane, const FlatLoop& boundary) {
+  if (polygon.holes.empty()) return {};
+  PairTests tests;
+  const LoopTree edges = tree_of_edges(boundary);
   std::vector<FlatLoop> holes;
+  std::vector<LoopTree> trees;
   for (std::size_t h = 0; h < polygon.holes.size(); ++h) {
     const Loop& hole = polygon.holes[h];
     const auto wrong = [&](const std::string& what) {
@@ -149,14 +229,16 @@ std::string holes_fault(const Polygon& polygon, const Plane& plane, const FlatLo
     FlatLoop flat = plane.flatten(hole);
     if (const auto what = loop_fault(flat); !what.empty()) return wrong(what);
     if (is_thin(hole)) return wrong("has no area");
-    if (loops_meet(flat, boundary)) return wrong("crosses or touches the boundary");
+    if (loops_meet(flat, boundary, edges, tests)) return wrong("crosses or touches the boundary");
     if (!is_inside(flat.front(), boundary)) return wrong("lies outside the boundary");
     for (std::size_t g = 0; g < holes.size(); ++g) {
-      if (loops_meet(flat, holes[g]) || is_inside(flat.front(), holes[g]) ||
+      tests.count();
+      if (loops_meet(flat, holes[g], trees[g], tests) || is_inside(flat.front(), holes[g]) ||
           is_inside(holes[g].front(), flat)) {
         return wrong(fmt::format("meets hole {}", g + 1));
       }
     }
+    trees.push_back(tree_of_edges(flat));
     holes.push_back(std::move(flat));
   }
   return {};
@@ -174,13 +256,100 @@ bool blocks_ear(const Point& p, const Point& a, const Point& b, const Point& c) 
   return orientation(a, b, p) >= 0.0 && orientation(b, c, p) >= 0.0 && orientation(c, a, p) >= 0.0;
 }
 
-bool is_ear(const FlatLoop& p, const std::vector<int>& left, std::size_t i) {
-  const std::size_t n = left.size();
-  const Point &a = p[left[(i + n - 1) % n]], &b = p[left[i]], &c = p[left[(i + 1) % n]];
-  if (!(orientation(a, b, c) > 0.0)) return false;
-  return std::none_of(left.begin(), left.end(),
-                      [&](int other) { return blocks_ear(p[other], a, b, c); });
-}
+// Cuts the ears of a loop one by one. The first ear from the second corner on is cut, so that a
+// quadrilateral is cut along 0-2. A corner is tested again only where a neighbour has gone, or the
+// corner that was found in the way of its ear.
+class EarClipping {
+ public:
+  explicit EarClipping(const FlatLoop& p)
+      : p_(p), tree_(tree_of_corners(p)), n_(static_cast<int>(p.size())) {
+    for (int i = 0; i < n_; ++i) {
+      before_.push_back((i + n_ - 1) % n_);
+      after_.push_back((i + 1) % n_);
+      candidates_.insert(candidates_.end(), i);
+    }
+    has_gone_.resize(p.size(), 0);
+    waiting_.resize(p.size());
+  }
+
+  // The triangles; empty if no ear is left before the end.
+  std::vector<std::array<int, 3>> triangles(PairTests& tests) {
+    std::vector<std::array<int, 3>> result;
+    int first = 0;  // of the corners that are left
+    for (int left = n_; left >= 3; --left) {
+      const int ear = next_ear(first, tests);
+      if (ear < 0) return {};
+      result.push_back({before(ear), ear, after(ear)});
+      cut(ear);
+      if (ear == first) first = after(ear);
+    }
+    return result;
+  }
+
+ private:
+  int& before(int i) { return before_[static_cast<std::size_t>(i)]; }
+  int& after(int i) { return after_[static_cast<std::size_t>(i)]; }
+  const Point& at(int i) const { return p_[static_cast<std::size_t>(i)]; }
+
+  int next_ear(int first, PairTests& tests) {
+    while (!candidates_.empty()) {
+      auto next = candidates_.upper_bound(first);
+      if (next == candidates_.end()) next = candidates_.begin();
+      if (is_ear(*next, tests)) return *next;
+      candidates_.erase(next);
+    }
+    return -1;
+  }
+
+  bool is_ear(int i, PairTests& tests) {
+    const Point &a = at(before(i)), &b = at(i), &c = at(after(i));
+    tests.count();
+    if (!(orientation(a, b, c) > 0.0)) return false;
+    const auto in_the_way = tree_.find(
+        0, [&](const LoopTree::Box& box) { return may_hold_blocks(box, a, b, c); },
+        [&](std::size_t j) {
+          tests.count();
+          return !has_gone_[j] && blocks_ear(p_[j], a, b, c);
+        });
+    if (in_the_way == p_.size()) return true;
+    waiting_[in_the_way].push_back(i);
+    return false;
+  }
+
+  // False if a box lies outside one side of a triangle, and farther than orientation() rounds.
+  static bool may_hold_blocks(const LoopTree::Box& box, const Point& a, const Point& b,
+                              const Point& c) {
+    const auto is_outside = [&](const Point& from, const Point& to) {
+      const Point side = to - from;
+      const Point inmost(side.y() > 0.0 ? box.low.x() : box.high.x(),
+                         side.x() > 0.0 ? box.high.y() : box.low.y());
+      const Point at = inmost - from;
+      return side.x() * at.y() - side.y() * at.x() < -2.0 * coincident * side.norm();
+    };
+    return !is_outside(a, b) && !is_outside(b, c) && !is_outside(c, a);
+  }
+
+  void cut(int ear) {
+    const auto e = static_cast<std::size_t>(ear);
+    has_gone_[e] = 1;
+    candidates_.erase(ear);
+    candidates_.insert(before(ear));
+    candidates_.insert(after(ear));
+    for (const int corner : waiting_[e]) {
+      if (!has_gone_[static_cast<std::size_t>(corner)]) candidates_.insert(corner);
+    }
+    after(before(ear)) = after(ear);
+    before(after(ear)) = before(ear);
+  }
+
+  const FlatLoop& p_;
+  LoopTree tree_;
+  int n_;
+  std::vector<int> before_, after_;  // neighbours among the corners that are left
+  std::vector<char> has_gone_;
+  std::vector<std::vector<int>> waiting_;  // by corner: those in whose way it was found
+  std::set<int> candidates_;               // corners that may be ears
+};
 
 }  // namespace
 
@@ -216,26 +385,22 @@ std::string fault(const Polygon& polygon) {
   // A crossing is tested first because the areas of a crossing loop may cancel.
   if (auto what = loop_fault(boundary); !what.empty() && polygon.boundary.size() > 3) return what;
   if (is_thin(polygon.boundary)) return "has no area (it is thinner than 1e-6 of its size)";
-  return holes_fault(polygon, plane, boundary);
+  try {
+    return holes_fault(polygon, plane, boundary);
+  } catch (const TooIntricate&) {
+    return is_intricate;
+  }
 }
 
 std::vector<std::array<int, 3>> split_into_triangles(const Loop& loop) {
   const FlatLoop p = Plane(loop).flatten(loop);
-  if (crosses_itself_properly(p)) return {};
-  std::vector<int> left(loop.size());
-  std::iota(left.begin(), left.end(), 0);
-  std::vector<std::array<int, 3>> triangles;
-  while (left.size() >= 3) {
-    const std::size_t n = left.size();
-    // The search begins at vertex 1, so that a quadrilateral is cut along 0-2.
-    std::size_t ear = 0;
-    while (ear < n && !is_ear(p, left, (ear + 1) % n)) ++ear;
-    if (ear == n) return {};
-    const std::size_t i = (ear + 1) % n;
-    triangles.push_back({left[(i + n - 1) % n], left[i], left[(i + 1) % n]});
-    left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
+  PairTests of_edges, of_ears;
+  try {
+    if (crosses_itself_properly(p, of_edges)) return {};
+    return EarClipping(p).triangles(of_ears);
+  } catch (const TooIntricate&) {
+    return {};
   }
-  return triangles;
 }
 
 std::vector<int> MeshBuilder::indices(const Loop& loop) {

@@ -3,7 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <ctime>
 #include <numbers>
+#include <numeric>
+#include <random>
+
+#include "tests/sanitizers.h"
 
 namespace lightwell::polygon_test {
 namespace {
@@ -116,6 +123,96 @@ TEST(SplitIntoTriangles, CoversThePolygonOnce) {
     shoelace += comb[i].cross(comb[(i + 1) % comb.size()]).z();
   }
   EXPECT_NEAR(sum, shoelace, 1e-12 * shoelace);
+}
+
+// Ear clipping as it stands in the papers, cubic in the number of corners.
+std::vector<std::array<int, 3>> plain_ear_clipping(const Loop& loop) {
+  const auto turn = [&](int a, int b, int c) {
+    return (loop[b] - loop[a]).cross(loop[c] - loop[a]).z();
+  };
+  std::vector<int> left(loop.size());
+  std::iota(left.begin(), left.end(), 0);
+  std::vector<std::array<int, 3>> triangles;
+  while (left.size() >= 3) {
+    const std::size_t n = left.size();
+    std::size_t i = 1;
+    for (std::size_t tried = 0; tried < n; ++tried, i = (i + 1) % n) {
+      const int a = left[(i + n - 1) % n], b = left[i], c = left[(i + 1) % n];
+      const auto is_in_the_way = [&](int p) {
+        return p != a && p != b && p != c && turn(a, b, p) > 0.0 && turn(b, c, p) > 0.0 &&
+               turn(c, a, p) > 0.0;
+      };
+      if (turn(a, b, c) > 0.0 && std::ranges::none_of(left, is_in_the_way)) break;
+    }
+    triangles.push_back({left[(i + n - 1) % n], left[i], left[(i + 1) % n]});
+    left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
+  }
+  return triangles;
+}
+
+// A star whose points are of random lengths: no three corners lie on a line.
+Loop random_star(int corners, std::mt19937& random) {
+  std::uniform_real_distribution<double> radius(0.2, 1.0);
+  Loop loop;
+  for (int i = 0; i < corners; ++i) {
+    const double phi = 2.0 * std::numbers::pi * i / corners, r = radius(random);
+    loop.emplace_back(r * std::cos(phi), r * std::sin(phi), 0.0);
+  }
+  return loop;
+}
+
+TEST(SplitIntoTriangles, CutsTheEarsThatPlainEarClippingCuts) {
+  std::mt19937 random(7);
+  for (int corners = 3; corners < 200; corners += 7) {
+    const Loop loop = random_star(corners, random);
+    EXPECT_EQ(split_into_triangles(loop), plain_ear_clipping(loop)) << corners << " corners";
+  }
+}
+
+TEST(PolygonFault, IsTheFirstOfAllPairs) {
+  std::mt19937 random(8);
+  for (int corners = 10; corners < 300; corners += 13) {
+    Loop loop = random_star(corners, random);
+    const auto at = static_cast<std::size_t>(random() % (corners - 5));
+    std::swap(loop[at + 1], loop[at + 3]);  // the edges after `at` and before at + 4 cross others
+    const auto crosses = [&](std::size_t i, std::size_t j) {
+      const auto side = [&](std::size_t e, std::size_t p) {
+        const Eigen::Vector3d& a = loop[e];
+        return (loop[(e + 1) % loop.size()] - a).cross(loop[p % loop.size()] - a).z();
+      };
+      return side(i, j) * side(i, j + 1) < 0.0 && side(j, i) * side(j, i + 1) < 0.0;
+    };
+    std::string first;
+    for (std::size_t i = 0; i < loop.size() && first.empty(); ++i) {
+      for (std::size_t j = i + 2; j < loop.size() && first.empty(); ++j) {
+        if (!crosses(i, j) || (i == 0 && j + 1 == loop.size())) continue;
+        first = "has edges " + std::to_string(i + 1) + " and " + std::to_string(j + 1) +
+                " that cross or touch";
+      }
+    }
+    EXPECT_EQ(fault({loop}), first) << corners << " corners";
+  }
+}
+
+// Comparing all pairs of corners would take a minute.
+TEST(AddRepaired, TakesLittleTimeForVeryManyCorners) {
+  constexpr int corners = 100'000;
+  Loop loop, bent;
+  for (int i = 0; i < corners; ++i) {
+    const double phi = 2.0 * std::numbers::pi * i / corners;
+    loop.emplace_back(std::cos(phi), std::sin(phi), 0.0);
+    bent.emplace_back(std::cos(phi), std::sin(phi), 0.01 * std::cos(2.0 * phi));
+  }
+  const std::clock_t before = std::clock();
+  Repairs repairs;
+  MeshBuilder mesh;
+  add_repaired(mesh, loop, repairs);
+  EXPECT_EQ(mesh.mesh().facets.size(), 1u);
+  add_repaired(mesh, bent, repairs);
+  EXPECT_EQ(repairs.split, 1);
+  const double seconds = static_cast<double>(std::clock() - before) / CLOCKS_PER_SEC;
+  constexpr double most = 2.0;  // it takes a fifth of a second
+  EXPECT_LT(seconds, most * test::slowdown);
 }
 
 TEST(SplitIntoTriangles, GivesUpOnACrossing) {
