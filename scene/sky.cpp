@@ -1,4 +1,5 @@
 #include "scene/sky.h"
+#include "scene/limits.h"
 
 #include <fmt/format.h>
 
@@ -122,6 +123,10 @@ void check_light(const Spectrum& values, const Bands& bands, const char* what) {
   }
   if (!values.isFinite().all() || (values < 0.0f).any()) {
     refuse_sky(fmt::format("the sky's {} must be finite and not below 0", what));
+  }
+  if (values.maxCoeff() > most_light) {
+    refuse_sky(fmt::format("the sky's {} is {:g}; it must not exceed {:g}", what, values.maxCoeff(),
+                           most_light));
   }
 }
 

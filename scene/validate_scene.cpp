@@ -13,6 +13,9 @@
 namespace lightwell {
 namespace {
 
+// Least diagonal of a scene, m. Areas of its facets have to be normal floats.
+constexpr double smallest_scene = 1e-9;
+
 [[noreturn]] void fail(const Scene& scene, const std::string& what) {
   throw InputError(scene.file.empty() ? what : fmt::format("{}: {}", scene.file.string(), what));
 }
@@ -35,6 +38,19 @@ void check_roughness(const Scene& scene, const Material& material, float roughne
   if (!(roughness >= 0.0f && roughness <= 1.0f)) {
     fail(scene, fmt::format("material '{}': roughness is {}; it must lie between 0 (smooth) and 1",
                             material.name, roughness));
+  }
+}
+
+// Refuses light that is no number, below 0, or beyond what floats can add up.
+void check_light(const Scene& scene, const std::string& of, const char* what, const char* unit,
+                 const Spectrum& values) {
+  if (values.size() != scene.bands.count() || !(values >= 0.0f).all() || !values.isFinite().all()) {
+    fail(scene, fmt::format("{}: {} must be one finite number >= 0 per band", of, what));
+  }
+  const float most = values.maxCoeff();
+  if (most > most_light || (most > 0.0f && most < least_light)) {
+    fail(scene, fmt::format("{}: {} is {:g} {}; it must lie between {:g} and {:g}, or be 0", of,
+                            what, most, unit, least_light, most_light));
   }
 }
 
@@ -140,11 +156,7 @@ void check_material(const Scene& scene, const Material& m) {
                       m.name));
     }
   }
-  if (m.emission.size() != scene.bands.count() || !(m.emission >= 0.0f).all() ||
-      !m.emission.isFinite().all()) {
-    fail(scene,
-         fmt::format("material '{}': emission must be one finite number >= 0 per band", m.name));
-  }
+  check_light(scene, fmt::format("material '{}'", m.name), "emission", "W/m^2", m.emission);
   check_pictures(scene, m);
 }
 
@@ -218,10 +230,7 @@ void check_lamp(const Scene& scene, const Lamp& lamp) {
       !(axes.determinant() > 0.0)) {
     refuse("its axes are no rotation; give three unit vectors at right angles, right-handed");
   }
-  if (lamp.intensity.size() != scene.bands.count() || !(lamp.intensity >= 0.0f).all() ||
-      !lamp.intensity.isFinite().all()) {
-    refuse("its intensity must be one finite number >= 0 per band");
-  }
+  check_light(scene, fmt::format("lamp '{}'", lamp.name), "its intensity", "W/sr", lamp.intensity);
   const LampOpening& opening = lamp.opening;
   for (const double size : {opening.along_c0, opening.along_c90}) {
     if (!(size >= 0.0 && std::isfinite(size))) {
@@ -240,6 +249,34 @@ void check_lamp(const Scene& scene, const Lamp& lamp) {
   }
   const auto* web = std::get_if<SharedWeb>(&lamp.shape);
   if (web && (!*web || (*web)->values().size() == 0)) refuse("its distribution is empty");
+}
+
+// Rays from a camera begin on its lens and pass its plane of focus.
+void check_camera(const Scene& scene, const Camera& camera) {
+  const auto refuse = [&](const std::string& what) {
+    fail(scene, fmt::format("camera '{}': {}", camera.name, what));
+  };
+  if (const std::string what = place_fault(camera.position); !what.empty()) refuse(what);
+  constexpr double rounding = 1e-6;
+  if (!(std::abs(camera.direction.norm() - 1.0) < rounding) ||
+      !(std::abs(camera.up.norm() - 1.0) < rounding)) {
+    refuse("its direction and upright must be unit vectors");
+  }
+  if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
+    refuse(fmt::format("its field of view is {:g} degrees; it must lie between 0 and 180",
+                       camera.fov_degrees));
+  }
+  if (!(camera.lens_radius >= 0.0 && camera.lens_radius <= farthest_coordinate)) {
+    refuse(fmt::format("the radius of its lens is {:g} m; it must lie between 0 and {:g} m",
+                       camera.lens_radius, farthest_coordinate));
+  }
+  if (!(camera.focus_distance >= smallest_scene && camera.focus_distance <= farthest_coordinate)) {
+    refuse(fmt::format("it focuses at {:g} m; the distance must lie between {:g} and {:g} m",
+                       camera.focus_distance, smallest_scene, farthest_coordinate));
+  }
+  if (!std::isfinite(camera.shutter_open) || !std::isfinite(camera.shutter_close)) {
+    refuse("the times of its shutter are not finite");
+  }
 }
 
 void check_motion(const Scene& scene, const std::string& what, int motion) {
@@ -284,6 +321,7 @@ void validate(const Scene& scene) {
   }
   for (const Material& material : scene.materials) check_material(scene, material);
   for (const Lamp& lamp : scene.lamps) check_lamp(scene, lamp);
+  for (const Camera& camera : scene.cameras) check_camera(scene, camera);
   if (scene.sky) {
     try {
       validate(*scene.sky, scene.bands);
@@ -309,6 +347,15 @@ void validate(const Scene& scene) {
         fail(scene, fmt::format("sphere '{}': its radius is {}; it must be positive", surface.name,
                                 sphere.radius));
       }
+    }
+  }
+  if (!scene.surfaces.empty()) {
+    const double diagonal = scene_bounds(scene).diagonal();
+    if (diagonal < smallest_scene) {
+      fail(scene,
+           fmt::format("all of the scene lies within {:g} m; check the unit: a scene must be "
+                       "larger than {:g} m",
+                       diagonal, smallest_scene));
     }
   }
   check_motions(scene);

@@ -142,6 +142,41 @@ struct Flaw {
   std::vector<const char*> message;
 };
 
+TEST(Validate, RefusesFiniteNumbersThatFloatsCannotCompute) {
+  const auto refused = [](const std::function<void(Scene&)>& change) {
+    Scene scene = sound_scene();
+    change(scene);
+    EXPECT_THROW(validate(scene), InputError);
+  };
+  refused([](Scene& scene) { scene.materials[1].emission[0] = 3e38f; });
+  for (const float light : {3e38f, 1e-30f, 1e-40f}) {
+    refused([&](Scene& scene) {
+      scene.materials[1].emission.setZero();
+      scene.materials[1].emission[2] = light;
+    });
+  }
+  refused([](Scene& scene) {
+    for (Eigen::Vector3d& p : plate(scene).vertices) p *= 1e-30;
+    scene.surfaces.resize(1);
+  });
+  const auto of_camera = [&](const std::function<void(Camera&)>& change) {
+    refused([&](Scene& scene) {
+      scene.cameras = {{.name = "eye"}};
+      EXPECT_NO_THROW(validate(scene));
+      change(scene.cameras[0]);
+    });
+  };
+  of_camera([](Camera& camera) { camera.lens_radius = 1e300; });
+  of_camera([](Camera& camera) { camera.focus_distance = 1e-300; });
+  of_camera([](Camera& camera) { camera.position.x() = 1e300; });
+  of_camera([](Camera& camera) { camera.fov_degrees = 180.0; });
+  of_camera([](Camera& camera) { camera.shutter_close = std::numeric_limits<double>::infinity(); });
+  // A dark band beside bright ones does no harm.
+  Scene scene = sound_scene();
+  scene.materials[1].emission[0] = 1e-40f;
+  EXPECT_NO_THROW(validate(scene));
+}
+
 TEST(Validate, NamesWhatIsWrongAndWhere) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN();
   constexpr float nanf = std::numeric_limits<float>::quiet_NaN();

@@ -210,7 +210,10 @@ const MitsubaShapes::MeshFile& MitsubaShapes::mesh_file(const MitsubaNode& shape
   const MitsubaNode* given = shape.property("filename");
   if (!given) shape.fail("lacks the property 'filename'");
   const auto path = tree_.file_named(*given, shape.string_or("filename", ""));
-  const auto number = static_cast<int>(shape.number_or("shape_index", 0.0));
+  const double index = shape.number_or("shape_index", 0.0);
+  constexpr double most = 1e9;
+  if (!(index >= 0.0 && index <= most)) shape.fail(fmt::format("has no shape_index {:g}", index));
+  const auto number = static_cast<int>(index);
   const auto known = files_.find({path, number, with_uv, fronts});
   if (known != files_.end()) return known->second;
   const std::string extension = "." + shape.type;

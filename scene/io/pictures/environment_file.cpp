@@ -19,6 +19,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/text_file.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {
@@ -233,6 +234,11 @@ std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem
     pixels = RgbeFile(path).read();
   } else {
     fail_environment(path, "is no environment map that is read: give an .exr or .hdr");
+  }
+  const float most = pixels.rgb.maxCoeff();
+  if (most > most_light) {
+    fail_environment(path,
+                     fmt::format("has a pixel of {:g}; at most {:g} is read", most, most_light));
   }
   try {
     return std::make_shared<const EnvironmentMap>(pixels.width, pixels.height,

@@ -70,8 +70,10 @@ bool begins_a_view(std::string_view word) {
 void set_size(const RadianceView& view, double half_width, double half_height, Camera& camera) {
   const double aspect = half_height / half_width;
   const double width = std::min(view.width, view.height / aspect);
+  // Angles near 0 and 180 degrees have aspects that are no numbers.
   const auto pixels = [](double count) {
-    return std::max(1, static_cast<int>(std::lround(count)));
+    return count >= 1.0 ? static_cast<int>(std::lround(std::min<double>(count, max_picture_edge)))
+                        : 1;
   };
   camera.width = pixels(width);
   camera.height = pixels(width * aspect);
