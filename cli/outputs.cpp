@@ -46,7 +46,8 @@ void require_writable(const fs::path& file) {
   command_files().outputs.push_back(file);
   for (const fs::path& input : command_files().inputs) refuse_same(file, input);
   std::error_code error;
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  const fs::path written = written_file(file);
+  const fs::path folder = written.has_parent_path() ? written.parent_path() : fs::path(".");
   if (!fs::is_directory(folder, error)) {
     refuse(file, fmt::format("there is no folder '{}'; make it first", folder.string()));
   }

@@ -65,8 +65,21 @@ int wait_for_disk(const fs::path& path, int flags) {
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::filesystem::path& target) : target_(target), temporary_(target) {
-  remove_leftovers(target);
+std::filesystem::path written_file(const std::filesystem::path& path) {
+  constexpr int most_links = 40;  // as Linux follows
+  fs::path file = path;
+  for (int links = 0; links < most_links; ++links) {
+    std::error_code error;
+    const fs::path next = fs::read_symlink(file, error);
+    if (error) return file;  // no link
+    file = file.parent_path() / next;
+  }
+  return path;
+}
+
+AtomicFile::AtomicFile(const std::filesystem::path& target)
+    : target_(written_file(target)), temporary_(target_) {
+  remove_leftovers(target_);
   // The process number keeps two programs that write the same file from sharing a temporary.
   temporary_ += fmt::format(".{}.part", ::getpid());
 }

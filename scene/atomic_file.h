@@ -7,10 +7,14 @@
 
 namespace lightwell {
 
+/// The file that is written under the name `path`: where `path` is a symbolic link, that to which
+/// the link leads, which need not exist.
+std::filesystem::path written_file(const std::filesystem::path& path);
+
 /// A file that appears under its name only when complete. The caller writes a temporary file in the
-/// same folder, and commit() renames it. Without commit() the destructor removes the temporary
-/// file. The constructor removes temporary files for the same target that processes left which were
-/// killed.
+/// same folder, and commit() renames it. Symbolic links stay (see written_file()). Without commit()
+/// the destructor removes the temporary file. The constructor removes temporary files for the same
+/// target that processes left which were killed.
 class AtomicFile {
  public:
   explicit AtomicFile(const std::filesystem::path& target);

@@ -14,9 +14,7 @@ std::string camera_name(std::string name, const Scene& scene) {
   const auto is_taken = [&] {
     return std::ranges::find(scene.cameras, name, &Camera::name) != scene.cameras.end();
   };
-  // File systems limit names to 255 bytes, extensions included.
-  constexpr std::size_t longest = 200;
-  if (name.empty() || name.starts_with('.') || name.size() > longest || is_taken()) {
+  if (name.empty() || name.starts_with('.') || name.size() > longest_camera_name || is_taken()) {
     name = fmt::format("camera{}", scene.cameras.size() + 1);
   }
   while (is_taken()) name += '_';

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <string>
 
+#include "scene/io/camera_name.h"
+#include "scene/io/numbered_names.h"
 #include "scene/utf8.h"
 
 namespace lightwell {
@@ -16,7 +18,7 @@ void clean_names(Scene& scene) {
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     std::string& name = scene.cameras[i].name;
     const std::string before = name;
-    name = plain_text(name);
+    name = shortened(plain_text(name), longest_camera_name);
     if (name == before) continue;
     const auto is_taken = [&] {
       return std::ranges::count(scene.cameras, name, &Camera::name) > 1;

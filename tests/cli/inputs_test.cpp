@@ -113,5 +113,32 @@ TEST_F(Inputs, StayInTheFolderOfTheSceneIfAskedTo) {
   EXPECT_EQ(run({"info", "cube.obj", "--inside-folder"}).code, 0);
 }
 
+// A link that is an output stays a link, and the file that it leads to is written.
+TEST_F(Inputs, OutputsAreWrittenThroughLinks) {
+  fs::create_directory(folder / "results");
+  fs::create_symlink("results/points.csv", folder / "points-link.csv");
+  const Words probe{"probe", "room.toml", "room.vtp", "--points", "points.csv", "--quiet", "-o"};
+  for (const char* const output : {"points-link.csv", "points-link.csv"}) {  // absent, then there
+    EXPECT_EQ(run(probe + Words{output}).code, 0);
+    EXPECT_TRUE(fs::is_symlink(folder / "points-link.csv"));
+    EXPECT_TRUE(fs::is_regular_file(folder / "results/points.csv"));
+  }
+  fs::create_symlink("nowhere/points.csv", folder / "astray.csv");
+  const Ended ended = run(probe + Words{"astray.csv"});
+  EXPECT_EQ(ended.code, 1);
+  EXPECT_TRUE(says(ended.err, "there is no folder"));
+}
+
+// Pictures are called after cameras, and names of files have at most 255 bytes.
+TEST_F(Inputs, NamesOfCamerasMakeNamesOfFiles) {
+  std::string room = small_room();
+  room.replace(room.find("\"door\""), 6, '"' + std::string(300, 'd') + '"');
+  folder.write("long.toml", room);
+  const Ended ended = run({"run", "long.toml", "-o", "pictures"});
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_TRUE(says(ended.err, "give at most 200"));
+  EXPECT_FALSE(fs::exists(folder / "pictures"));
+}
+
 }  // namespace
 }  // namespace lightwell::inputs_test

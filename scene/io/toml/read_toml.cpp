@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "scene/errors.h"
+#include "scene/io/camera_name.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
@@ -104,6 +105,10 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
         fmt::format("is '{}'; pictures are called after it, so it must not contain a slash "
                     "or start with a dot",
                     camera.name));
+  }
+  if (camera.name.size() > longest_camera_name) {
+    given->fail(fmt::format("is of {} bytes; pictures are called after it, so give at most {}",
+                            camera.name.size(), longest_camera_name));
   }
   const TomlTable table =
       value.renamed(fmt::format("camera '{}'", camera.name))
