@@ -12,16 +12,17 @@ constexpr std::size_t few = 5;  // names in a note
 }  // namespace
 
 Remarks::Remark& Remarks::record(std::string_view what, std::string_view name) {
-  auto found = std::find_if(remarks_.begin(), remarks_.end(),
-                            [&](const Remark& remark) { return remark.what == what; });
-  if (found == remarks_.end()) {
-    found = remarks_.insert(remarks_.end(), Remark{.what = std::string(what)});
+  auto found = numbers_.find(what);
+  if (found == numbers_.end()) {
+    found = numbers_.emplace(what, remarks_.size()).first;
+    remarks_.push_back({.what = std::string(what)});
   }
-  if (!found->known.contains(name)) {
-    found->known.emplace(name);
-    found->names.emplace_back(name);
+  Remark& remark = remarks_[found->second];
+  if (!remark.known.contains(name)) {
+    remark.known.emplace(name);
+    remark.names.emplace_back(name);
   }
-  return *found;
+  return remark;
 }
 
 void Remarks::add(std::string_view what, std::string_view name) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
@@ -55,6 +56,7 @@ class Remarks {
   static std::string sentence(const Remark& remark, std::size_t listed);
 
   std::vector<Remark> remarks_;
+  std::map<std::string, std::size_t, std::less<>> numbers_{};  // of remarks, by `what`
 };
 
 /// Appends a sentence on something left out, approximated or missing to Scene::notes and losses.

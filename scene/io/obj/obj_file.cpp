@@ -5,16 +5,23 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <unordered_map>
 
 namespace lightwell {
 namespace {
 
-int index_of_name(std::vector<std::string>& names, const std::string& name) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found != names.end()) return static_cast<int>(found - names.begin());
-  names.push_back(name);
-  return static_cast<int>(names.size()) - 1;
-}
+// Numbers names in the order of their first use.
+class Numbering {
+ public:
+  int of(const std::string& name, std::vector<std::string>& names) {
+    const auto [entry, is_new] = numbers_.emplace(name, static_cast<int>(names.size()));
+    if (is_new) names.push_back(name);
+    return entry->second;
+  }
+
+ private:
+  std::unordered_map<std::string, int> numbers_;
+};
 
 class ObjParser {
  public:
@@ -63,7 +70,7 @@ class ObjParser {
       group_ = trimmed(text);
       in_group_ = true;
     } else if (key == "usemtl") {
-      material_ = index_of_name(content_.material_names, std::string(trimmed(text)));
+      material_ = materials_.of(std::string(trimmed(text)), content_.material_names);
     } else if (key == "mtllib") {
       content_.material_files.emplace_back(trimmed(text));
     } else if (key == "curv" || key == "curv2" || key == "surf") {
@@ -184,7 +191,7 @@ class ObjParser {
                                    ? group_
                                    : fmt::format("{}/{}", object_, group_);
       current_group_ =
-          index_of_name(content_.groups, name.empty() ? file_.path().stem().string() : name);
+          groups_.of(name.empty() ? file_.path().stem().string() : name, content_.groups);
     }
     return current_group_;
   }
@@ -195,6 +202,7 @@ class ObjParser {
   std::string object_, group_;
   bool in_group_ = false;
   int current_group_ = -1, material_ = -1;
+  Numbering groups_, materials_;
   ObjContent content_;
 };
 

@@ -53,8 +53,10 @@ std::vector<Material> read_material_files(const std::filesystem::path& path,
 
 // Adds the file's materials to the scene in the order of first use. The key -1 (faces without a
 // material) maps to the default material.
-std::map<int, int> take_materials(const ObjContent& content, std::vector<Material> available,
+std::map<int, int> take_materials(const ObjContent& content, const std::vector<Material>& available,
                                   Scene& scene, Remarks& remarks) {
+  std::map<std::string, const Material*, std::less<>> by_name;  // the first of equal names
+  for (const Material& material : available) by_name.emplace(material.name, &material);
   std::map<int, int> taken;
   std::size_t faces_without = 0;
   for (const ObjFace& face : content.faces) {
@@ -65,10 +67,9 @@ std::map<int, int> take_materials(const ObjContent& content, std::vector<Materia
     Material material = default_material(scene.bands);
     if (face.material >= 0) {
       const auto& name = content.material_names[static_cast<std::size_t>(face.material)];
-      const auto found = std::find_if(available.begin(), available.end(),
-                                      [&](const Material& m) { return m.name == name; });
-      if (found != available.end()) {
-        material = *found;
+      const auto found = by_name.find(name);
+      if (found != by_name.end()) {
+        material = *found->second;
       } else {
         material.name = name;
         remarks.add("Materials are not defined and got a diffuse reflectance of 0.5", name);

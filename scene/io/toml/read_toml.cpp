@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "scene/errors.h"
 #include "scene/io/camera_name.h"
@@ -97,7 +98,9 @@ void read_toml_lens(const TomlTable& table, double metres_per_unit, Camera& came
   }
 }
 
-Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scene) {
+// `names`: of the cameras before this one.
+Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scene,
+                   std::set<std::string>& names) {
   const auto given = value.member("name");
   Camera camera{.name = given ? given->name() : fmt::format("camera{}", number)};
   if (camera.name.find_first_of("/\\") != std::string::npos || camera.name.starts_with('.')) {
@@ -114,8 +117,7 @@ Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scen
       value.renamed(fmt::format("camera '{}'", camera.name))
           .table({"name", "position", "direction", "look_at", "up", "fov", "size",
                   "aperture_radius", "f_number", "focus_distance", "blades", "shutter", "motion"});
-  const auto same = [&](const Camera& other) { return other.name == camera.name; };
-  if (std::any_of(scene.cameras.begin(), scene.cameras.end(), same)) {
+  if (!names.insert(camera.name).second) {
     table.fail("has a name that an earlier camera has; give it another");
   }
   const Eigen::Vector3d position = table.require("position").vector();
@@ -206,8 +208,9 @@ Scene read_toml(const std::filesystem::path& path) {
   if (const auto cameras = document.find("cameras")) {
     if (!cameras->is_array()) cameras->fail("must be an array of tables; write [[cameras]]");
     number = 0;
+    std::set<std::string> names;
     for (const auto& camera : cameras->elements("camera")) {
-      scene.cameras.push_back(read_camera(camera, ++number, scene));
+      scene.cameras.push_back(read_camera(camera, ++number, scene, names));
       have_shutter.push_back(camera.member("shutter") ? 1 : 0);
     }
   }
