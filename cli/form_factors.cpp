@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -72,7 +74,50 @@ struct Computed {
   ViewFactors factors{0};
   FormFactorReport report{};
   std::optional<double> error{};  // estimated error of the worst factor
+  bool has_rays_alone = false;    // `automatic` fell back on them: facets are cut to shreds
 };
+
+/// Facets that cross each other by the dozen are cut into very many patches. Pairs of these with
+/// partly hidden patches are too many for closed forms; but a facet's factors are means over its
+/// patches, whose rays are independent, so few rays for each of them suffice.
+bool are_facets_shredded(const PatchMesh& mesh, const ViewFactorRows& rows) {
+  constexpr int many = patches_of_closed_forms, of_each = 8;
+  return mesh.patch_count() > many && mesh.patch_count() / of_each > rows.count();
+}
+
+/// Standard error of a patch's rays that gives a row the target error: rows with one large patch
+/// need most rays.
+double target_of_patches(double target, const PatchMesh& mesh, const ViewFactorRows& rows) {
+  const auto count = static_cast<std::size_t>(rows.count());
+  std::vector<double> area(count, 0.0), squares(count, 0.0);
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    const int row = rows.of_patch[static_cast<std::size_t>(i)];
+    if (row < 0) continue;
+    area[static_cast<std::size_t>(row)] += mesh.area[i];
+    squares[static_cast<std::size_t>(row)] += mesh.area[i] * mesh.area[i];
+  }
+  double least_even = 0.0;
+  for (std::size_t row = 0; row < count; ++row) {
+    if (area[row] > 0.0) least_even = std::max(least_even, std::sqrt(squares[row]) / area[row]);
+  }
+  return least_even > 0.0 ? target / least_even : target;
+}
+
+/// Options of rays alone for shredded facets: as many as any share of them needs for the target, or
+/// those of a minute or two.
+void take_rays_alone(double target, const PatchMesh& mesh, const ViewFactorRows& rows,
+                     FormFactorOptions& options) {
+  constexpr unsigned most_rays = 1u << 26;
+  const double error = target_of_patches(target, mesh, rows);
+  const auto most = std::bit_floor(most_rays / static_cast<unsigned>(mesh.patch_count()));
+  const double needed = std::clamp(0.25 / (error * error), 1.0, static_cast<double>(most));
+  options.method = FormFactorMethod::ray_cast;
+  options.target_error = error;
+  options.rays_per_patch =
+      std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(needed)))),
+                 options.rays_per_patch, options.most_rays_per_patch);
+  options.most_rays_per_patch = options.rays_per_patch;
+}
 
 /// Computes the factors on the mesh that suits `method`.
 Computed compute_as(FormFactorMethod method, const FormFactorArguments& arguments,
@@ -104,6 +149,11 @@ Computed compute_as(FormFactorMethod method, const FormFactorArguments& argument
   options.memory = std::make_shared<MemoryBudget>(
       MemoryOptions{.limit = arguments.memory, .folder = fs::path(arguments.output).parent_path()});
   options.run.progress = console.progress();
+  computed.has_rays_alone = method == FormFactorMethod::automatic && !per_patch &&
+                            are_facets_shredded(computed.mesh, computed.rows);
+  if (computed.has_rays_alone) {
+    take_rays_alone(arguments.target_error, computed.mesh, computed.rows, options);
+  }
   const auto form_factors =
       compute_form_factors({view.scene, caster, no_light}, options, &computed.report);
   console.finish_phase();
@@ -224,15 +274,22 @@ void write_files(const FormFactorArguments& arguments, const NumberedScene& numb
   }
 }
 
-std::string shortfall(const FormFactorArguments& arguments, double error) {
+std::string shortfall(const FormFactorArguments& arguments, const Computed& computed) {
   const std::string remedy = arguments.method == "ray-cast"
                                  ? " --method auto finds factors between polygons without rays."
                                  : "";
+  if (computed.has_rays_alone) {
+    return fmt::format(
+        "The worst factor has an estimated error of {:.1e}, above the target error of {:g}; "
+        "'--method "
+        "ray-cast' goes on for as long as it takes.",
+        *computed.error, arguments.target_error);
+  }
   return fmt::format(
       "The worst factor has an estimated error of {:.1e}, above the target error of {:g}; rows "
       "have "
       "{} rays at most.{}",
-      error, arguments.target_error, FormFactorOptions{}.most_rays_per_patch, remedy);
+      *computed.error, arguments.target_error, FormFactorOptions{}.most_rays_per_patch, remedy);
 }
 
 int form_factors(const FormFactorArguments& arguments, Console& console) {
@@ -258,7 +315,13 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
         "No facet sees another; the front of a facet is where its corners run counter-clockwise.");
   }
   const bool falls_short = is_short(computed, arguments);
-  if (falls_short) notes.push_back(shortfall(arguments, *computed.error));
+  if (computed.has_rays_alone) {
+    notes.push_back(fmt::format(
+        "The facets cross or touch each other in so many places that they are cut into {} patches; "
+        "their factors are counts of rays, as with '--method ray-cast'.",
+        computed.mesh.patch_count()));
+  }
+  if (falls_short) notes.push_back(shortfall(arguments, computed));
   if (!computed.error) {
     notes.push_back(
         fmt::format("The method {} has no estimate of its error; --target-error has no effect.",

@@ -317,6 +317,13 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
               add_form_factor_inputs(print, lit.scene, lit.direct_light, mesh, options);
             }};
   };
+  std::vector<float> count_error;
+  if (options.method == FormFactorMethod::ray_cast) {
+    for (int i = 0; i < mesh.patch_count(); ++i) {
+      const auto rays = static_cast<float>(estimate.rows.rays(i));
+      count_error.push_back(rays > 0.0f ? 0.5f / std::sqrt(rays) : 0.0f);
+    }
+  }
   auto result = assemble_form_factors(mesh, std::move(estimate.rows), std::move(estimate.known),
                                       {.enforce_closure = options.enforce_closure,
                                        .budget = budget,
@@ -326,6 +333,7 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
   if (report) {
     report->row_error = std::move(estimate.row_error);
     report->row_bias = std::move(estimate.row_bias);
+    report->count_error = std::move(count_error);
     for (std::size_t i = 0; i < report->row_error.size(); ++i) {
       report->row_error[i] = std::max(report->row_error[i], report->closure_shift[i]);
     }

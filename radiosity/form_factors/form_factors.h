@@ -126,6 +126,9 @@ struct FormFactorReport {
   /// Estimated error of the worst F_ij of each row: standard error of sampled parts, bounds of the
   /// others, and closure_shift where that is larger. Empty: not estimated.
   std::vector<float> row_error{};
+  /// Bound of the standard error of any sum of the F_ij of a row whose rays are counted, 1 / (2
+  /// sqrt(rays)). Empty: not all factors are counts (`ray_cast` alone has them).
+  std::vector<float> count_error{};
   /// Bound of the errors of the closed forms of each row, summed over the row, since they may all
   /// have the same sign. Empty: 0.
   std::vector<float> row_bias{};

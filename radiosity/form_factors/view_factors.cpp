@@ -167,10 +167,14 @@ double error_estimate(const FormFactorReport& report, const FormFactors& form_fa
     };
     for_each_row([&](int& count) { most = std::max(most, ++count); });
     for_each_row([](int& count) { count = 0; });
-    const double error =
-        mesh.area[i] * static_cast<double>(report.row_error[static_cast<std::size_t>(i)]);
+    const auto error = static_cast<double>(report.row_error[static_cast<std::size_t>(i)]);
+    double variance = most * error * error;
+    if (!report.count_error.empty()) {
+      const auto of_share = static_cast<double>(report.count_error[static_cast<std::size_t>(i)]);
+      variance = std::min(variance, std::max(error * error, of_share * of_share));
+    }
     area[static_cast<std::size_t>(row)] += mesh.area[i];
-    squares[static_cast<std::size_t>(row)] += most * error * error;
+    squares[static_cast<std::size_t>(row)] += mesh.area[i] * mesh.area[i] * variance;
     if (report.row_bias.empty()) continue;
     bias[static_cast<std::size_t>(row)] +=
         mesh.area[i] * static_cast<double>(report.row_bias[static_cast<std::size_t>(i)]);

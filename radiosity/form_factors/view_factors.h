@@ -57,7 +57,9 @@ double reciprocity_error(const ViewFactors& view_factors);
 /// Estimated error of the worst F_IJ, for independent errors e_i of the worst F_ij of each patch
 /// (row_error of the report) and bounds b_i of the errors of a patch that may all have the same
 /// sign (row_bias): max_I sqrt(sum_{i in I} (A_i / A_I)^2 n_i e_i^2) + sum_{i in I} (A_i / A_I)
-/// b_i. n_i is the largest number of F_ij > 0 of patch i that belong to the same row.
+/// b_i. n_i is the largest number of F_ij > 0 of patch i that belong to the same row. Where rays
+/// are counted, n_i e_i^2 is at most the variance of any share of the rays (count_error of the
+/// report).
 double error_estimate(const FormFactorReport& report, const FormFactors& form_factors,
                       const PatchMesh& mesh, const std::vector<int>& row_of_patch);
 

@@ -98,6 +98,19 @@ TEST(ViewFactors, ErrorsOfIndependentPatchesAddUpAsSquares) {
               row_1, 1e-9);
 }
 
+// The two factors of row 1 are parts of one count: their sum has the variance of a share of the
+// rays.
+TEST(ViewFactors, ErrorsOfCountsAreThoseOfTheirSum) {
+  const auto row_1 = [](float count_error) {
+    return error_estimate(
+        {.row_error = {0.0f, 0.0f, 1e-3f, 1.0f}, .count_error = {0.0f, 0.0f, count_error, 1.0f}},
+        given(), mesh_of_areas(), {0, 0, 1, -1});
+  };
+  EXPECT_NEAR(row_1(1.2e-3f), 1.2e-3, 1e-9);
+  EXPECT_NEAR(row_1(1e-2f), 1e-3 * std::sqrt(2.0), 1e-9) << "no more than the sum of variances";
+  EXPECT_NEAR(row_1(1e-6f), 1e-3, 1e-9) << "no less than one of them";
+}
+
 std::string content(const std::filesystem::path& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
