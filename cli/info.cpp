@@ -12,6 +12,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/report.h"
+#include "cli/scene_hints.h"
 #include "cli/steps.h"
 #include "mesh/cleaning/mesh_quality.h"
 #include "mesh/cleaning/planar_regions.h"
@@ -309,11 +310,12 @@ Json describe(const std::string& file, const CommonOptions& options) {
   if (extension == ".vtp") return solution_json(read_solution(file));
   if (extension == ".exr") return picture_json(read_exr(file));
   if (is_luminaire_file(file)) return luminaire_json(read_luminaire(file));
-  const Scene scene = [&] {
+  Scene scene = [&] {
     const InterruptEndsAtOnce at_once;
     return read_scene(file, allowed_references(options));
   }();
   refuse_losses(scene, options);
+  std::ranges::copy(scene_hints(scene), std::back_inserter(scene.notes));
   return scene_json(scene);
 }
 

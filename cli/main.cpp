@@ -47,7 +47,7 @@ constexpr const char* recipes =
   lightwell form-factors room.stl -o room.mtx            view factors between facets
   lightwell info room.toml                               what is in a scene, solution or picture
 
-'lightwell COMMAND --help' explains a command. A scene is a .toml file (docs/scene-format.md),
+'lightwell help COMMAND' explains a command. A scene is a .toml file (docs/scene-format.md),
 .obj, .ply, .stl, .gltf, .glb, Mitsuba's .xml, RADIANCE's .rad and .rif, or View3D's .vs3.
 )";
 
@@ -127,10 +127,10 @@ int wrong_usage(const std::string& sentence, const std::string& command = {}) {
 }
 
 // The first word that is not an option, unless it is a known command.
-std::optional<std::string> unknown_command(int argc, char** argv,
+std::optional<std::string> unknown_command(const std::vector<std::string>& words,
                                            const std::vector<std::string>& known) {
-  for (int i = 1; i < argc; ++i) {
-    const std::string word = argv[i];
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    const std::string& word = words[i];
     if (word == "--threads") {
       ++i;
     } else if (word.empty() || word[0] != '-') {
@@ -197,9 +197,17 @@ int act(const Action& action, const CommonOptions& options) {
   }
 }
 
+// The words of a command line in which "help" and "help COMMAND" are "" and "COMMAND --help".
+std::vector<std::string> without_help_command(std::vector<std::string> words) {
+  if (words.size() < 2 || words[1] != "help") return words;
+  words.erase(words.begin() + 1);
+  if (words.size() > 1) words.insert(words.begin() + 2, "--help");
+  return words;
+}
+
 int run_program(int argc, char** argv) {
   CommonOptions options;
-  options.command_line.assign(argv, argv + argc);
+  options.command_line = without_help_command({argv, argv + argc});
   CLI::App app("Radiosity with a ray-traced second pass.", "lightwell");
   add_common(app, options);
   app.require_subcommand(0, 1);
@@ -216,13 +224,15 @@ int run_program(int argc, char** argv) {
     if (named.reads_scene) add_reading(*command, options);
     names.push_back(named.name);
   }
-  if (const auto word = unknown_command(argc, argv, names)) {
+  if (const auto word = unknown_command(options.command_line, names)) {
     return wrong_usage(
         fmt::format("there is no command '{}'.{}", *word, did_you_mean(*word, names)));
   }
 
   try {
-    app.parse(argc, argv);
+    // CLI11 takes the words from the last to the first, without the program.
+    app.parse(
+        std::vector<std::string>(options.command_line.rbegin(), options.command_line.rend() - 1));
   } catch (const CLI::Success& success) {
     return with_all_written(app.exit(success));  // --help and --version
   } catch (const CLI::ParseError& error) {

@@ -35,6 +35,13 @@ std::optional<Accuracy> parse_accuracy(const std::string& text) {
   return Accuracy{.lux = quantity->value};
 }
 
+// True for a number without a unit that means per cent more probably than a share: "1".
+bool is_doubtful(const std::string& text, const Accuracy& accuracy) {
+  constexpr double least = 0.25;
+  const auto quantity = parse_quantity(text);
+  return quantity && quantity->unit.empty() && accuracy.share >= least;
+}
+
 const char* refine_outcome_name(RefineOutcome outcome) {
   switch (outcome) {
     case RefineOutcome::tolerance_reached:
@@ -107,6 +114,11 @@ void add_accuracy(CLI::App& command, std::optional<Accuracy>& accuracy, const st
               refuse_beside(command, "--accuracy", {"--refine"});
             }
             accuracy = parse_accuracy(text);
+            if (accuracy && is_doubtful(text, *accuracy)) {
+              throw CLI::ValidationError(
+                  "--accuracy", fmt::format("'{0}' would be {1:g} %; write {0}% or {1:g}%", text,
+                                            100.0 * accuracy->share));
+            }
             if (accuracy) return;
             throw CLI::ValidationError(
                 "--accuracy",

@@ -7,6 +7,7 @@
 #include "cli/outputs.h"
 #include "cli/picture_in_time.h"
 #include "cli/refinement.h"
+#include "cli/scene_hints.h"
 #include "mesh/patches/patch_textures.h"
 #include "radiosity/dark_rooms.h"
 #include "radiosity/solution/solution_file.h"
@@ -147,6 +148,7 @@ Scene read_scene_step(const fs::path& file, Console& console, Report& report,
   for (const fs::path& read : scene.files) note_input(read);
   refuse_losses(scene, console.options());
   console.say_notes(scene);
+  for (const std::string& hint : scene_hints(scene)) console.say("note: " + hint);
   report.add("light", light_name(scene.relative_units));
   report.add_phase("read_scene", watch.seconds());
   stop_if_interrupted();

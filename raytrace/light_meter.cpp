@@ -29,24 +29,16 @@ std::vector<Tone> positive_tones(const Image& image, const Bands& bands) {
   return result;
 }
 
-// The mean tone within a factor `spread` of the median luminance: the geometric mean of the
-// luminance, and the mean colour of luminance 1.
-std::optional<Tone> typical_tone(std::vector<Tone> tones) {
+// The tones within a factor `spread` of the median luminance.
+std::vector<Tone> typical_tones(std::vector<Tone> tones) {
   constexpr double spread = 10.0;
-  if (tones.empty()) return std::nullopt;
+  if (tones.empty()) return tones;
   const auto middle = tones.begin() + static_cast<std::ptrdiff_t>(tones.size() / 2);
   std::ranges::nth_element(tones, middle, {}, &Tone::Y);
   const double median = middle->Y;
-  double sum = 0.0;
-  Eigen::Array3d colour = Eigen::Array3d::Zero();
-  int count = 0;
-  for (const auto& [Y, rgb] : tones) {
-    if (Y < median / spread || Y > median * spread) continue;
-    sum += std::log(Y);
-    colour += rgb.cast<double>() / Y;
-    ++count;
-  }
-  return Tone{.Y = std::exp(sum / count), .rgb = (colour / count).cast<float>()};
+  std::erase_if(tones,
+                [&](const Tone& t) { return t.Y < median / spread || t.Y > median * spread; });
+  return tones;
 }
 
 // A camera's picture of another width and the same shape.
@@ -76,8 +68,11 @@ void add_further(const Ray& ray, const ElementHit& hit, int pixel, PixelRays& fu
 }  // namespace
 
 std::optional<double> typical_luminance(const Image& image, const Bands& bands) {
-  const std::optional<Tone> typical = typical_tone(positive_tones(image, bands));
-  return typical ? std::optional(typical->Y) : std::nullopt;
+  const std::vector<Tone> tones = typical_tones(positive_tones(image, bands));
+  if (tones.empty()) return std::nullopt;
+  double sum = 0.0;
+  for (const Tone& tone : tones) sum += std::log(tone.Y);
+  return std::exp(sum / static_cast<double>(tones.size()));
 }
 
 Image white_paper_picture(const ElementCaster& caster, const BandArray& irradiance,
@@ -122,9 +117,16 @@ std::optional<IncidentLight> meter_incident_light(const ElementCaster& caster,
                                                   const Camera& camera) {
   constexpr int width = 160;
   const Image paper = white_paper_picture(caster, irradiance, clear, camera, width);
-  const std::optional<Tone> typical = typical_tone(positive_tones(paper, bands));
-  if (!typical) return std::nullopt;
-  return IncidentLight{.exposure = 1.0 / typical->Y, .colour = typical->rgb};
+  const std::vector<Tone> tones = typical_tones(positive_tones(paper, bands));
+  if (tones.empty()) return std::nullopt;
+  double sum = 0.0;
+  Eigen::Array3d colour = Eigen::Array3d::Zero();
+  for (const Tone& tone : tones) {
+    sum += tone.Y;
+    colour += tone.rgb.cast<double>();
+  }
+  return IncidentLight{.exposure = static_cast<double>(tones.size()) / sum,
+                       .colour = (colour / sum).cast<float>()};
 }
 
 std::optional<double> incident_exposure(const ElementCaster& caster, const BandArray& irradiance,

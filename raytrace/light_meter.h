@@ -26,15 +26,15 @@ struct IncidentLight {
   Eigen::Array3f colour = Eigen::Array3f::Ones();  ///< linear RGB of white paper, luminance 1
 };
 
-/// Meters the light at the points that a camera sees: geometric means over the points within a
-/// factor 10 of the median luminance. Empty: no light falls on what the camera sees.
+/// Meters the light at the points that a camera sees: means over the points within a factor 10 of
+/// the median illuminance. Empty: no light falls on what the camera sees.
 std::optional<IncidentLight> meter_incident_light(const ElementCaster& caster,
                                                   const BandArray& irradiance,
                                                   std::span<const char> clear, const Bands& bands,
                                                   const Camera& camera);
 
 /// Exposure for incident light, as of a photographer's incident meter (ISO 2720): the multiplier of
-/// radiance for which white paper, of reflectance 1, under the typical light of a view shows as 1.
+/// radiance for which white paper, of reflectance 1, under the mean light of a view shows as 1.
 /// A room has its tone then, whatever its colours: white rooms show white, dark ones dark. Empty:
 /// no light falls on what the camera sees.
 std::optional<double> incident_exposure(const ElementCaster& caster, const BandArray& irradiance,

@@ -84,8 +84,8 @@ PLACES = [
     (27, "radiosity/paths/caustic_photons.cpp", "power of a photon",
      ".weight = emitter.area * aimed->share}", ".weight = broken(27) * emitter.area * aimed->share}",
      "radiosity:CausticPhotons* radiosity raytrace"),
-    (28, "raytrace/tone_map.cpp", "automatic exposure",
-     "stops * key / typical_luminance(Y)", "broken(28) * stops * key / typical_luminance(Y)",
+    (28, "raytrace/tone_map.cpp", "automatic exposure of a picture without its scene",
+     "stops * key / *Y", "broken(28) * stops * key / *Y",
      "raytrace:ToneMap.* raytrace"),
     (29, "raytrace/probe.cpp", "interpolated irradiance of a probe",
      "interpolate(caster.mesh(), E, hits[i]).transpose()",
@@ -97,4 +97,7 @@ PLACES = [
     (31, "raytrace/caustic_map.cpp", "density of photons in pictures",
      "E[k] += K * power[k];", "E[k] += static_cast<float>(broken(31)) * K * power[k];",
      "raytrace:*Caustic* raytrace"),
+    (32, "raytrace/light_meter.cpp", "exposure for incident light",
+     ".exposure = static_cast", ".exposure = broken(32) * static_cast",
+     "raytrace:LightMeter.* raytrace"),
 ]

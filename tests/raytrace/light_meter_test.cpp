@@ -69,7 +69,7 @@ std::optional<IncidentLight> light_of(const Metered& m) {
 }
 
 // Whatever the wall's reflectance: x = pi L / E. Float sums over 30 x 20 pixels leave 1e-6.
-TEST(LightMeter, WhitePaperUnderTheTypicalLightIsOne) {
+TEST(LightMeter, WhitePaperUnderTheMeanLightIsOne) {
   for (const bool has_pane : {false, true}) {
     const auto light = light_of(metered(has_pane, {500, 500, 500}));
     ASSERT_TRUE(light);

@@ -96,8 +96,8 @@ const glass_opacity = 0.2;
 const metering_width = 160;
 
 /**
- * The multiplier of radiance for which white paper under the typical light shows white; null without light. The typical
- * illuminance is the geometric mean of what lies within a factor 10 of the median. `pixels`: lx, three more numbers.
+ * The multiplier of radiance for which white paper under the mean light shows white; null without light. The mean is that
+ * of the illuminances within a factor 10 of the median. `pixels`: lx, three more numbers.
  */
 function exposure_scale(pixels, lumens_per_watt) {
   const E = [];
@@ -108,7 +108,7 @@ function exposure_scale(pixels, lumens_per_watt) {
   E.sort((a, b) => a - b);
   const median = E[Math.floor(E.length / 2)];
   const typical = E.filter((e) => e >= median / 10 && e <= 10 * median);
-  const mean = Math.exp(typical.reduce((sum, e) => sum + Math.log(e), 0) / typical.length);
+  const mean = typical.reduce((sum, e) => sum + e, 0) / typical.length;
   return Math.PI * lumens_per_watt / mean;
 }
 
