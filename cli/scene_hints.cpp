@@ -4,25 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <utility>
-#include <variant>
 
 namespace lightwell {
 namespace {
-
-Eigen::AlignedBox3d bounds_of(const Scene& scene) {
-  Eigen::AlignedBox3d box;
-  for (const Surface& surface : scene.surfaces) {
-    if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
-      for (const Eigen::Vector3d& vertex : mesh->vertices) box.extend(vertex);
-    } else {
-      const auto& sphere = std::get<Sphere>(surface.shape);
-      const auto radius = Eigen::Vector3d::Constant(sphere.radius);
-      box.extend(sphere.center - radius);
-      box.extend(sphere.center + radius);
-    }
-  }
-  return box;
-}
 
 // Halls, stadiums and streets are shorter than this; a room of 2 m in millimetres is longer.
 constexpr double longest_building = 1500.0;  // m
@@ -55,8 +39,9 @@ std::string lamp_hint(const Scene& scene, const Eigen::AlignedBox3d& box) {
 }  // namespace
 
 std::vector<std::string> scene_hints(const Scene& scene) {
-  const Eigen::AlignedBox3d box = bounds_of(scene);
-  if (box.isEmpty()) return {};
+  if (scene.surfaces.empty()) return {};
+  const Bounds bounds = scene_bounds(scene);
+  const Eigen::AlignedBox3d box(bounds.low, bounds.high);
   std::vector<std::string> hints;
   for (std::string hint : {size_hint(box), lamp_hint(scene, box)}) {
     if (!hint.empty()) hints.push_back(std::move(hint));

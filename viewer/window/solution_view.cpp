@@ -174,7 +174,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   look_.metered_scale = meter(start_camera_);
   look_.exposure_ev = options.exposure_ev;
   look_.mesh = options.mesh;
-  look_.unlit = !options.look_through;
+  look_.unlit = !options.look_through && !options.from_outside;
   look_.illuminance = options.illuminance;
   look_.measure = options.measure;
   look_.interpolation_error = options.interpolation_error;

@@ -59,7 +59,7 @@ struct ViewOptions {
   double eye_height = 0.0;    ///< of a walking person, m; 0: 1.6, less in a model
   bool walk = false;          ///< begin on foot, with gravity and collisions
   bool look_through = false;  ///< begin without surfaces that receive no light
-  bool from_outside = false;  ///< begin outside, with the whole scene in the picture
+  bool from_outside = false;  ///< begin outside, looking through, with all of the scene in view
   Annotations annotations{};  ///< for pictures off screen
 };
 

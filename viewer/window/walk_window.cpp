@@ -27,6 +27,10 @@ constexpr double message_duration = 4.0;  ///< s
 constexpr double drag_degrees = 120.0;    ///< angle of a drag across the whole window
 constexpr double wheel_share = 0.03;      ///< share of the scene's diagonal per click of the wheel
 
+bool is_inside(const Bounds& bounds, const Eigen::Vector3d& point) {
+  return (point.array() > bounds.low.array()).all() && (point.array() < bounds.high.array()).all();
+}
+
 /// The light before the first shot: emitters and ambient term.
 std::unique_ptr<SolvedScene> begin(const LiveSolve& live, SolvedScene dark) {
   auto begun = std::make_unique<SolvedScene>(std::move(dark));
@@ -173,6 +177,7 @@ Look WalkWindow::current_look() const {
   const auto [width, height] = size();
   Look look = view_->look();
   look.camera = fit_to_window(walk_.camera(), width, height);
+  if (is_opened_ && is_inside(view_->bounds(), look.camera.position)) look.unlit = true;
   return look;
 }
 
@@ -194,7 +199,11 @@ void WalkWindow::show_all() {
   const auto [width, height] = size();
   walk_.place(
       frame_all(view_->bounds(), walk_.camera().direction, view_->up_axis(), width, height));
-  change(current_look());
+  Look look = current_look();
+  // A closed room shows its black outside; without surfaces that get no light one sees into it.
+  is_opened_ = is_opened_ || look.unlit;
+  look.unlit = false;
+  change(look);
 }
 
 void WalkWindow::expose(double stops) {
@@ -253,6 +262,7 @@ void WalkWindow::switch_mesh() {
 void WalkWindow::switch_unlit() {
   Look look = current_look();
   look.unlit = !look.unlit;
+  is_opened_ = false;
   change(look);
 }
 

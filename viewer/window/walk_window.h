@@ -156,6 +156,7 @@ class WalkWindow {
   void replace_view(const SolvedScene& solved);
 
   ViewOptions options_;
+  bool is_opened_ = false;  // surfaces without light are left out as long as one is outside
   std::unique_ptr<SolvedScene> own_;  ///< copy whose light changes; null: the caller's is shown
   LiveSolve* live_;
   std::unique_ptr<SolutionView> view_;

@@ -109,6 +109,22 @@ TEST_F(WalkWindowTest, FShowsTheWholeScene) {
   EXPECT_GT((camera.position - Eigen::Vector3d(1, 1, 1)).norm(), 2.0 * std::sqrt(3.0));
 }
 
+/// Seen from outside, surfaces without light are left out; inside they are back.
+TEST_F(WalkWindowTest, AClosedRoomOpensUpForAViewFromOutside) {
+  EXPECT_TRUE(window_.look().unlit);
+  tap("f");
+  EXPECT_FALSE(window_.look().unlit);
+  tap("Home");
+  window_.tick(0.1);
+  const Eigen::Vector3d& at = window_.look().camera.position;
+  const bool is_inside = (at.array() > 0.0).all() && (at.array() < 2.0).all();
+  EXPECT_EQ(window_.look().unlit, is_inside);
+  tap("x");
+  const bool chosen = window_.look().unlit;
+  tap("Home");
+  EXPECT_EQ(window_.look().unlit, chosen);
+}
+
 /// Without a running solve there is no unshot light to show.
 TEST_F(WalkWindowTest, FalseColoursShowLuminanceOrIlluminance) {
   tap("u");
