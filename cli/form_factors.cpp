@@ -281,14 +281,12 @@ std::string shortfall(const FormFactorArguments& arguments, const Computed& comp
   if (computed.has_rays_alone) {
     return fmt::format(
         "The worst factor has an estimated error of {:.1e}, above the target error of {:g}; "
-        "'--method "
-        "ray-cast' goes on for as long as it takes.",
+        "'--method ray-cast' goes on for as long as it takes.",
         *computed.error, arguments.target_error);
   }
   return fmt::format(
       "The worst factor has an estimated error of {:.1e}, above the target error of {:g}; rows "
-      "have "
-      "{} rays at most.{}",
+      "have {} rays at most.{}",
       *computed.error, arguments.target_error, FormFactorOptions{}.most_rays_per_patch, remedy);
 }
 
