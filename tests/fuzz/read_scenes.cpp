@@ -1,0 +1,84 @@
+// Targets of scenes and of the meshes that scenes name.
+#include "scene/errors.h"
+#include "scene/io/lighting_design.h"
+#include "scene/io/mesh_file.h"
+#include "scene/io/mitsuba/mitsuba_serialized.h"
+#include "scene/io/read_scene.h"
+#include "scene/scene.h"
+#include "tests/fuzz/input_file.h"
+#include "tests/fuzz/target.h"
+
+namespace lightwell::fuzz {
+namespace {
+
+// Reads a scene, and walks over all of the scene as its hash does.
+Scene read_all(const std::string& name, std::string_view bytes) {
+  Scene scene = read_scene(input_file(name, bytes));
+  validate(scene);
+  scene_hash(scene);
+  return scene;
+}
+
+}  // namespace
+
+void read_toml_scene(std::string_view bytes) {
+  read_lighting_design(read_all("scene.toml", bytes));
+}
+
+// One input is both files, so that names of materials meet: lines behind "#mtl" are the MTL.
+void read_obj_and_mtl(std::string_view bytes) {
+  constexpr std::string_view border = "#mtl\n";
+  const std::size_t at = bytes.find(border);
+  const std::string_view mtl =
+      at == std::string_view::npos ? std::string_view() : bytes.substr(at + border.size());
+  input_file("scene.mtl", mtl);
+  read_all("scene.obj", bytes.substr(0, at));
+}
+
+void read_gltf_scene(std::string_view bytes) {
+  read_all("scene.gltf", bytes);
+}
+
+void read_glb_scene(std::string_view bytes) {
+  read_all("scene.glb", bytes);
+}
+
+void read_radiance_scene(std::string_view bytes) {
+  read_all("scene.rad", bytes);
+}
+
+void read_radiance_project(std::string_view bytes) {
+  read_all("scene.rif", bytes);
+}
+
+void read_mitsuba_scene(std::string_view bytes) {
+  read_all("scene.xml", bytes);
+}
+
+// The first two meshes of the file: the table at its end tells where the second is.
+void read_serialized(std::string_view bytes) {
+  const auto path = input_file("mesh.serialized", bytes);
+  for (const int number : {1, 0}) {
+    try {
+      FilePolygons polygons;
+      validate(read_serialized_file(path, number, MeshMaterials::with_uv, polygons,
+                                    MeshFronts::from_normals));
+    } catch (const InputError&) {
+      if (number == 0) throw;
+    }
+  }
+}
+
+void read_view3d(std::string_view bytes) {
+  read_all("scene.vs3", bytes);
+}
+
+void read_ply(std::string_view bytes) {
+  read_all("scene.ply", bytes);
+}
+
+void read_stl(std::string_view bytes) {
+  read_all("scene.stl", bytes);
+}
+
+}  // namespace lightwell::fuzz
