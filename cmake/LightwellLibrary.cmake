@@ -3,7 +3,7 @@ add_library(lightwell_warnings INTERFACE)
 target_compile_options(lightwell_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
                        -Woverloaded-virtual -Wno-missing-field-initializers
                        # GCC 13 and later take any reference returned by a call with a temporary for a dangling one.
-                       -Wno-dangling-reference
+                       $<$<CXX_COMPILER_ID:GNU>:-Wno-dangling-reference>
                        $<$<BOOL:${LIGHTWELL_WERROR}>:-Werror>)
 
 function(lightwell_compile_settings target)
