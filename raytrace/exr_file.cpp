@@ -21,6 +21,7 @@
 #include "raytrace/picture_output.h"
 #include "scene/atomic_file.h"
 #include "scene/errors.h"
+#include "scene/io/pictures/exr_header.h"
 
 namespace lightwell {
 namespace {
@@ -258,6 +259,7 @@ Image read_exr(const std::filesystem::path& path, ExrChannels which) {
   if (!std::filesystem::is_regular_file(path)) {
     throw InputError(fmt::format("{}: there is no such file", name));
   }
+  check_exr_header(path);
   try {
     Imf::InputFile file(name.c_str());
     return read_image(file, name, which);

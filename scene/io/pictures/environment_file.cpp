@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "scene/errors.h"
+#include "scene/io/pictures/exr_header.h"
 #include "scene/io/text_file.h"
 #include "scene/limits.h"
 
@@ -52,6 +53,7 @@ void check_environment_size(const std::filesystem::path& path, std::int64_t widt
 }
 
 EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
+  check_exr_header(path);
   try {
     Imf::InputFile file(path.string().c_str());
     const auto window = file.header().dataWindow();
