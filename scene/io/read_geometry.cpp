@@ -7,7 +7,10 @@
 #include <assimp/Importer.hpp>
 #include <cctype>
 #include <fstream>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "scene/errors.h"
 #include "scene/io/convex_cut.h"
@@ -25,36 +28,67 @@ namespace {
   throw InputError(fmt::format("{}: {}", path.string(), what));
 }
 
-// Checks the header because the PLY reader of assimp 5.2 never returns from a truncated header,
-// trusts any count, and takes a name that begins with digits for a count.
-void check_ply_header(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  const auto bytes = static_cast<double>(std::filesystem::file_size(path));
-  std::string line;
-  for (int number = 1; std::getline(stream, line); ++number) {
-    std::string_view rest = line;
-    const std::string_view key = next_word(rest);
-    if (number == 1 && key != "ply")
-      fail_geometry(path, "this is no PLY file; its first line must be 'ply'");
-    if (key == "end_header" && !stream.eof()) return;
-    if (key != "element") continue;
-    const std::string_view name = next_word(rest);
-    if (name.empty() || std::isdigit(static_cast<unsigned char>(name.front())) != 0) {
-      throw InputError(fmt::format(
-          "{}:{}: the name of an element must begin with a letter; the file was damaged",
-          path.string(), number));
+// Checks a PLY header, since the reader of assimp 5.2 never returns from a truncated one, skips
+// lines that it does not know, trusts any count, takes a name that begins with digits for a count,
+// and writes beyond its faces for a second element of the same name.
+class PlyHeader {
+ public:
+  explicit PlyHeader(const std::filesystem::path& path)
+      : path_(path), bytes_(static_cast<double>(std::filesystem::file_size(path))) {}
+
+  void check() {
+    std::ifstream stream(path_, std::ios::binary);
+    for (number_ = 1; std::getline(stream, line_); ++number_) {
+      std::string_view rest = line_;
+      const std::string_view key = next_word(rest);
+      if (number_ == 1) {
+        if (key != "ply") fail_geometry(path_, "this is no PLY file; its first line must be 'ply'");
+      } else if (key == "end_header") {
+        if (!stream.eof()) return;
+      } else if (key == "element") {
+        check_element(rest);
+      } else if (key == "format" || key == "property") {
+        require(std::exchange(was_format_, true) != (key == "format"),
+                "the header must have one format, before its elements");
+      } else {
+        require(key.empty() || key == "comment" || key == "obj_info",
+                "the header of a PLY file has no such line");
+      }
     }
-    const std::string_view given = next_word(rest);
-    const auto count = parse_finite(given);
-    if (!count || !(*count >= 0.0 && *count <= bytes)) {
-      throw InputError(fmt::format(
-          "{}:{}: the file is too short for so many of '{}' ({}); it was damaged or cut "
-          "off",
-          path.string(), number, excerpt(name), excerpt(given)));
+    fail_geometry(path_,
+                  "the header does not end with 'end_header'; the file was damaged or cut off");
+  }
+
+ private:
+  void require(bool holds, std::string_view what_is_wrong) const {
+    if (holds) return;
+    throw InputError(fmt::format("{}:{}: {} ({}); the file was damaged", path_.string(), number_,
+                                 what_is_wrong, trimmed(line_)));
+  }
+
+  void check_element(std::string_view rest) {
+    const std::string_view name = next_word(rest);
+    require(!name.empty() && std::isdigit(static_cast<unsigned char>(name.front())) == 0,
+            "the name of an element must begin with a letter");
+    require(std::ranges::find(elements_, name) == elements_.end(),
+            "an earlier element has the same name");
+    elements_.emplace_back(name);
+    const auto count = parse_finite(next_word(rest));
+    if (!count || !(*count >= 0.0 && *count <= bytes_)) {
+      throw InputError(
+          fmt::format("{}:{}: the file is too short for so many of '{}' ({}); it was damaged or "
+                      "cut off",
+                      path_.string(), number_, name, trimmed(line_)));
     }
   }
-  fail_geometry(path, "the header does not end with 'end_header'; the file was damaged or cut off");
-}
+
+  const std::filesystem::path& path_;
+  double bytes_ = 0.0;
+  int number_ = 0;
+  std::string line_;
+  std::vector<std::string> elements_;
+  bool was_format_ = false;
+};
 
 PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, double metres_per_unit,
                       bool with_uv, MeshFronts fronts, FilePolygons& polygons) {
@@ -110,7 +144,7 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const aiMesh& mesh, dou
 Scene read_geometry_file(const std::filesystem::path& path, double metres_per_unit,
                          MeshMaterials materials, FilePolygons* polygons, MeshFronts fronts) {
   require_readable(path);
-  if (lower_extension(path) == ".ply") check_ply_header(path);
+  if (lower_extension(path) == ".ply") PlyHeader(path).check();
   Assimp::Importer importer;
   const aiScene* file = importer.ReadFile(path.string(), aiProcess_ValidateDataStructure);
   if (!file)
