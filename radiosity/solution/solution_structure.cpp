@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -118,6 +119,17 @@ class StructureCheck {
   }
 
  private:
+  struct Blocks {
+    std::vector<std::uint64_t> compressed{};  // bytes of each
+    std::uint64_t size = 0, last = 0;         // bytes of the others and of the last, uncompressed
+    std::int64_t place = 0;                   // of the first in the file
+    // Uncompressed, of all. No sum overflows: a file has less than 2^53 bytes, each makes 1032.
+    std::int64_t bytes() const {
+      if (compressed.empty()) return 0;
+      return static_cast<std::int64_t>((compressed.size() - 1) * size + last);
+    }
+  };
+
   void require(bool holds, const std::string& what_is_wrong) const {
     if (holds) return;
     throw InputError(
@@ -160,14 +172,39 @@ class StructureCheck {
   }
 
   void check_cells(const pugi::xml_node& parent, std::int64_t cells) {
+    std::int64_t corners = 0, end = 0;
     for (const pugi::xml_node& node : parent) {
       const StoredArray array(path_, node);
-      const std::int64_t bytes = blocks_of(array).bytes(), each = bytes_of(array.type());
+      const Blocks blocks = blocks_of(array);
+      const std::int64_t bytes = blocks.bytes(), each = bytes_of(array.type());
       array.require(each == 8 || each == 4, "the type is no whole number");
       const bool is_offset = array.name() == "offsets";
       array.require(is_offset ? bytes == cells * each : bytes <= 4 * cells * each,
                     "the count of values is wrong");
+      if (is_offset) {
+        end = each == 8 ? last_offset<std::int64_t>(array, blocks)
+                        : last_offset<std::int32_t>(array, blocks);
+      } else {
+        corners = bytes / each;
+      }
     }
+    // VTK takes memory for as many corners as the last offset says.
+    require(end == corners, "its polygons have another number of corners than they say");
+  }
+
+  template <class Number>
+  std::int64_t last_offset(const StoredArray& array, const Blocks& blocks) {
+    Number last = 0;
+    for_each_block(array, blocks, [&](const std::vector<unsigned char>& contents) {
+      array.require(contents.size() % sizeof(Number) == 0, "a block ends within a number");
+      for (std::size_t at = 0; at < contents.size(); at += sizeof(Number)) {
+        Number next;
+        std::memcpy(&next, contents.data() + at, sizeof next);
+        array.require(next >= last, "the offsets fall");
+        last = next;
+      }
+    });
+    return last;
   }
 
   void check_array(const StoredArray& array, std::int64_t tuples) {
@@ -193,17 +230,6 @@ class StructureCheck {
     require(static_cast<bool>(file_), "its appended data end early");
     return words;
   }
-
-  struct Blocks {
-    std::vector<std::uint64_t> compressed{};  // bytes of each
-    std::uint64_t size = 0, last = 0;         // bytes of the others and of the last, uncompressed
-    std::int64_t place = 0;                   // of the first in the file
-    // Uncompressed, of all. No sum overflows: a file has less than 2^53 bytes, each makes 1032.
-    std::int64_t bytes() const {
-      if (compressed.empty()) return 0;
-      return static_cast<std::int64_t>((compressed.size() - 1) * size + last);
-    }
-  };
 
   // The head of an array: the number of blocks, two sizes, and the compressed size of each block.
   Blocks blocks_of(const StoredArray& array) {
@@ -239,23 +265,32 @@ class StructureCheck {
     constexpr std::int64_t longest = std::int64_t{1} << 30u;
     const std::int64_t bytes = blocks.bytes();
     array.require(count <= bytes && bytes <= longest, "the count of values is wrong");
+    std::int64_t ends = 0;
+    bool has_ended = true;
+    for_each_block(array, blocks, [&](const std::vector<unsigned char>& contents) {
+      ends += std::ranges::count(contents, '\0');
+      if (!contents.empty()) has_ended = contents.back() == '\0';
+    });
+    array.require(ends == count && has_ended, "a text does not end");
+  }
+
+  // Uncompresses the blocks of an array one by one.
+  template <class Visit>
+  void for_each_block(const StoredArray& array, const Blocks& blocks, Visit visit) {
     vtkNew<vtkZLibDataCompressor> compressor;
-    std::string text(static_cast<std::size_t>(bytes), '\1');
-    std::size_t begin = 0;
+    std::vector<unsigned char> packed, contents;
     file_.seekg(static_cast<std::streamoff>(blocks.place));
     for (std::size_t b = 0; b < blocks.compressed.size(); ++b) {
-      std::vector<unsigned char> packed(static_cast<std::size_t>(blocks.compressed[b]));
+      packed.resize(static_cast<std::size_t>(blocks.compressed[b]));
       file_.read(reinterpret_cast<char*>(packed.data()),
                  static_cast<std::streamsize>(packed.size()));
       const std::size_t whole = b + 1 == blocks.compressed.size() ? blocks.last : blocks.size;
+      contents.resize(whole);
       const std::size_t made =
-          compressor->Uncompress(packed.data(), packed.size(),
-                                 reinterpret_cast<unsigned char*>(text.data()) + begin, whole);
-      array.require(made == whole, "the text is damaged");
-      begin += whole;
+          compressor->Uncompress(packed.data(), packed.size(), contents.data(), whole);
+      array.require(made == whole, "a block is damaged");
+      visit(std::as_const(contents));
     }
-    array.require(std::ranges::count(text, '\0') == count && (text.empty() || text.back() == '\0'),
-                  "a text does not end");
   }
 
   const std::filesystem::path& path_;
