@@ -213,10 +213,11 @@ int Journal::phase(std::string_view name, std::uint64_t fingerprint) {
 
 bool Journal::recall(int phase, int block, std::vector<std::byte>& bytes) const {
   const auto& phases = impl_->contents.phases;
-  const auto p = static_cast<std::size_t>(phase), b = static_cast<std::size_t>(block);
-  if (p >= phases.size() || b >= phases[p].blocks.size()) return false;
-  const JournalRange& place = phases[p].blocks[b];
-  if (place.offset == 0) return false;
+  const auto p = static_cast<std::size_t>(phase);
+  if (p >= phases.size()) return false;
+  const auto at = phases[p].blocks.find(static_cast<std::uint32_t>(block));
+  if (at == phases[p].blocks.end()) return false;
+  const JournalRange& place = at->second;
   bytes.resize(place.size);
   if (!read_at(impl_->file.number(), place.offset, bytes)) return false;
   impl_->recalled += static_cast<std::int64_t>(place.size);

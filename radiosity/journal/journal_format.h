@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -72,7 +73,8 @@ struct JournalContents {
   struct Phase {
     std::string name{};
     std::uint64_t fingerprint = 0;
-    std::vector<JournalRange> blocks{};
+    /// By number: a damaged number takes no memory for the numbers below.
+    std::map<std::uint32_t, JournalRange> blocks{};
     JournalRange slots{};  ///< both slots
   };
   Provenance of{};

@@ -81,10 +81,12 @@ class Unpacked {
   template <EigenArray T>
   bool take(T& values) {
     constexpr std::size_t number = sizeof(typename T::Scalar);
-    constexpr Eigen::Index most_rows = T::MaxRowsAtCompileTime;
     Eigen::Index rows = 0, cols = 0;
-    if (!take(rows) || !take(cols) || rows < 0 || cols < 0) return false;
-    if (most_rows != Eigen::Dynamic && rows > most_rows) return false;
+    if (!take(rows) || !take(cols)) return false;
+    if (!fits(rows, T::RowsAtCompileTime, T::MaxRowsAtCompileTime) ||
+        !fits(cols, T::ColsAtCompileTime, T::MaxColsAtCompileTime)) {
+      return false;
+    }
     const std::size_t most = left_.size() / number;
     if (cols > 0 && static_cast<std::size_t>(rows) > most / static_cast<std::size_t>(cols)) {
       return false;
@@ -100,6 +102,11 @@ class Unpacked {
   bool is_empty() const { return left_.empty(); }
 
  private:
+  // Whether an array whose type has `fixed` rows or columns, or at most `most`, can have `count`.
+  static bool fits(Eigen::Index count, Eigen::Index fixed, Eigen::Index most) {
+    return count >= 0 && (fixed == Eigen::Dynamic || count == fixed) &&
+           (most == Eigen::Dynamic || count <= most);
+  }
   bool take_bytes(void* to, std::size_t count) {
     if (count > left_.size()) return false;
     if (count > 0) std::memcpy(to, left_.data(), count);

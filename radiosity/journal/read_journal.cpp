@@ -17,7 +17,6 @@ namespace {
 
 constexpr std::size_t longest_header = 1 << 16;
 constexpr std::size_t checked_piece = RecordChecksum::piece;
-constexpr std::uint32_t most_blocks = 1U << 30U;
 
 [[noreturn]] void reject_damaged(const std::filesystem::path& path, std::int64_t offset) {
   reject_journal(path,
@@ -139,8 +138,7 @@ class Reader {
       ++contents_.states;
       return true;
     }
-    if (head.kind != RecordKind::block || head.block >= most_blocks) return false;
-    if (head.block >= phase.blocks.size()) phase.blocks.resize(head.block + 1);
+    if (head.kind != RecordKind::block) return false;
     phase.blocks[head.block] = {at, head.size};
     ++contents_.blocks;
     return true;

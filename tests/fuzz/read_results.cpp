@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
 #include <tuple>
 #include <vector>
@@ -44,14 +45,15 @@ void unpack(std::span<const std::byte> bytes) {
 
 // Blocks and states that the journal recalls; the first of very many.
 int recall_all(Journal& journal, const JournalContents& contents) {
-  constexpr std::size_t most_phases = 32, most_blocks = 64;
+  constexpr std::size_t most_phases = 32;
+  constexpr int most_blocks = 64;
   int recalled = 0;
   std::vector<std::byte> bytes;
   for (std::size_t p = 0; p < std::min(contents.phases.size(), most_phases); ++p) {
     const JournalContents::Phase& phase = contents.phases[p];
     const int number = journal.phase(phase.name, phase.fingerprint);
-    for (std::size_t b = 0; b < std::min(phase.blocks.size(), most_blocks); ++b) {
-      if (!journal.recall(number, static_cast<int>(b), bytes)) continue;
+    for (const auto& block : std::views::keys(phase.blocks) | std::views::take(most_blocks)) {
+      if (!journal.recall(number, static_cast<int>(block), bytes)) continue;
       unpack(bytes);
       ++recalled;
     }

@@ -76,6 +76,16 @@ TEST(Packed, SizesBeyondTheBytesAreRefused) {
   }
 }
 
+TEST(Packed, AnArrayOfAFixedSizeIsTakenFromThatSizeAlone) {
+  Packed packed;
+  packed.add(Eigen::ArrayXXf::Ones(4, 1).eval());
+  Eigen::Array3f three;
+  EXPECT_FALSE(Unpacked(packed.bytes()).take(three));
+  Eigen::Array4f four;
+  EXPECT_TRUE(Unpacked(packed.bytes()).take(four));
+  EXPECT_TRUE((four == 1.0f).all());
+}
+
 TEST(Packed, ASpanKeepsItsSize) {
   const std::vector<float> three = {1, 2, 3};
   Packed packed;
