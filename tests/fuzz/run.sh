@@ -75,6 +75,7 @@ fuzz() {
   trap 'rm -rf "$TMPDIR"' EXIT
   trap 'exit 130' INT TERM
   export ASAN_OPTIONS="quarantine_size_mb=64:${ASAN_OPTIONS:-}" ASAN_SYMBOLIZER_PATH=/usr/bin/llvm-symbolizer-19
+  export LSAN_OPTIONS="suppressions=tests/fuzz/leaks.txt:print_suppressions=0:${LSAN_OPTIONS:-}"
   export UBSAN_OPTIONS="print_stacktrace=1:halt_on_error=1:${UBSAN_OPTIONS:-}"
 
   say "Fuzzing ${#chosen[@]} targets, $each s each"
