@@ -1,6 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+
+#include "scene/errors.h"
 #include "scene/io/read_scene.h"
+#include "tests/temporary_folder.h"
 
 namespace lightwell::read_geometry_test {
 namespace {
@@ -37,6 +43,71 @@ INSTANTIATE_TEST_SUITE_P(Formats, CubeFile,
 TEST(ReadGeometry, MetresPerUnitScales) {
   const Scene scene = read_geometry(LIGHTWELL_TEST_DATA "/scene/cube.ply", 0.001);
   EXPECT_TRUE(scene_bounds(scene).high.isApprox(Eigen::Vector3d::Constant(0.001), 1e-15));
+}
+
+// A unit square that faces +z, as its file stores numbers.
+std::string square(
+    const std::string& format, const std::string& values,
+    const std::string& polygons = "element face 1\nproperty list uchar int vertex_index") {
+  return "ply\nformat " + format + " 1.0\ncomment a square\nelement vertex 4\nproperty float x\n" +
+         "property float y\nproperty float z\nproperty uchar red\n" + polygons + "\nend_header\n" +
+         values;
+}
+
+template <class Number>
+std::string stored(Number number, bool is_big) {
+  std::string bytes(reinterpret_cast<const char*>(&number), sizeof number);
+  if (is_big) std::ranges::reverse(bytes);
+  return bytes;
+}
+
+std::string stored_square(bool is_big) {
+  std::string values;
+  for (const auto& [x, y] : {std::pair{0.0f, 0.0f}, {1.0f, 0.0f}, {1.0f, 1.0f}, {0.0f, 1.0f}}) {
+    values += stored(x, is_big) + stored(y, is_big) + stored(0.0f, is_big) + '\xff';
+  }
+  values += '\4';
+  for (const std::int32_t corner : {0, 1, 2, 3}) values += stored(corner, is_big);
+  return values;
+}
+
+PolygonMesh read_ply(const std::string& content) {
+  const TemporaryFolder folder;
+  return std::get<PolygonMesh>(read_scene(folder.write("a.ply", content)).surfaces.at(0).shape);
+}
+
+void expect_square(const PolygonMesh& mesh, std::size_t facets) {
+  ASSERT_EQ(mesh.facets.size(), facets);
+  double area = 0.0;
+  for (const Facet& facet : mesh.facets) {
+    area += facet_area(mesh, facet);
+    EXPECT_EQ(facet_normal(mesh, facet), Eigen::Vector3d::UnitZ());
+  }
+  EXPECT_EQ(area, 1.0);
+}
+
+TEST(ReadPly, OfEveryFormatIsTheSame) {
+  expect_square(read_ply(square("ascii", "0 0 0 9 1 0 0 9\n1 1 0 9\n0 1 0 9\n4 0 1 2 3\n")), 1);
+  expect_square(read_ply(square("binary_little_endian", stored_square(false))), 1);
+  expect_square(read_ply(square("binary_big_endian", stored_square(true))), 1);
+}
+
+TEST(ReadPly, StripsAreTrianglesOfOneFront) {
+  const std::string strips = "element tristrips 1\nproperty list int int vertex_indices";
+  const std::string vertices = "0 0 0 9\n1 0 0 9\n0 1 0 9\n1 1 0 9\n";
+  expect_square(read_ply(square("ascii", vertices + "4 0 1 2 3\n", strips)), 2);
+  expect_square(read_ply(square("ascii", vertices + "7 0 1 2 -1 2 1 3\n", strips)), 2);
+}
+
+TEST(ReadPly, WrongBodiesAreRefusedWithThePlace) {
+  const auto refusal = [](const std::string& polygons) {
+    return message_of<InputError>(
+        [&] { read_ply(square("ascii", "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 1 0 9\n" + polygons)); });
+  };
+  EXPECT_TRUE(says(refusal("4000000000 0 1 2 3\n"), "the file ends within 'face'"));
+  EXPECT_TRUE(says(refusal("-1 0 1 2 3\n"), "a 'face' has the number -1"));
+  EXPECT_TRUE(says(refusal("4 0 1 two 3\n"), "a 'face' has 'two' in place of a number"));
+  EXPECT_TRUE(says(refusal("4 0 1 2 4\n"), "names vertex 4, but there are only 4"));
 }
 
 }  // namespace
