@@ -2,20 +2,96 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <cstring>
 #include <fstream>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
 #include "scene/errors.h"
 
 namespace lightwell {
 namespace {
 
+constexpr std::size_t longest_name = 255;
+
+std::int32_t number_at(std::string_view bytes, std::size_t at) {
+  std::int32_t value = 0;
+  std::memcpy(&value, bytes.data() + at, sizeof value);
+  return value;
+}
+
 // A number in the file's byte order, which is that of the machine.
 std::int32_t number(std::ifstream& file) {
-  std::int32_t value = 0;
-  file.read(reinterpret_cast<char*>(&value), sizeof value);
-  return value;
+  std::array<char, sizeof(std::int32_t)> bytes{};
+  file.read(bytes.data(), bytes.size());
+  return number_at({bytes.data(), bytes.size()}, 0);
+}
+
+// Bytes of a value of a type whose values have the same size; empty for other types.
+std::optional<std::size_t> size_of(std::string_view type) {
+  constexpr auto sizes = std::to_array<std::pair<std::string_view, std::size_t>>(
+      {{"box2f", 16},      {"box2i", 16},   {"chromaticities", 32},
+       {"compression", 1}, {"double", 8},   {"envmap", 1},
+       {"float", 4},       {"int", 4},      {"keycode", 28},
+       {"lineOrder", 1},   {"m33d", 72},    {"m33f", 36},
+       {"m44d", 128},      {"m44f", 64},    {"rational", 8},
+       {"tiledesc", 9},    {"timecode", 8}, {"v2d", 16},
+       {"v2f", 8},         {"v2i", 8},      {"v3d", 24},
+       {"v3f", 12},        {"v3i", 12},     {"deepImageState", 1}});
+  const auto found =
+      std::ranges::find(sizes, type, &std::pair<std::string_view, std::size_t>::first);
+  if (found == sizes.end()) return std::nullopt;
+  return found->second;
+}
+
+// Channels: a name, its end, and 16 bytes each; an empty name ends the list.
+bool are_channels(std::string_view value) {
+  constexpr std::size_t rest_of_channel = 16;
+  std::size_t at = 0;
+  while (at < value.size() && value[at] != '\0') {
+    const std::size_t end = value.find('\0', at);
+    if (end == std::string_view::npos || end - at > longest_name) return false;
+    at = end + 1 + rest_of_channel;
+  }
+  return at + 1 == value.size();
+}
+
+// Strings, each behind its length.
+bool are_strings(std::string_view value) {
+  constexpr std::size_t head = sizeof(std::int32_t);
+  while (value.size() >= head) {
+    const std::int32_t length = number_at(value, 0);
+    value.remove_prefix(head);
+    if (length < 0 || static_cast<std::size_t>(length) > value.size()) return false;
+    value.remove_prefix(static_cast<std::size_t>(length));
+  }
+  return value.empty();
+}
+
+// A small picture: width, height, and four bytes for each pixel.
+bool is_preview(std::string_view value) {
+  constexpr std::size_t head = 2 * sizeof(std::int32_t);
+  if (value.size() < head) return false;
+  const std::int64_t width = number_at(value, 0), height = number_at(value, head / 2);
+  const auto pixels = static_cast<std::int64_t>((value.size() - head) / 4);
+  if (width < 0 || height < 0 || (value.size() - head) % 4 != 0) return false;
+  return width == 0 || height == 0 ? pixels == 0 : pixels % width == 0 && pixels / width == height;
+}
+
+// Whether OpenEXR reads as many bytes of a value as the file says, which it does not compare, and
+// takes no more memory than these.
+bool is_sound(std::string_view type, std::string_view value) {
+  if (const auto size = size_of(type)) return value.size() == *size;
+  if (type == "chlist") return are_channels(value);
+  if (type == "stringvector") return are_strings(value);
+  if (type == "preview") return is_preview(value);
+  if (type == "floatvector") return value.size() % sizeof(float) == 0;
+  return type != "idmanifest";  // of deep pictures, whose uncompressed size OpenEXR trusts
 }
 
 }  // namespace
@@ -30,7 +106,7 @@ void check_exr_header(const std::filesystem::path& path) {
   const bool has_parts = (number(file) & several_parts) != 0;
   const auto end = static_cast<std::int64_t>(std::filesystem::file_size(path));
   bool begins = true;  // a header
-  for (std::string name, type; std::getline(file, name, '\0');) {
+  for (std::string name, type, value; std::getline(file, name, '\0');) {
     if (name.empty()) {
       if (begins || !has_parts) return;
       begins = true;
@@ -39,14 +115,20 @@ void check_exr_header(const std::filesystem::path& path) {
     begins = false;
     std::getline(file, type, '\0');
     const std::int32_t size = number(file);
-    if (!file || size < 0 || size > end - static_cast<std::int64_t>(file.tellg())) {
-      constexpr std::size_t longest_name = 255;
+    const auto fail = [&](std::string_view what_is_wrong) {
       throw InputError(
-          fmt::format("{}: the attribute '{}' of its header does not end within the file; it was "
-                      "damaged or cut off",
-                      path.string(), name.substr(0, longest_name)));
+          fmt::format("{}: the attribute '{}' of its header {}; it was damaged or cut "
+                      "off",
+                      path.string(), name.substr(0, longest_name), what_is_wrong));
+    };
+    if (!file || size < 0 || size > end - static_cast<std::int64_t>(file.tellg())) {
+      fail("does not end within the file");
     }
-    file.seekg(size, std::ios::cur);
+    value.resize(static_cast<std::size_t>(size));
+    file.read(value.data(), size);
+    if (name.size() > longest_name || type.size() > longest_name || !is_sound(type, value)) {
+      fail("is not what its type and its size say");
+    }
   }
 }
 
