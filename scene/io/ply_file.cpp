@@ -267,7 +267,7 @@ class PlyReader {
     throw InputError(fmt::format("{}: {}", file_.path().string(), problem));
   }
   [[noreturn]] void fail_line(std::string_view problem, std::string_view text) const {
-    file_.fail(line_, fmt::format("{} ({}); the file was damaged", problem, text));
+    file_.fail(line_, fmt::format("{} ({}); the file was damaged", problem, excerpt(text)));
   }
   [[noreturn]] void fail_short(const Element& element) const {
     fail(fmt::format("the file ends within '{}'; it was damaged or cut off", element.name));
