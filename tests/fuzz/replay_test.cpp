@@ -94,6 +94,27 @@ TEST_P(GuardedFiles, AreMutatedBehindTheirChecksums) {
 INSTANTIATE_TEST_SUITE_P(Of, KeptFiles, testing::ValuesIn(fuzz::targets()), name_of);
 INSTANTIATE_TEST_SUITE_P(Of, GuardedFiles, testing::ValuesIn(targets_with_checksums()), name_of);
 
+// The message tells that the claim was refused, rather than the memory taken and the file found
+// short.
+TEST(KeptFilesThatClaimMuch, AreRefusedForTheClaim) {
+  struct Claim {
+    std::string_view target;
+    const char *file, *message;
+  };
+  const std::vector<Claim> claims = {
+      {"exr", "attribute-longer-than-the-file.exr", "does not end within the file"},
+      {"exr", "channels-that-end-before-their-size.exr", "not what its type and its size say"},
+      {"png", "wider-and-higher-than-its-bytes.png", "too short for its width and height"},
+      {"ply", "list-of-a-billion-corners.ply", "the file ends within 'face'"},
+      {"solution", "huge-offset-of-a-polygon.vtp", "corners than they say"},
+  };
+  for (const Claim& claim : claims) {
+    const Target& target = *std::ranges::find(fuzz::targets(), claim.target, &Target::name);
+    EXPECT_TRUE(
+        says(refusal(target, bytes_of_file(corpus_of(target) / claim.file)), claim.message));
+  }
+}
+
 // Kept files of formats that Lightwell writes. Run it once a format changes:
 //   fuzz_test --gtest_also_run_disabled_tests --gtest_filter=*WrittenAnew
 TEST(KeptFilesOfOurFormats, DISABLED_AreWrittenAnew) {

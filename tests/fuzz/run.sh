@@ -23,8 +23,8 @@ fuzz_target() {
   local name=$1 seconds=$2 sources=$3
   local findings=build/fuzz/findings/$name grown=build/fuzz/corpus/$name log=build/fuzz/logs/$name.log
   mkdir -p "$findings" "$grown" build/fuzz/logs
-  # 256 MB at once for a file of at most 16 kB is out of proportion: zlib makes 16 MB of so much, as 16-bit texels 34 MB.
-  local options=(-max_len=16384 -malloc_limit_mb=256 -rss_limit_mb=2048 -timeout=25 -report_slow_units=25
+  # More at once than the pixels of the largest picture (400 MB, of which an even one has 12 kB) is out of proportion.
+  local options=(-max_len=16384 -malloc_limit_mb=512 -rss_limit_mb=2048 -timeout=25 -report_slow_units=25
     -print_final_stats=1 -artifact_prefix="$findings/")
   [ "$name" != solution ] || options+=(-max_len=65536)  # the smallest has 20 kB
   if [ -n "$sources" ]; then

@@ -28,6 +28,9 @@ constexpr double most_picture_pixels = 1e8;
 // pixels: 340.
 constexpr double most_of_a_jpeg_byte = 1024.0;
 
+// Pixels of one byte of a PNG: deflate makes at most 1032 bytes of one, of eight pixels each.
+constexpr double most_of_a_png_byte = 8.0 * 1032.0;
+
 // Scans of a progressive JPEG, each of which costs time as for the whole picture. Programs write
 // ten.
 constexpr int most_jpeg_scans = 100;
@@ -59,6 +62,10 @@ PicturePixels decode_png(std::string_view bytes, const std::string& called) {
     ~Guard() { png_image_free(&image); }
   } const guard{image};
   check_picture_size(image.width, image.height, called);
+  if (static_cast<double>(image.width) * image.height >
+      most_of_a_png_byte * static_cast<double>(bytes.size())) {
+    fail_damaged(called, "it is too short for its width and height");
+  }
   image.format = PNG_FORMAT_RGBA;
   // 16-bit files without a statement are sRGB, as 8-bit ones are.
   image.flags |= PNG_IMAGE_FLAG_16BIT_sRGB;
