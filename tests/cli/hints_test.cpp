@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <string_view>
 
 #include "tests/cli/program.h"
 
@@ -10,8 +11,10 @@ namespace {
 
 class Hints : public CommandTest {};
 
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  return text.replace(text.find(from), from.size(), to);
+std::string with(std::string text, std::string_view from, std::string_view to) {
+  const auto at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return at == std::string::npos ? text : text.replace(at, from.size(), to);
 }
 
 TEST_F(Hints, HelpIsThatOfTheOptionsOfTheSameName) {
@@ -24,7 +27,7 @@ TEST_F(Hints, HelpIsThatOfTheOptionsOfTheSameName) {
 
 // The room of 4 m x 3 m x 2.5 m in millimetres, read as metres, is 4000 m long.
 TEST_F(Hints, ARoomOfKilometresIsAskedAbout) {
-  std::string room = with(small_room(), "max = [4, 3, 2.5]", "max = [4000, 3000, 2500]");
+  const std::string room = with(small_room(), "max = [4, 3, 2.5]", "max = [4000, 3000, 2500]");
   folder.write("large.toml", room);
   folder.write("millimetres.toml", with(room, "unit = \"m\"", "unit = \"mm\""));
   EXPECT_TRUE(says(run({"info", "large.toml"}).out, "4000 m long"));
@@ -33,11 +36,15 @@ TEST_F(Hints, ARoomOfKilometresIsAskedAbout) {
 }
 
 TEST_F(Hints, ALampFarOutsideIsAskedAbout) {
-  const std::string lamp = "[[lamps]]\nname = \"stray\"\npower = 10\nposition = [2, 1, 2400]\n";
-  folder.write("far.toml", small_room() + lamp);
-  folder.write("near.toml", small_room() + with(lamp, "2400", "2.3"));
+  const auto room_with_lamp_at = [](const char* height) {
+    std::string room = small_room();
+    room.append("[[lamps]]\nname = \"stray\"\npower = 10\nposition = [2, 1, ");
+    return room.append(height).append("]\n");
+  };
+  folder.write("far.toml", room_with_lamp_at("2400"));
+  folder.write("near.toml", room_with_lamp_at("2.3"));
   EXPECT_TRUE(says(run({"info", "far.toml"}).out, "'stray' lies"));
-  EXPECT_FALSE(says(run({"info", "near.toml"}).out, "stray"));
+  EXPECT_FALSE(says(run({"info", "near.toml"}).out, "'stray' lies"));
 }
 
 }  // namespace
