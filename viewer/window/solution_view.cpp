@@ -194,7 +194,8 @@ vtkRenderer* SolutionView::renderer() const {
 }
 
 double SolutionView::meter(const Camera& camera) const {
-  return metered_scale(caster_, kinds_, {irradiance_, radiance_}, solved_->solution.bands, camera, sky());
+  return metered_scale(caster_, kinds_, {irradiance_, radiance_}, solved_->solution.bands, camera,
+                       sky());
 }
 
 void SolutionView::set_look(const Look& look) {
