@@ -77,7 +77,7 @@ std::optional<double> typical_luminance(const Image& image, const Bands& bands) 
 
 Image white_paper_picture(const ElementCaster& caster, const BandArray& irradiance,
                           std::span<const char> clear, const Camera& camera, int width) {
-  constexpr int most_layers = 16;  // panes and backs that a ray passes
+  constexpr int most_layers = 16;  // panes, backs and dark sides that a ray passes
   const Camera coarse = with_width(camera, width);
   const CameraRays camera_rays(coarse);
   Image image{coarse.width, coarse.height, {}};
@@ -99,12 +99,14 @@ Image white_paper_picture(const ElementCaster& caster, const BandArray& irradian
       if (hit.facet < 0) continue;
       const bool is_clear =
           hit.element >= 0 && !clear.empty() && clear[static_cast<std::size_t>(hit.element)] != 0;
-      if (hit.element < 0 || is_clear) {
+      const Spectrum E = hit.element >= 0 && !is_clear
+                             ? interpolate(mesh, irradiance, hit)
+                             : Spectrum(Spectrum::Zero(irradiance.cols()));
+      if ((E > 0.0f).any()) {
+        image.radiance.row(all.pixels[i]) = (E / std::numbers::pi_v<float>).transpose();
+      } else {
         add_further(all.rays[i], hit, all.pixels[i], further);
-        continue;
       }
-      const Spectrum E = interpolate(mesh, irradiance, hit);
-      image.radiance.row(all.pixels[i]) = (E / std::numbers::pi_v<float>).transpose();
     }
     all = std::move(further);
   }

@@ -16,7 +16,8 @@ std::optional<double> typical_luminance(const Image& image, const Bands& bands);
 /// The picture, `width` pixels wide, of a scene in which every surface that a camera sees is white
 /// paper, of reflectance 1, under the light that falls there: radiance E / pi. `irradiance` is
 /// vertices x bands, W/m^2. Rays pass through elements that are `clear` (1 for each clear element;
-/// empty: none is) and through black backs; where nothing is met, the picture is black.
+/// empty: none is), through black backs, and through what gets no light, as the outside of a closed
+/// room; where nothing else is met, the picture is black.
 Image white_paper_picture(const ElementCaster& caster, const BandArray& irradiance,
                           std::span<const char> clear, const Camera& camera, int width);
 
