@@ -105,6 +105,8 @@ TEST(KeptFilesThatClaimMuch, AreRefusedForTheClaim) {
       {"exr", "attribute-longer-than-the-file.exr", "does not end within the file"},
       {"exr", "channels-that-end-before-their-size.exr", "not what its type and its size say"},
       {"png", "wider-and-higher-than-its-bytes.png", "too short for its width and height"},
+      {"exr", "wider-than-its-bytes.exr", "is too short for its"},
+      {"png", "text-longer-than-the-file.png", "a chunk does not end"},
       {"ply", "list-of-a-billion-corners.ply", "the file ends within 'face'"},
       {"solution", "huge-offset-of-a-polygon.vtp", "corners than they say"},
   };

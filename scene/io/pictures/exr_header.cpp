@@ -94,6 +94,38 @@ bool is_sound(std::string_view type, std::string_view value) {
   return type != "idmanifest";  // of deep pictures, whose uncompressed size OpenEXR trusts
 }
 
+// What OpenEXR takes memory by when it opens a part.
+struct PartSize {
+  double width = 0.0, height = 0.0, channels = 0.0;
+  double lines = 1.0;                          // of a block
+  double tile_width = 0.0, tile_height = 0.0;  // 0: no tiles
+
+  void note(std::string_view name, std::string_view type, std::string_view value) {
+    if (name == "dataWindow" && type == "box2i") {
+      width = 1.0 + number_at(value, 8) - number_at(value, 0);
+      height = 1.0 + number_at(value, 12) - number_at(value, 4);
+    } else if (type == "chlist") {
+      for (std::size_t at = 0; at + 1 < value.size(); at = value.find('\0', at) + 17) ++channels;
+    } else if (type == "compression") {
+      // None, RLE, ZIPS, ZIP, PIZ, PXR24, B44, B44A, DWAA, DWAB.
+      constexpr std::array<double, 10> all = {1, 1, 1, 16, 32, 16, 32, 32, 32, 256};
+      const auto code = static_cast<std::size_t>(static_cast<unsigned char>(value[0]));
+      if (code < all.size()) lines = all[code];
+    } else if (type == "tiledesc") {
+      tile_width = static_cast<std::uint32_t>(number_at(value, 0));
+      tile_height = static_cast<std::uint32_t>(number_at(value, 4));
+    }
+  }
+
+  // Memory for a block of lines is that of all its lines, however low the picture is.
+  bool is_in_proportion(double bytes) const {
+    constexpr double most_of_a_byte = 8192.0;  // see read_exr_pixels()
+    constexpr double usual = 0x1p28, each = 4.0;
+    const double block = each * channels * std::max(width * lines, tile_width * tile_height);
+    return width * height * channels <= most_of_a_byte * bytes && block <= std::max(usual, bytes);
+  }
+};
+
 }  // namespace
 
 // The layout is that of "OpenEXR File Layout" (Academy Software Foundation): magic, version and
@@ -106,10 +138,18 @@ void check_exr_header(const std::filesystem::path& path) {
   const bool has_parts = (number(file) & several_parts) != 0;
   const auto end = static_cast<std::int64_t>(std::filesystem::file_size(path));
   bool begins = true;  // a header
+  PartSize part;
   for (std::string name, type, value; std::getline(file, name, '\0');) {
     if (name.empty()) {
+      if (!part.is_in_proportion(static_cast<double>(end))) {
+        throw InputError(
+            fmt::format("{}: the file is too short for its {} x {} pixels of {} channels; it was "
+                        "damaged or cut off",
+                        path.string(), part.width, part.height, part.channels));
+      }
       if (begins || !has_parts) return;
       begins = true;
+      part = {};
       continue;
     }
     begins = false;
@@ -129,6 +169,7 @@ void check_exr_header(const std::filesystem::path& path) {
     if (name.size() > longest_name || type.size() > longest_name || !is_sound(type, value)) {
       fail("is not what its type and its size say");
     }
+    part.note(name, type, value);
   }
 }
 

@@ -51,7 +51,23 @@ void check_picture_size(double width, double height, const std::string& called) 
   throw InputError(fmt::format("{} is no picture that can be decoded: {}", called, why));
 }
 
+// Chunks are a length, a type, as many bytes, and a CRC. libpng takes memory for a text of the
+// length that is claimed before it reads the text.
+void check_png_chunks(std::string_view bytes, const std::string& called) {
+  constexpr std::size_t signature = 8, head = 8, crc = 4;
+  for (std::size_t at = signature; at + head <= bytes.size();) {
+    std::size_t length = 0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      length = length << 8U | static_cast<unsigned char>(bytes[at + i]);
+    }
+    if (length > bytes.size() - at - head) fail_damaged(called, "a chunk does not end");
+    if (bytes.substr(at + 4, 4) == "IEND") return;
+    at += head + length + crc;
+  }
+}
+
 PicturePixels decode_png(std::string_view bytes, const std::string& called) {
+  check_png_chunks(bytes, called);
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   if (!png_image_begin_read_from_memory(&image, bytes.data(), bytes.size())) {
