@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/patches/mesh_bounds.h"
 #include "mesh/patches/sphere_grid.h"
 #include "radiosity/refine/illuminance_bound.h"
+#include "raytrace/display.h"
 #include "scene/errors.h"
 #include "scene/rotation_between.h"
 #include "viewer/export/appearance.h"
@@ -245,6 +247,30 @@ void add_cameras(const SolvedScene& solved, const Scene& scene,
   }
 }
 
+/// The largest channel of the radiance of each vertex that gets light and does not emit any.
+std::vector<float> reflected_radiances(const BakedModel& model, const Bands& bands) {
+  constexpr double rounding = 1e-3;  // of sums of bands in floats
+  std::vector<float> largest;
+  for (int v = 0; v < model.vertex_count(); ++v) {
+    const double exitance =
+        std::numbers::pi * bands.lumens_per_watt * luminance(model.radiance.row(v).transpose());
+    const auto arriving = static_cast<double>(model.illuminance[static_cast<std::size_t>(v)]);
+    const bool is_reflected = exitance > 0.0 && exitance <= (1.0 + rounding) * arriving;
+    if (is_reflected) largest.push_back(model.radiance.row(v).maxCoeff());
+  }
+  return largest;
+}
+
+/// BakedModel::color_scale for an exposure of `scale`.
+double unclipped_scale(std::vector<float> radiances, double scale) {
+  constexpr double unclipped = 0.99, least = 1.0 / 8.0;
+  if (radiances.empty()) return scale;
+  const auto last = static_cast<double>(radiances.size() - 1);
+  const auto at = radiances.begin() + static_cast<std::ptrdiff_t>(std::ceil(unclipped * last));
+  std::nth_element(radiances.begin(), at, radiances.end());
+  return std::clamp(1.0 / static_cast<double>(*at), least * scale, scale);
+}
+
 /// Rotation from `up_axis`, a coordinate axis or its opposite, to +y.
 Eigen::Matrix3d rotation_to_y_up(const Eigen::Vector3d& up_axis) {
   const Eigen::Quaterniond turn = rotation_between(up_axis, Eigen::Vector3d::UnitY());
@@ -271,6 +297,9 @@ BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double expo
   model.to_y_up = rotation_to_y_up(up_axis);
   add_cameras(solved, scene, kinds, radiance, up_axis, exposure_ev, model);
   model.bands = solved.solution.bands;
+  const double stops = std::exp2(exposure_ev);
+  model.color_scale = stops * unclipped_scale(reflected_radiances(model, model.bands),
+                                              model.cameras.front().scale / stops);
   model.metres_per_unit = solved.solution.metres_per_unit;
   model.unit_name = solved.solution.unit_name;
   model.relative_units = solved.solution.relative_units;

@@ -110,6 +110,9 @@ struct BakedModel {
   std::optional<BakedSky> sky{};
   std::vector<BakedCamera> cameras{};  ///< the scene's, or one of find_start; never empty
   bool cameras_are_given = false;      ///< `cameras` are the scene's
+  /// Scale of linear colours, which files clip at 1: that of the first camera, or as little as an
+  /// eighth of it, so that 99 of 100 vertices are not clipped; lamps do not count.
+  double color_scale = 1.0;
   /// Rotation from the scene's axes to glTF's, y upwards; the transpose rotates back.
   Eigen::Matrix3d to_y_up = Eigen::Matrix3d::Identity();
   Bands bands{};

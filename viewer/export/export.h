@@ -16,8 +16,9 @@ namespace lightwell {
 
 /// Writes glTF 2.0, binary (.glb): metres, y upwards.
 /// - A node and a mesh for each surface, a primitive for each part, cameras as nodes.
-/// - COLOR_0 is linear and unlit (KHR_materials_unlit): radiance times the exposure of the first
-///   camera, clipped to [0,1]. `extras` of the asset give the radiosity and the luminance of 1.
+/// - COLOR_0 is linear and unlit (KHR_materials_unlit): radiance times
+///   BakedModel::color_scale, clipped to [0,1]. `extras` of the asset give the radiosity and the
+///   luminance of 1.
 /// - _ILLUMINANCE holds illuminance in lx.
 /// - Pictures are base colours (PNG in the file); COLOR_0 of parts with a picture is multiplied by
 ///   picture_gain.
@@ -42,7 +43,7 @@ std::vector<std::filesystem::path> channel_lightmap_files(const std::filesystem:
 
 /// Writes glTF with the geometry of write_gltf and the light in textures.
 /// - TEXCOORD_1 (and 0) of each vertex are coordinates in a lightmap. The lightmap's PNG in the
-///   file is radiance times exposure, clipped, as sRGB.
+///   file is radiance times BakedModel::color_scale, clipped, as sRGB.
 /// - Data is written beside the .glb as OpenEXR (see lightmap_files): irradiance in R, G and B,
 ///   radiosity and illuminance as layers. Values are half floats, or floats if a value exceeds the
 ///   range of half floats.

@@ -29,7 +29,7 @@ class VertexColorBuffer {
  public:
   explicit VertexColorBuffer(const BakedModel& model) : model_(model) {
     std::string& bytes = buffer_.bytes();
-    const auto scale = static_cast<float>(model.cameras.front().scale);
+    const auto scale = static_cast<float>(model.color_scale);
     for (int v = 0; v < model.vertex_count(); ++v) append_position(bytes, model, v);
     positions_ = buffer_.end_view("positions", gltf_vertex_data, 12);
     for (Eigen::Index v = 0; v < model.radiance.rows(); ++v) {

@@ -344,7 +344,7 @@ LightmapReport write_lightmapped_gltf(const std::filesystem::path& path, const B
   if (options.per_channel) with_all = with_all_on(model, switched.emplace(solved));
   const BakedModel& lit = with_all ? *with_all : model;
   const LightmapLayout layout = lay_out_lightmap(lit, solved.mesh, options);
-  const double exposure = model.cameras.front().scale;
+  const double exposure = model.color_scale;
   LightmapReport result{.atlases = layout.atlas_count,
                         .charts = static_cast<int>(layout.charts.size()),
                         .texels_per_metre = layout.texels_per_metre,

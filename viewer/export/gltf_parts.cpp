@@ -58,7 +58,7 @@ const char* unit_of_radiosity(const BakedModel& model) {
 
 /// Extras of the asset: the quantities of colour 1 and their units, by B = pi L.
 GltfJson meaning(const BakedModel& model) {
-  const double scale = model.cameras.front().scale;
+  const double scale = model.color_scale;
   const auto clipped = (model.radiance * static_cast<float>(scale) > 1.0f).rowwise().any().count();
   const double B = std::numbers::pi / scale;
   return {{"exposure", scale},
