@@ -192,11 +192,9 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
 }
 
 SkyEffort sky_effort(const ShadowOptions& options, const NoiseGoal& goal) {
-  constexpr int fewest = 8, first_of = 8, fewest_for_noise = 16;
+  constexpr int fewest = 8, first_of = 8;
   const int most = options.sky_rays > 0 ? options.sky_rays : options.max_rays;
-  int first = options.sky_rays > 0 ? options.sky_rays / first_of : options.min_rays;
-  // The noise of eight pairs of rays is known well enough to choose how many follow.
-  if (goal.is_set()) first = std::max(first / 4, std::min(first, fewest_for_noise));
+  const int first = options.sky_rays > 0 ? options.sky_rays / first_of : options.min_rays;
   return {.first = std::clamp(first, fewest, most_sky_rays),
           .most = std::clamp(most, fewest, most_sky_rays),
           .goal = goal};

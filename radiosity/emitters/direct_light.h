@@ -73,9 +73,8 @@ struct LightQuery {
   SurfacePoint at{};
   std::uint64_t key = 0;  ///< of the shadow rays' random numbers
   ShadowOptions shadows{};
-  /// Noise that the dome's light may have. If set, the rays that it takes are cast, from 3/64 of
-  /// ShadowOptions::sky_rays (24 at least) to NoiseGoal::most_times as many; otherwise `shadows`
-  /// decides alone.
+  /// Noise that the dome's light may have. If set, the rays that it takes are cast, from 3/16 of
+  /// ShadowOptions::sky_rays to NoiseGoal::most_times as many; otherwise `shadows` decides alone.
   NoiseGoal sky_noise{};
   Lights lights = Lights::all;
 };
