@@ -79,7 +79,8 @@ struct Computed {
 
 /// Facets that cross each other by the dozen are cut into very many patches. Pairs of these with
 /// partly hidden patches are too many for closed forms; but a facet's factors are means over its
-/// patches, whose rays are independent, so few rays for each of them suffice.
+/// patches, whose rays are independent, so few rays for each of them suffice. A facet that a few
+/// others stand on or cut is in fewer than eight patches.
 bool are_facets_shredded(const PatchMesh& mesh, const ViewFactorRows& rows) {
   constexpr int many = patches_of_closed_forms, of_each = 8;
   return mesh.patch_count() > many && mesh.patch_count() / of_each > rows.count();

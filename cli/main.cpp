@@ -208,6 +208,7 @@ std::vector<std::string> without_help_command(std::vector<std::string> words) {
 int run_program(int argc, char** argv) {
   CommonOptions options;
   options.command_line = without_help_command({argv, argv + argc});
+  if (options.command_line.empty()) options.command_line = {"lightwell"};
   CLI::App app("Radiosity with a ray-traced second pass.", "lightwell");
   add_common(app, options);
   app.require_subcommand(0, 1);

@@ -37,7 +37,7 @@ std::optional<Accuracy> parse_accuracy(const std::string& text) {
 
 // True for a number without a unit that means per cent more probably than a share: "1".
 bool is_doubtful(const std::string& text, const Accuracy& accuracy) {
-  constexpr double least = 0.25;
+  constexpr double least = 0.25;  // an error of more than 16 % takes no fewer rays than that
   const auto quantity = parse_quantity(text);
   return quantity && quantity->unit.empty() && accuracy.share >= least;
 }

@@ -21,11 +21,11 @@ namespace lightwell {
 // The steps that several sub-commands share. Each step adds its seconds to the report, prints notes
 // on the console, and throws Interrupted after an interrupt.
 
-/// Under --strict, throws an InputError that lists all losses of the scene (Scene::losses); without
-/// losses or --strict, does nothing.
 /// The files that a scene may name, by --inside-folder.
 References allowed_references(const CommonOptions& options);
 
+/// Under --strict, throws an InputError that lists all losses of the scene (Scene::losses); without
+/// losses or --strict, does nothing.
 void refuse_losses(const Scene& scene, const CommonOptions& options);
 
 /// Reads a scene and cleans its polygons by merge_planar_regions(): facet numbers and hash are

@@ -19,6 +19,8 @@ namespace {
 constexpr double share_of_interpolation = 0.95, share_of_gather_noise = 0.55;
 constexpr int most_attempts = 6;
 
+// Rays to the dome for an error of 1 %, and the power of its inverse by which they grow: the noise
+// of stratified rays falls with rays^(-3/4).
 constexpr double sky_rays_for_one_percent = 2048.0, sky_rays_law = 4.0 / 3.0;
 
 }  // namespace

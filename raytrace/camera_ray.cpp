@@ -14,44 +14,13 @@ namespace lightwell {
 namespace {
 
 void check(const Camera& camera) {
-  const auto fail = [&](const std::string& what) {
-    throw InputError(fmt::format("camera '{}': {}", camera.name, what));
-  };
   if (camera.width <= 0 || camera.height <= 0 ||
       std::int64_t{camera.width} * camera.height > max_image_pixels) {
-    fail(fmt::format("{} x {} pixels; both must be at least 1, and {} together at most",
-                     camera.width, camera.height, max_image_pixels));
+    throw InputError(
+        fmt::format("camera '{}': {} x {} pixels; both must be at least 1, and {} together at most",
+                    camera.name, camera.width, camera.height, max_image_pixels));
   }
-  if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
-    fail(fmt::format("a field of view of {} degrees; it must lie between 0 and 180",
-                     camera.fov_degrees));
-  }
-  if (!camera.position.allFinite()) fail("its position is not finite");
-  constexpr double tolerance = 1e-6;
-  if (!(std::abs(camera.direction.norm() - 1.0) < tolerance) ||
-      !(std::abs(camera.up.norm() - 1.0) < tolerance) ||
-      !(std::abs(camera.direction.dot(camera.up)) < tolerance)) {
-    fail("direction and up must be unit vectors at right angles to each other");
-  }
-  if (!(camera.lens_radius >= 0.0) || !std::isfinite(camera.lens_radius)) {
-    fail(fmt::format("a lens of radius {} m; it must be finite, and 0 for a pinhole",
-                     camera.lens_radius));
-  }
-  if (!(camera.focus_distance > 0.0) || !std::isfinite(camera.focus_distance)) {
-    fail(fmt::format("it is focused at {} m; the distance must be finite and above 0",
-                     camera.focus_distance));
-  }
-  if (camera.blades != 0 && (camera.blades < 3 || camera.blades > max_blades)) {
-    fail(fmt::format("an aperture of {} blades; give 3 to {}, or 0 for a round one", camera.blades,
-                     max_blades));
-  }
-  if (!std::isfinite(camera.shutter_open) || !std::isfinite(camera.shutter_close) ||
-      !(camera.shutter_open <= camera.shutter_close)) {
-    fail(
-        fmt::format("its shutter opens at {:g} s and closes at {:g} s; both must be finite, and it "
-                    "must not close before it opens",
-                    camera.shutter_open, camera.shutter_close));
-  }
+  validate(camera);
 }
 
 }  // namespace

@@ -12,13 +12,8 @@ namespace lightwell {
 /// relative to the lens, is |d-f| / d.
 class CameraRays {
  public:
-  /// Throws InputError unless:
-  /// - width and height are positive, with at most max_image_pixels pixels;
-  /// - 0 < fov < 180 degrees;
-  /// - the position is finite; direction and up are unit vectors at right angles, within 1e-6;
-  /// - the lens radius is finite and at least 0, the focus distance finite and above 0, and the
-  ///   number of blades 0 or 3 to max_blades;
-  /// - the shutter opens and closes at finite times and closes no sooner than it opens.
+  /// Throws InputError unless width and height are positive, with at most max_image_pixels pixels,
+  /// and as validate(camera).
   explicit CameraRays(const Camera& camera);
 
   /// Returns the ray through the picture point (x, y) from the centre of the lens, with unit

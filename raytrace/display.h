@@ -19,10 +19,13 @@ float shoulder(float x);
 /// and more is white. (J. Hable, "Uncharted 2: HDR Lighting", GDC 2010.)
 float filmic(float x);
 
-/// Narkowicz's fit to the tone curve of the Academy Color Encoding System, one channel: x (2.51 x +
-/// 0.03) / (x (2.43 x + 0.59) + 0.14), at most 1, which shows x = 1 as 0.8. (K. Narkowicz 2015,
-/// "ACES filmic tone mapping curve".)
+/// Narkowicz's fit to the tone curve of the Academy Color Encoding System, one channel: x (a x + b)
+/// / (x (c x + d) + e), at most 1, which shows x = 1 as 0.8. (K. Narkowicz 2015, "ACES filmic tone
+/// mapping curve".)
 float aces_like(float x);
+struct AcesFit {
+  static constexpr double a = 2.51, b = 0.03, c = 2.43, d = 0.59, e = 0.14;
+};
 
 /// sRGB transfer function (IEC 61966-2-1) of a linear value, clipped to [0,1].
 float srgb_encode(float linear);

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "raytrace/display.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 
@@ -233,8 +234,8 @@ void require_comparable(const Image& picture, const Image& reference) {
 
 // Narkowicz's fit to the ACES curve: k0 to k5 of (k0 x^2 + k1 x) / (k3 x^2 + k4 x + k5), with x
 // multiplied by 0.6 as in HDR-FLIP.
-constexpr double k0 = 0.6 * 0.6 * 2.51, k1 = 0.6 * 0.03, k3 = 0.6 * 0.6 * 2.43, k4 = 0.6 * 0.59,
-                 k5 = 0.14;
+constexpr double k0 = 0.6 * 0.6 * AcesFit::a, k1 = 0.6 * AcesFit::b, k3 = 0.6 * 0.6 * AcesFit::c,
+                 k4 = 0.6 * AcesFit::d, k5 = AcesFit::e;
 
 float aces(float x) {
   constexpr float brightest = 65536.0f;
@@ -277,8 +278,7 @@ Eigen::ArrayXf flip(const Image& picture, const Image& reference, double pixels_
 FlipExposures flip_exposures(const Image& reference) {
   std::vector<double> Y;
   for (Eigen::Index i = 0; i < reference.radiance.rows(); ++i) {
-    const auto rgb = reference.radiance.row(i);
-    Y.push_back(std::max(0.0, 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]));
+    Y.push_back(std::max(0.0, luminance(reference.radiance.row(i).transpose())));
   }
   std::sort(Y.begin(), Y.end());
   if (!(Y.back() > 0.0)) return {};

@@ -66,7 +66,7 @@ enum class ToneCurve {
 struct ToneMapping {
   double exposure_ev = 0.0;  ///< stops, added to the exposure of the other options
   bool automatic = true;     ///< automatic exposure; false: radiance 1 is white
-  /// Automatic exposure by the light that falls on what the camera sees (see incident_exposure());
+  /// Automatic exposure by the light that falls on what the camera sees (see IncidentLight);
   /// empty: by the picture's own luminances, whose typical one becomes 0.2 of white.
   std::optional<double> metered_scale{};
   /// Exposure value at ISO 100 of a camera, in place of `automatic`: white is 1.2 * 2^EV100 cd/m^2,

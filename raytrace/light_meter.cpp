@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "raytrace/camera_ray.h"
@@ -47,7 +48,6 @@ Camera with_width(const Camera& camera, int width) {
   const double height = static_cast<double>(width) * camera.height / camera.width;
   coarse.width = width;
   coarse.height = std::clamp(static_cast<int>(std::lround(height)), 1, 4 * width);
-  coarse.lens_radius = 0.0;
   return coarse;
 }
 
@@ -56,13 +56,26 @@ struct PixelRays {
   std::vector<int> pixels{};
 };
 
-// The part of each ray that lies behind its hit.
-void add_further(const Ray& ray, const ElementHit& hit, int pixel, PixelRays& further) {
+void add_part_behind(const Ray& ray, const ElementHit& hit, int pixel, PixelRays& further) {
   Ray behind = ray;
   behind.origin += hit.t * ray.direction;
   behind.origin_group = hit.facet;
   further.rays.push_back(behind);
   further.pixels.push_back(pixel);
+}
+
+// 1 for each element that is clear or gets no light at any corner.
+std::vector<char> clear_or_dark(const PatchMesh& mesh, const BandArray& irradiance,
+                                std::span<const char> clear) {
+  std::vector<char> passed(static_cast<std::size_t>(mesh.element_count()), 1);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto i = static_cast<std::size_t>(e);
+    if (!clear.empty() && clear[i] != 0) continue;
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      if ((irradiance.row(mesh.corners[e][c]) > 0.0f).any()) passed[i] = 0;
+    }
+  }
+  return passed;
 }
 
 }  // namespace
@@ -75,14 +88,13 @@ std::optional<double> typical_luminance(const Image& image, const Bands& bands) 
   return std::exp(sum / static_cast<double>(tones.size()));
 }
 
-Image white_paper_picture(const ElementCaster& caster, const BandArray& irradiance,
-                          std::span<const char> clear, const Camera& camera, int width) {
-  constexpr int most_layers = 16;  // panes, backs and dark sides that a ray passes
+Image coarse_picture(const ElementCaster& caster, std::span<const char> passed,
+                     const BandArray& radiance, const Camera& camera, int width, const Sky* sky) {
+  constexpr int most_layers = 16;  // panes, backs and others that a ray passes
   const Camera coarse = with_width(camera, width);
   const CameraRays camera_rays(coarse);
   Image image{coarse.width, coarse.height, {}};
-  image.radiance = BandArray::Zero(image.width * image.height, irradiance.cols());
-  const PatchMesh& mesh = caster.mesh();
+  image.radiance = BandArray::Zero(image.width * image.height, radiance.cols());
   PixelRays all;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -96,16 +108,16 @@ Image white_paper_picture(const ElementCaster& caster, const BandArray& irradian
     PixelRays further;
     for (std::size_t i = 0; i < hits.size(); ++i) {
       const ElementHit& hit = hits[i];
-      if (hit.facet < 0) continue;
-      const bool is_clear =
-          hit.element >= 0 && !clear.empty() && clear[static_cast<std::size_t>(hit.element)] != 0;
-      const Spectrum E = hit.element >= 0 && !is_clear
-                             ? interpolate(mesh, irradiance, hit)
-                             : Spectrum(Spectrum::Zero(irradiance.cols()));
-      if ((E > 0.0f).any()) {
-        image.radiance.row(all.pixels[i]) = (E / std::numbers::pi_v<float>).transpose();
+      const int pixel = all.pixels[i];
+      if (hit.facet < 0) {
+        if (!sky) continue;
+        const Spectrum L = radiance_outside(*sky, all.rays[i].direction.normalized());
+        image.radiance.row(pixel) = L.transpose();
+      } else if (hit.element < 0 ||
+                 (!passed.empty() && passed[static_cast<std::size_t>(hit.element)] != 0)) {
+        add_part_behind(all.rays[i], hit, pixel, further);
       } else {
-        add_further(all.rays[i], hit, all.pixels[i], further);
+        image.radiance.row(pixel) = interpolate(caster.mesh(), radiance, hit).transpose();
       }
     }
     all = std::move(further);
@@ -117,9 +129,9 @@ std::optional<IncidentLight> meter_incident_light(const ElementCaster& caster,
                                                   const BandArray& irradiance,
                                                   std::span<const char> clear, const Bands& bands,
                                                   const Camera& camera) {
-  constexpr int width = 160;
-  const Image paper = white_paper_picture(caster, irradiance, clear, camera, width);
-  const std::vector<Tone> tones = typical_tones(positive_tones(paper, bands));
+  const Image seen = coarse_picture(caster, clear_or_dark(caster.mesh(), irradiance, clear),
+                                    irradiance, camera, metering_width);
+  const std::vector<Tone> tones = typical_tones(positive_tones(seen, bands));
   if (tones.empty()) return std::nullopt;
   double sum = 0.0;
   Eigen::Array3d colour = Eigen::Array3d::Zero();
@@ -127,15 +139,8 @@ std::optional<IncidentLight> meter_incident_light(const ElementCaster& caster,
     sum += tone.Y;
     colour += tone.rgb.cast<double>();
   }
-  return IncidentLight{.exposure = static_cast<double>(tones.size()) / sum,
+  return IncidentLight{.exposure = std::numbers::pi * static_cast<double>(tones.size()) / sum,
                        .colour = (colour / sum).cast<float>()};
-}
-
-std::optional<double> incident_exposure(const ElementCaster& caster, const BandArray& irradiance,
-                                        std::span<const char> clear, const Bands& bands,
-                                        const Camera& camera) {
-  const auto light = meter_incident_light(caster, irradiance, clear, bands, camera);
-  return light ? std::optional(light->exposure) : std::nullopt;
 }
 
 Eigen::Array3f colour_of_black_body(double kelvin) {
@@ -151,7 +156,7 @@ Eigen::Array3f colour_of_black_body(double kelvin) {
 }
 
 Eigen::Array3f white_balance(const Eigen::Array3f& colour) {
-  constexpr float most = 16.0f;
+  constexpr float most = 64.0f;
   return colour.max(1.0f / most).inverse();
 }
 

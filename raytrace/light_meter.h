@@ -5,6 +5,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "raytrace/image.h"
+#include "scene/sky.h"
 
 namespace lightwell {
 
@@ -13,34 +14,33 @@ namespace lightwell {
 /// black.
 std::optional<double> typical_luminance(const Image& image, const Bands& bands);
 
-/// The picture, `width` pixels wide, of a scene in which every surface that a camera sees is white
-/// paper, of reflectance 1, under the light that falls there: radiance E / pi. `irradiance` is
-/// vertices x bands, W/m^2. Rays pass through elements that are `clear` (1 for each clear element;
-/// empty: none is), through black backs, and through what gets no light, as the outside of a closed
-/// room; where nothing else is met, the picture is black.
-Image white_paper_picture(const ElementCaster& caster, const BandArray& irradiance,
-                          std::span<const char> clear, const Camera& camera, int width);
+/// Width of the pictures that exposures are metered on, pixels.
+inline constexpr int metering_width = 160;
 
-/// The typical light that falls on what a camera sees.
+/// A coarse picture, `width` pixels wide: `radiance` (vertices x bands) interpolated where the ray
+/// of each pixel ends. Rays pass elements that are `passed` (1 for each such element; empty: none)
+/// and black backs; rays that leave the scene show the sky, or black without a sky.
+Image coarse_picture(const ElementCaster& caster, std::span<const char> passed,
+                     const BandArray& radiance, const Camera& camera, int width,
+                     const Sky* sky = nullptr);
+
+/// The light that falls on what a camera sees.
 struct IncidentLight {
-  double exposure = 1.0;                           ///< see incident_exposure()
-  Eigen::Array3f colour = Eigen::Array3f::Ones();  ///< linear RGB of white paper, luminance 1
+  /// Exposure for incident light, as of a photographer's incident meter (ISO 2720): the multiplier
+  /// of radiance, pi / E, for which white paper, of reflectance 1, under the mean irradiance E
+  /// shows as 1. A room has its tone then, whatever its colours are.
+  double exposure = 1.0;
+  Eigen::Array3f colour = Eigen::Array3f::Ones();  ///< linear RGB of luminance 1
 };
 
-/// Meters the light at the points that a camera sees: means over the points within a factor 10 of
-/// the median illuminance. Empty: no light falls on what the camera sees.
+/// Means of `irradiance` (vertices x bands, W/m^2) over the points that a camera sees, within a
+/// factor 10 of the median illuminance. Rays pass elements that are `clear` (1 for each; empty:
+/// none), and those without light, as the outside of a closed room. Empty: no light falls on what
+/// the camera sees.
 std::optional<IncidentLight> meter_incident_light(const ElementCaster& caster,
                                                   const BandArray& irradiance,
                                                   std::span<const char> clear, const Bands& bands,
                                                   const Camera& camera);
-
-/// Exposure for incident light, as of a photographer's incident meter (ISO 2720): the multiplier of
-/// radiance for which white paper, of reflectance 1, under the mean light of a view shows as 1.
-/// A room has its tone then, whatever its colours: white rooms show white, dark ones dark. Empty:
-/// no light falls on what the camera sees.
-std::optional<double> incident_exposure(const ElementCaster& caster, const BandArray& irradiance,
-                                        std::span<const char> clear, const Bands& bands,
-                                        const Camera& camera);
 
 /// The colour of a black body, linear RGB of luminance 1. `kelvin` is from coldest_white to
 /// hottest_white; a colder body has a colour outside of Rec. 709's primaries.
@@ -48,8 +48,8 @@ Eigen::Array3f colour_of_black_body(double kelvin);
 inline constexpr double coldest_white = 2000.0, hottest_white = 40000.0;
 
 /// White balance: factors of linear RGB that show white paper under light of `colour` (luminance 1)
-/// as grey of the same luminance (von Kries' rule on the primaries). A factor is at most 16,
-/// so that light with next to no blue leaves a picture.
+/// as grey of the same luminance (von Kries' rule on the primaries). A factor is at most 64; blue
+/// under a black body of coldest_white takes 49. Light with less blue leaves a picture.
 Eigen::Array3f white_balance(const Eigen::Array3f& colour);
 
 }  // namespace lightwell

@@ -95,9 +95,11 @@ float filmic(float x) {
 }
 
 float aces_like(float x) {
-  constexpr float brightest = 65536.0f;
-  const float y = std::clamp(x, 0.0f, brightest);
-  return std::min(1.0f, y * (2.51f * y + 0.03f) / (y * (2.43f * y + 0.59f) + 0.14f));
+  constexpr float brightest = 65536.0f;  // far above where the curve reaches 1, and finite
+  using Fit = AcesFit;
+  const double y = std::clamp(x, 0.0f, brightest);
+  return static_cast<float>(
+      std::min(1.0, y * (Fit::a * y + Fit::b) / (y * (Fit::c * y + Fit::d) + Fit::e)));
 }
 
 Eigen::Array3f display_rgb(const Eigen::Array3f& linear, double scale, ToneCurve curve) {

@@ -208,6 +208,11 @@ Bounds scene_bounds(const Scene& scene);
 /// sound sky. Throws InputError naming surface, material, value and remedy.
 void validate(const Scene& scene);
 
+/// The same for a camera: finite places and times within farthest_coordinate, direction and up unit
+/// vectors at right angles, within 1e-6, a field of view between 0 and 180 degrees, an aperture and
+/// a distance of focus that rays can be computed with. Throws InputError naming camera and value.
+void validate(const Camera& camera);
+
 /// 64-bit hash of everything that decides the light: geometry, materials, lamps, sky and bands, not
 /// cameras, names or notes. Solutions store the hash, so that a solution of another scene is
 /// refused.

@@ -1,5 +1,4 @@
 #include "scene/sky.h"
-#include "scene/limits.h"
 
 #include <fmt/format.h>
 
@@ -12,6 +11,7 @@
 #include <stdexcept>
 
 #include "scene/degree.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {

@@ -251,34 +251,6 @@ void check_lamp(const Scene& scene, const Lamp& lamp) {
   if (web && (!*web || (*web)->values().size() == 0)) refuse("its distribution is empty");
 }
 
-// Rays from a camera begin on its lens and pass its plane of focus.
-void check_camera(const Scene& scene, const Camera& camera) {
-  const auto refuse = [&](const std::string& what) {
-    fail(scene, fmt::format("camera '{}': {}", camera.name, what));
-  };
-  if (const std::string what = place_fault(camera.position); !what.empty()) refuse(what);
-  constexpr double rounding = 1e-6;
-  if (!(std::abs(camera.direction.norm() - 1.0) < rounding) ||
-      !(std::abs(camera.up.norm() - 1.0) < rounding)) {
-    refuse("its direction and upright must be unit vectors");
-  }
-  if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
-    refuse(fmt::format("its field of view is {:g} degrees; it must lie between 0 and 180",
-                       camera.fov_degrees));
-  }
-  if (!(camera.lens_radius >= 0.0 && camera.lens_radius <= farthest_coordinate)) {
-    refuse(fmt::format("the radius of its lens is {:g} m; it must lie between 0 and {:g} m",
-                       camera.lens_radius, farthest_coordinate));
-  }
-  if (!(camera.focus_distance >= smallest_scene && camera.focus_distance <= farthest_coordinate)) {
-    refuse(fmt::format("it focuses at {:g} m; the distance must lie between {:g} and {:g} m",
-                       camera.focus_distance, smallest_scene, farthest_coordinate));
-  }
-  if (!std::isfinite(camera.shutter_open) || !std::isfinite(camera.shutter_close)) {
-    refuse("the times of its shutter are not finite");
-  }
-}
-
 void check_motion(const Scene& scene, const std::string& what, int motion) {
   if (motion >= -1 && motion < static_cast<int>(scene.motions.size())) return;
   fail(scene, fmt::format("{}: its motion does not exist", what));
@@ -314,6 +286,42 @@ void check_motions(const Scene& scene) {
 
 }  // namespace
 
+void validate(const Camera& camera) {
+  const auto refuse = [&](const std::string& what) {
+    throw InputError(fmt::format("camera '{}': {}", camera.name, what));
+  };
+  if (const std::string what = place_fault(camera.position); !what.empty()) refuse(what);
+  constexpr double rounding = 1e-6;
+  if (!(std::abs(camera.direction.norm() - 1.0) < rounding) ||
+      !(std::abs(camera.up.norm() - 1.0) < rounding) ||
+      !(std::abs(camera.direction.dot(camera.up)) < rounding)) {
+    refuse("direction and up must be unit vectors at right angles to each other");
+  }
+  if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
+    refuse(fmt::format("a field of view of {} degrees; it must lie between 0 and 180",
+                       camera.fov_degrees));
+  }
+  if (!(camera.lens_radius >= 0.0 && camera.lens_radius <= farthest_coordinate)) {
+    refuse(fmt::format("a lens of radius {} m; it must lie between 0, for a pinhole, and {:g} m",
+                       camera.lens_radius, farthest_coordinate));
+  }
+  if (!(camera.focus_distance >= smallest_scene && camera.focus_distance <= farthest_coordinate)) {
+    refuse(fmt::format("it is focused at {} m; the distance must lie between {:g} and {:g} m",
+                       camera.focus_distance, smallest_scene, farthest_coordinate));
+  }
+  if (camera.blades != 0 && (camera.blades < 3 || camera.blades > max_blades)) {
+    refuse(fmt::format("an aperture of {} blades; give 3 to {}, or 0 for a round one",
+                       camera.blades, max_blades));
+  }
+  if (!std::isfinite(camera.shutter_open) || !std::isfinite(camera.shutter_close) ||
+      !(camera.shutter_open <= camera.shutter_close)) {
+    refuse(
+        fmt::format("its shutter opens at {:g} s and closes at {:g} s; both must be finite, and it "
+                    "must not close before it opens",
+                    camera.shutter_open, camera.shutter_close));
+  }
+}
+
 void validate(const Scene& scene) {
   const int bands = scene.bands.count();
   if (bands < 1 || bands > max_bands) {
@@ -321,7 +329,13 @@ void validate(const Scene& scene) {
   }
   for (const Material& material : scene.materials) check_material(scene, material);
   for (const Lamp& lamp : scene.lamps) check_lamp(scene, lamp);
-  for (const Camera& camera : scene.cameras) check_camera(scene, camera);
+  for (const Camera& camera : scene.cameras) {
+    try {
+      validate(camera);
+    } catch (const InputError& error) {
+      fail(scene, error.what());
+    }
+  }
   if (scene.sky) {
     try {
       validate(*scene.sky, scene.bands);

@@ -31,9 +31,8 @@ int on_hilbert_curve(int size, int x, int y) {
   return distance;
 }
 
-// The point (u, v) of a cell in axes of north, east and up. The
-// rings have equal height, so that all cells have the same solid angle and the horizon lies between
-// two rings.
+// The point (u, v) of a cell in axes of north, east and up. The rings have equal height, so that
+// all cells have the same solid angle and the horizon lies between two rings.
 Eigen::Vector3d dome_direction(int cell, double u, double v) {
   constexpr int around = SkyCells::around;
   static const std::array<Eigen::Vector2d, around> middles = [] {
@@ -58,11 +57,11 @@ Eigen::Vector3d dome_direction(int cell, double u, double v) {
 
 // Directions of a grid of n x n squares in each cell, cell after cell: the middles of the squares,
 // or the corners of the cells for n = 2.
-std::vector<Eigen::Vector3f> dome_grid(int around, int rings, int n) {
+std::vector<Eigen::Vector3f> dome_grid(int n) {
   std::vector<Eigen::Vector3f> grid;
-  grid.reserve(static_cast<std::size_t>(around) * rings * n * n);
+  grid.reserve(SkyCells::count * static_cast<std::size_t>(n * n));
   const auto at = [n](int i) { return n == 2 ? static_cast<double>(i) : (i + 0.5) / n; };
-  for (int c = 0; c < around * rings; ++c) {
+  for (int c = 0; c < static_cast<int>(SkyCells::count); ++c) {
     for (int i = 0; i < n * n; ++i) {
       grid.push_back(dome_direction(c, at(i % n), at(i / n)).cast<float>());
     }
@@ -157,8 +156,8 @@ SkyCells::Sample SkyCells::sample(int cell, double u, double v) const {
 // int L cos dw over the part of a cell that the horizon may cut.
 float SkyCells::cut_irradiance(int c, const Eigen::Vector3f& normal, float whole) const {
   // Made once, for all points.
-  static const std::vector<Eigen::Vector3f> corners = dome_grid(around, rings, 2);
-  static const std::vector<Eigen::Vector3f> middles = dome_grid(around, rings, fine);
+  static const std::vector<Eigen::Vector3f> corners = dome_grid(2);
+  static const std::vector<Eigen::Vector3f> middles = dome_grid(fine);
   const Eigen::Vector3f n = axes_.transpose().cast<float>() * normal;
   constexpr float rounding = 1e-6f;
   const auto of_cell = corners.begin() + std::ptrdiff_t{4} * c;

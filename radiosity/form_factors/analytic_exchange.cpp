@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 // Powers of 4, so that no goal straddles two sets.
 constexpr int few_rays = 16, points_in_set = 1 << 14, most_rays = 1 << 18;
 constexpr double usual_target = 1e-3;
-constexpr double exact_target = 1e-6;  // error of F where visibility is exact, by usual targets
+constexpr double exact_target = 1e-6;  // error of F where visibility is exact
 // S_ij and F_ij are each rounded to floats, by 2^-24 at most.
 constexpr double rounding = 0x1p-23;
 
@@ -49,9 +49,7 @@ class PairVisibility {
     Between between;
     shafts_.find(i, j, between);
     if (between.is_nothing()) return {};
-    const double tenth = 0.1 * target_;
-    const double error = target_ > usual_target ? tenth : std::min(exact_target, tenth);
-    const auto exact = shafts_.visible(i, j, between, S, error);
+    const auto exact = shafts_.visible(i, j, between, S, std::min(exact_target, 0.1 * target_));
     if (exact) return {exact->value / S, exact->error * exact->error / (S * S)};
     return sampled(i, j, largest_form_factor);
   }

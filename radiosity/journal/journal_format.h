@@ -73,7 +73,7 @@ struct JournalContents {
   struct Phase {
     std::string name{};
     std::uint64_t fingerprint = 0;
-    /// By number: a damaged number takes no memory for the numbers below.
+    /// Blocks by number, in a map: a damaged number takes no memory for the numbers below.
     std::map<std::uint32_t, JournalRange> blocks{};
     JournalRange slots{};  ///< both slots
   };

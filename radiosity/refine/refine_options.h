@@ -11,10 +11,10 @@ namespace lightwell {
 /// What is asked of each part of a scene (see SceneParts::judged_with).
 struct PartEffort {
   double tolerance = 0.0;  ///< RefineOptions::tolerance within the part
-  double noise = 0.0;      ///< most noise of the final gather, relative to the part's mean; 0: any
-  double sky_noise =
-      0.0;       ///< most noise of the light of the sky's dome, relative to the mean; 0: any
-  int rays = 0;  ///< of the final gather in the part
+  /// Most noise of the final gather, and of the light of the sky's dome, relative to the part's
+  /// mean; 0: any.
+  double noise = 0.0, sky_noise = 0.0;
+  int rays = 0;             ///< of the final gather in the part
   double irradiance = 0.0;  ///< by which errors in the part are judged, mean of bands, W/m^2
 };
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -16,19 +16,7 @@ inline constexpr std::int64_t most_pair_tests = 300'000'000;
 /// plane, so that few items are near a given one.
 class LoopTree {
  public:
-  struct Box {
-    Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300);
-    Eigen::Vector2d high = Eigen::Vector2d::Constant(-1e300);
-
-    void extend(const Eigen::Vector2d& p) {
-      low = low.cwiseMin(p);
-      high = high.cwiseMax(p);
-    }
-    void extend(const Box& other) {
-      low = low.cwiseMin(other.low);
-      high = high.cwiseMax(other.high);
-    }
-  };
+  using Box = Eigen::AlignedBox2d;
 
   /// `box_of(i)` is the box of item i of `count`.
   template <class BoxOf>

@@ -130,7 +130,7 @@ class PlyReader {
       throw InputError(
           fmt::format("{}:{}: the file is too short for so many of '{}' ({}); it was damaged or "
                       "cut off",
-                      file_.path().string(), line_, name, text));
+                      file_.path().string(), line_, excerpt(name), excerpt(text)));
     }
     elements_.push_back({.name = name, .count = static_cast<std::int64_t>(*count)});
   }
@@ -219,7 +219,7 @@ class PlyReader {
   std::uint32_t index(double value, const Element& element) const {
     if (!(value >= 0.0 && value <= static_cast<double>(UINT32_MAX))) {
       fail(fmt::format("a '{}' has the number {}, which no vertex and no list can have",
-                       element.name, value));
+                       excerpt(element.name), value));
     }
     return static_cast<std::uint32_t>(value);
   }
@@ -244,9 +244,8 @@ class PlyReader {
     const char* const end = word.data() + word.size();
     const auto parsed = std::from_chars(begin, end, value);
     if (parsed.ec != std::errc() || parsed.ptr != end) {
-      constexpr std::size_t longest = 40;
-      fail(fmt::format("a '{}' has '{}' in place of a number", element.name,
-                       word.substr(0, longest)));
+      fail(fmt::format("a '{}' has '{}' in place of a number", excerpt(element.name),
+                       excerpt(word)));
     }
     rest_.remove_prefix(word.size());
     return value;
@@ -270,7 +269,8 @@ class PlyReader {
     file_.fail(line_, fmt::format("{} ({}); the file was damaged", problem, excerpt(text)));
   }
   [[noreturn]] void fail_short(const Element& element) const {
-    fail(fmt::format("the file ends within '{}'; it was damaged or cut off", element.name));
+    fail(
+        fmt::format("the file ends within '{}'; it was damaged or cut off", excerpt(element.name)));
   }
 
   TextFile file_;

@@ -87,15 +87,12 @@ bool cross_or_touch(const Point& a, const Point& b, const Point& c, const Point&
 }
 
 bool are_apart(const LoopTree::Box& box, const LoopTree::Box& other) {
-  return (box.high.array() < other.low.array() - coincident).any() ||
-         (other.high.array() < box.low.array() - coincident).any();
+  return (box.max().array() < other.min().array() - coincident).any() ||
+         (other.max().array() < box.min().array() - coincident).any();
 }
 
 LoopTree::Box box_of_edge(const FlatLoop& p, std::size_t i) {
-  LoopTree::Box box;
-  box.extend(p[i]);
-  box.extend(p[(i + 1) % p.size()]);
-  return box;
+  return LoopTree::Box(p[i]).extend(p[(i + 1) % p.size()]);
 }
 
 LoopTree tree_of_edges(const FlatLoop& p) {
@@ -103,7 +100,7 @@ LoopTree tree_of_edges(const FlatLoop& p) {
 }
 
 LoopTree tree_of_corners(const FlatLoop& p) {
-  return {p.size(), [&](std::size_t i) { return LoopTree::Box{.low = p[i], .high = p[i]}; }};
+  return {p.size(), [&](std::size_t i) { return LoopTree::Box(p[i]); }};
 }
 
 // The fault of a loop whose corners or edges crowd so much that checking them would take minutes.
@@ -128,7 +125,7 @@ std::string loop_fault_within(const FlatLoop& p, PairTests& tests) {
   const std::size_t n = p.size();
   const LoopTree corners = tree_of_corners(p), edges = tree_of_edges(p);
   for (std::size_t i = 0; i < n; ++i) {
-    const LoopTree::Box place{.low = p[i], .high = p[i]};
+    const LoopTree::Box place(p[i]);
     const std::size_t same = corners.find(
         i + 1, [&](const LoopTree::Box& box) { return !are_apart(place, box); },
         [&](std::size_t j) {
@@ -321,8 +318,8 @@ class EarClipping {
                               const Point& c) {
     const auto is_outside = [&](const Point& from, const Point& to) {
       const Point side = to - from;
-      const Point inmost(side.y() > 0.0 ? box.low.x() : box.high.x(),
-                         side.x() > 0.0 ? box.high.y() : box.low.y());
+      const Point inmost(side.y() > 0.0 ? box.min().x() : box.max().x(),
+                         side.x() > 0.0 ? box.max().y() : box.min().y());
       const Point at = inmost - from;
       return side.x() * at.y() - side.y() * at.x() < -2.0 * coincident * side.norm();
     };

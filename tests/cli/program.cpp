@@ -61,28 +61,7 @@ Ended run_lightwell(const std::filesystem::path& folder,
 }
 
 std::string small_room() {
-  return R"(
-unit = "m"
-[materials.white]
-reflectance = [0.7, 0.5, 0.3]
-[materials.panel]
-power = [12, 10, 8]
-[[surfaces]]
-name = "room"
-material = "white"
-box = { min = [0, 0, 0], max = [4, 3, 2.5], inward = true }
-[[surfaces]]
-name = "panel"
-material = "panel"
-polygon = [[1.5, 1, 2.4], [1.5, 2, 2.4], [2.5, 2, 2.4], [2.5, 1, 2.4]]
-[[cameras]]
-name = "door"
-position = [0.2, 0.2, 1.6]
-look_at = [3, 2, 0.8]
-up = [0, 0, 1]
-fov = 75
-size = [48, 32]
-)";
+  return content_of(LIGHTWELL_TEST_DATA "/small_room.toml");
 }
 
 std::string unit_cube() {

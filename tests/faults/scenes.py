@@ -2,27 +2,9 @@
 
 import os
 
-ROOM = """unit = "m"
-[materials.white]
-reflectance = [0.7, 0.5, 0.3]
-[materials.panel]
-power = [12, 10, 8]
-[[surfaces]]
-name = "room"
-material = "white"
-box = { min = [0, 0, 0], max = [4, 3, 2.5], inward = true }
-[[surfaces]]
-name = "panel"
-material = "panel"
-polygon = [[1.5, 1, 2.4], [1.5, 2, 2.4], [2.5, 2, 2.4], [2.5, 1, 2.4]]
-[[cameras]]
-name = "door"
-position = [0.2, 0.2, 1.6]
-look_at = [3, 2, 0.8]
-up = [0, 0, 1]
-fov = 75
-size = [48, 32]
-"""
+DATA = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "data")
+with open(os.path.join(DATA, "small_room.toml"), encoding="utf-8") as small_room:
+    ROOM = small_room.read()
 # The same room with another reflectance, for old files that differ from new ones.
 OTHER_ROOM = ROOM.replace("0.7, 0.5, 0.3", "0.6, 0.5, 0.4")
 POINTS = "x,y,z,nx,ny,nz\n" + "".join(f"{x / 5},1.5,0.7,0,0,1\n" for x in range(1, 20))

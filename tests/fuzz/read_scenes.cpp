@@ -9,20 +9,16 @@
 #include "tests/fuzz/target.h"
 
 namespace lightwell::fuzz {
-namespace {
 
-// Reads a scene, and walks over all of the scene as its hash does.
-Scene read_all(const std::string& name, std::string_view bytes) {
+Scene read_scene_file(const std::string& name, std::string_view bytes) {
   Scene scene = read_scene(input_file(name, bytes));
   validate(scene);
   scene_hash(scene);
   return scene;
 }
 
-}  // namespace
-
 void read_toml_scene(std::string_view bytes) {
-  read_lighting_design(read_all("scene.toml", bytes));
+  read_lighting_design(read_scene_file("scene.toml", bytes));
 }
 
 // One input is both files, so that names of materials meet: lines behind "#mtl" are the MTL.
@@ -32,27 +28,7 @@ void read_obj_and_mtl(std::string_view bytes) {
   const std::string_view mtl =
       at == std::string_view::npos ? std::string_view() : bytes.substr(at + border.size());
   input_file("scene.mtl", mtl);
-  read_all("scene.obj", bytes.substr(0, at));
-}
-
-void read_gltf_scene(std::string_view bytes) {
-  read_all("scene.gltf", bytes);
-}
-
-void read_glb_scene(std::string_view bytes) {
-  read_all("scene.glb", bytes);
-}
-
-void read_radiance_scene(std::string_view bytes) {
-  read_all("scene.rad", bytes);
-}
-
-void read_radiance_project(std::string_view bytes) {
-  read_all("scene.rif", bytes);
-}
-
-void read_mitsuba_scene(std::string_view bytes) {
-  read_all("scene.xml", bytes);
+  read_scene_file("scene.obj", bytes.substr(0, at));
 }
 
 // The first two meshes of the file: the table at its end tells where the second is.
@@ -67,18 +43,6 @@ void read_serialized(std::string_view bytes) {
       if (number == 0) throw;
     }
   }
-}
-
-void read_view3d(std::string_view bytes) {
-  read_all("scene.vs3", bytes);
-}
-
-void read_ply(std::string_view bytes) {
-  read_all("scene.ply", bytes);
-}
-
-void read_stl(std::string_view bytes) {
-  read_all("scene.stl", bytes);
 }
 
 }  // namespace lightwell::fuzz

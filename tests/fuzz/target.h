@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "scene/scene.h"
+
 namespace lightwell::fuzz {
 
 /// Changes bytes at random, to at most `longest` of them: libFuzzer's own mutations.
@@ -28,17 +30,11 @@ struct Target {
 std::span<const Target> targets();
 
 // The readers.
+/// Reads a scene from a file called `name`, and walks over all of the scene as its hash does.
+Scene read_scene_file(const std::string& name, std::string_view bytes);
 void read_toml_scene(std::string_view bytes);
 void read_obj_and_mtl(std::string_view bytes);
-void read_gltf_scene(std::string_view bytes);
-void read_glb_scene(std::string_view bytes);
-void read_radiance_scene(std::string_view bytes);
-void read_radiance_project(std::string_view bytes);
-void read_mitsuba_scene(std::string_view bytes);
 void read_serialized(std::string_view bytes);
-void read_view3d(std::string_view bytes);
-void read_ply(std::string_view bytes);
-void read_stl(std::string_view bytes);
 void read_ies_luminaire(std::string_view bytes);
 void read_ldt_luminaire(std::string_view bytes);
 void read_png_or_jpeg(std::string_view bytes);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "raytrace/camera_ray.h"
 #include "raytrace/display.h"
 #include "raytrace/light_meter.h"
 #include "scene/parallel.h"
@@ -15,9 +14,6 @@ namespace lightwell {
 namespace {
 
 constexpr int vertex_grain = 4096;
-/// Surfaces that a sample passes before it counts as black: panes of glass and walls from behind.
-constexpr int max_layers = 16;
-constexpr int metering_width = 160;
 
 const Material* find_material(const PatchMesh& mesh, const std::vector<Material>& materials,
                               int element) {
@@ -225,61 +221,29 @@ std::vector<std::uint8_t> error_colors(const SolvedScene& solved) {
   return false_colors(error, {.low = 1e-3, .high = 0.1});
 }
 
+namespace {
+
+// 1 for each element of glass.
+std::vector<char> clear_elements(const std::vector<ElementKind>& kinds) {
+  std::vector<char> clear(kinds.size());
+  std::ranges::transform(kinds, clear.begin(),
+                         [](ElementKind kind) { return kind == ElementKind::glass ? 1 : 0; });
+  return clear;
+}
+
+}  // namespace
+
 Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                      const BandArray& radiance, const Camera& camera, int width, const Sky* sky) {
-  Camera coarse = camera;
-  coarse.width = width;
-  coarse.height = std::clamp(
-      static_cast<int>(std::lround(static_cast<double>(width) * camera.height / camera.width)), 1,
-      4 * width);
-  const CameraRays camera_rays(coarse);
-  Image image{coarse.width, coarse.height, {}};
-  image.radiance = BandArray::Zero(image.width * image.height, radiance.cols());
-
-  std::vector<Ray> rays;
-  std::vector<int> pixels;
-  for (int y = 0; y < image.height; ++y) {
-    for (int x = 0; x < image.width; ++x) {
-      rays.push_back(camera_rays.ray(x + 0.5, y + 0.5));
-      pixels.push_back(y * image.width + x);
-    }
-  }
-  for (int layer = 0; layer < max_layers && !rays.empty(); ++layer) {
-    std::vector<ElementHit> hits(rays.size());
-    caster.closest_hits(rays, hits);
-    std::vector<Ray> further;
-    std::vector<int> further_pixels;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (hits[i].facet < 0) {
-        if (!sky) continue;
-        const Spectrum L = radiance_outside(*sky, rays[i].direction.normalized());
-        image.radiance.row(pixels[i]) = L.transpose();
-        continue;
-      }
-      if (hits[i].element >= 0 && kinds[hits[i].element] != ElementKind::glass) {
-        image.radiance.row(pixels[i]) = interpolate(caster.mesh(), radiance, hits[i]).transpose();
-        continue;
-      }
-      Ray ray = rays[i];
-      ray.origin += hits[i].t * ray.direction;
-      ray.origin_group = hits[i].facet;
-      further.push_back(ray);
-      further_pixels.push_back(pixels[i]);
-    }
-    rays = std::move(further);
-    pixels = std::move(further_pixels);
-  }
-  return image;
+  return coarse_picture(caster, clear_elements(kinds), radiance, camera, width, sky);
 }
 
 double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                      const ShownLight& light, const Bands& bands, const Camera& camera,
                      const Sky* sky) {
-  std::vector<char> clear(kinds.size());
-  std::ranges::transform(kinds, clear.begin(),
-                         [](ElementKind kind) { return kind == ElementKind::glass ? 1 : 0; });
-  const auto metered = incident_exposure(caster, light.irradiance, clear, bands, camera);
-  if (metered) return *metered;
+  const auto metered =
+      meter_incident_light(caster, light.irradiance, clear_elements(kinds), bands, camera);
+  if (metered) return metered->exposure;
   const BandArray& radiance = light.radiance;
   const Image seen = coarse_picture(caster, kinds, radiance, camera, metering_width, sky);
   if ((seen.radiance > 0.0f).any()) return exposure_scale(seen, bands);

@@ -115,7 +115,7 @@ struct ShownLight {
   const BandArray& radiance;
 };
 
-/// The exposure of the second pass's picture from a camera: incident_exposure(). Where no light
+/// The exposure of the second pass's picture from a camera: IncidentLight::exposure. Where no light
 /// falls on what the camera sees, the exposure_scale of a coarse picture; where the coarse picture
 /// is black, that of all vertices alike.
 double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,

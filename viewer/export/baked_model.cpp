@@ -261,7 +261,8 @@ std::vector<float> reflected_radiances(const BakedModel& model, const Bands& ban
   return largest;
 }
 
-/// BakedModel::color_scale for an exposure of `scale`.
+/// BakedModel::color_scale for an exposure of `scale`. Below three stops less, a room with one
+/// bright spot would look unlit.
 double unclipped_scale(std::vector<float> radiances, double scale) {
   constexpr double unclipped = 0.99, least = 1.0 / 8.0;
   if (radiances.empty()) return scale;

@@ -58,6 +58,7 @@ WalkWindow::WalkWindow(LiveSolve& live, SolvedScene dark, const ViewOptions& opt
 WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> own, LiveSolve* live,
                        const ViewOptions& options)
     : options_(options),
+      is_opened_(options.from_outside && !options.look_through),
       own_(std::move(own)),
       live_(live),
       view_(std::make_unique<SolutionView>(own_ ? *own_ : *shown, options_)),

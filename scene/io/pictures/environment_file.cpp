@@ -36,19 +36,12 @@ struct EnvironmentPixels {
   throw InputError(fmt::format("{}: {}", path.string(), problem));
 }
 
-// `most_of_a_byte`: pixels that the format's best compression makes of a byte.
 void check_environment_size(const std::filesystem::path& path, std::int64_t width,
-                            std::int64_t height, std::int64_t most_of_a_byte) {
+                            std::int64_t height) {
   if (width < 1 || height < 1 || width > most_environment_pixels ||
       height > most_environment_pixels / width) {
     fail_environment(path, fmt::format("has {} x {} pixels; an environment map has at most {}",
                                        width, height, most_environment_pixels));
-  }
-  const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path));
-  if (width * height / most_of_a_byte > bytes) {
-    fail_environment(path, fmt::format("is too short for its {} x {} pixels; it was damaged or cut "
-                                       "off",
-                                       width, height));
   }
 }
 
@@ -59,9 +52,7 @@ EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
     const auto window = file.header().dataWindow();
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
-    // An even block of 2048 x 256 pixels takes some 130 bytes (DWAB).
-    constexpr std::int64_t most_of_a_byte = 8192;
-    check_environment_size(path, width, height, most_of_a_byte);
+    check_environment_size(path, width, height);
     EnvironmentPixels pixels{.width = static_cast<int>(width),
                              .height = static_cast<int>(height),
                              .rgb = BandArray::Zero(width * height, 3)};
@@ -86,6 +77,8 @@ EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
     return pixels;
   } catch (const InputError&) {
     throw;
+  } catch (const std::bad_alloc&) {
+    throw;  // the file is not to blame
   } catch (const std::exception& error) {
     fail_environment(path, fmt::format("cannot be read as OpenEXR: {}", error.what()));
   }
@@ -165,7 +158,13 @@ class RgbeFile {
     }
     // An even row of 32 767 pixels takes twelve bytes, in runs of the older kind.
     constexpr std::int64_t most_of_a_byte = 4096;
-    check_environment_size(path_, size[1], size[0], most_of_a_byte);
+    check_environment_size(path_, size[1], size[0]);
+    const auto bytes = static_cast<std::int64_t>(std::filesystem::file_size(path_));
+    if (size[0] * size[1] / most_of_a_byte > bytes) {
+      fail_environment(path_, fmt::format("is too short for its {} x {} pixels; it was damaged or "
+                                          "cut off",
+                                          size[1], size[0]));
+    }
     return {static_cast<int>(size[1]), static_cast<int>(size[0])};
   }
 

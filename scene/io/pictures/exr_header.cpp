@@ -94,7 +94,7 @@ bool is_sound(std::string_view type, std::string_view value) {
   return type != "idmanifest";  // of deep pictures, whose uncompressed size OpenEXR trusts
 }
 
-// What OpenEXR takes memory by when it opens a part.
+// Sizes by which OpenEXR takes memory when it opens a part.
 struct PartSize {
   double width = 0.0, height = 0.0, channels = 0.0;
   double lines = 1.0;                          // of a block
@@ -119,7 +119,8 @@ struct PartSize {
 
   // Memory for a block of lines is that of all its lines, however low the picture is.
   bool is_in_proportion(double bytes) const {
-    constexpr double most_of_a_byte = 8192.0;  // see read_exr_pixels()
+    // An even block of 2048 x 256 pixels takes some 130 bytes (DWAB).
+    constexpr double most_of_a_byte = 8192.0;
     constexpr double usual = 0x1p28, each = 4.0;
     const double block = each * channels * std::max(width * lines, tile_width * tile_height);
     return width * height * channels <= most_of_a_byte * bytes && block <= std::max(usual, bytes);

@@ -16,7 +16,8 @@ namespace lightwell {
 namespace {
 
 constexpr std::int64_t most_primitives = 2'000'000;
-constexpr std::size_t most_corners = 2000;  // of a polygon: checks are quadratic in their number
+constexpr std::size_t most_corners =
+    2000;  // of a polygon; with more, it is a curve that strips show better
 
 Eigen::Vector3d point(const RadiancePrimitive& p, std::size_t first) {
   return {p.reals[first], p.reals[first + 1], p.reals[first + 2]};
