@@ -362,11 +362,13 @@ void RenderArguments::add_to(CLI::App& command) {
       ->check(one_of("quality", {"draft", "good", "final"}))
       ->group(group);
   command
-      .add_option("--pass", pass,
-                  "direct: direct light anew at every pixel (default); gather: indirect light "
-                  "anew too; interpolate: all light from the solution")
+      .add_option(
+          "--pass", pass,
+          "auto: light of lamps and sun anew at every pixel, that of the sky where the mesh "
+          "does not follow it (default); direct: all direct light anew; gather: indirect "
+          "light anew too; interpolate: all light from the solution")
       ->type_name("PASS")
-      ->check(one_of("pass", {"interpolate", "direct", "gather"}))
+      ->check(one_of("pass", {"auto", "interpolate", "direct", "gather"}))
       ->group(group);
   command
       .add_option("--shadow-rays", shadow_rays,
@@ -423,8 +425,9 @@ void RenderArguments::add_to(CLI::App& command) {
 RenderOptions RenderArguments::options() const {
   RenderOptions options;
   options.pass = pass == "interpolate" ? Pass::interpolate
+                 : pass == "direct"    ? Pass::direct
                  : pass == "gather"    ? Pass::gather
-                                       : Pass::direct;
+                                       : Pass::automatic;
   options.gather_rays = gather_samples;
   const PictureQuality chosen = effective_quality();
   options.photons = chosen.photons;

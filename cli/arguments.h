@@ -57,7 +57,7 @@ struct PictureQuality {
 /// Options of the second pass.
 struct RenderArguments {
   std::optional<std::pair<int, int>> size{};  ///< width and height in pixels; unset: the camera's
-  std::string pass = "direct";
+  std::string pass = "auto";
   std::string quality = "good";
   std::optional<int> shadow_rays{};  ///< unset, like photons and noise: those of `quality`
   int gather_samples = 256;

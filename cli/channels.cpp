@@ -50,8 +50,8 @@ void ChannelArguments::add_to(CLI::App& command, const std::string& group) {
   add_each(
       command,
       {.name = "--channels",
-       .help = "light channels for 'relight': per-luminaire, or NAME=PATTERN of emitters, which "
-               "may be repeated (default off)",
+       .help = "light kept apart, for 'relight': kinds (default: sky, sun and electric light), "
+               "per-luminaire, off, or NAME=PATTERN of emitters, which may be repeated",
        .type = "WHICH"},
       [this](const std::string& text) { add(text); });
   command.get_option("--channels")->group(group);
@@ -59,26 +59,30 @@ void ChannelArguments::add_to(CLI::App& command, const std::string& group) {
 
 void ChannelArguments::add(const std::string& text) {
   const char* const option = "--channels";
-  if (per_luminaire || is_off || (!patterns.empty() && text.find('=') == std::string::npos)) {
-    throw CLI::ValidationError(option, "give off, per-luminaire or patterns, but only one kind");
+  if (by_kind || per_luminaire || is_off ||
+      (!patterns.empty() && text.find('=') == std::string::npos)) {
+    throw CLI::ValidationError(option,
+                               "give kinds, per-luminaire, off or patterns, but only one of them");
   }
   is_off = text == "off";
+  by_kind = text == "kinds";
   per_luminaire = text == "per-luminaire";
-  if (is_off || per_luminaire) return;
-  const auto [channel, glob] =
-      split_words(option, text, text.find('='),
-                  "off, per-luminaire or NAME=PATTERN, such as desk='desk lamp*': a channel and a "
-                  "pattern for the names of its emitters or their materials");
+  if (is_off || by_kind || per_luminaire) return;
+  const auto [channel, glob] = split_words(
+      option, text, text.find('='),
+      "kinds, per-luminaire, off or NAME=PATTERN, such as desk='desk lamp*': a channel and a "
+      "pattern for the names of its emitters or their materials");
   patterns.push_back({channel, glob});
 }
 
 EmitterChannels ChannelArguments::channels(const Scene& scene) const {
+  if (is_off) return {};
   if (per_luminaire) return channels_per_luminaire(scene);
-  return patterns.empty() ? EmitterChannels{} : channels_by_pattern(scene, patterns);
+  return patterns.empty() ? channels_by_kind(scene) : channels_by_pattern(scene, patterns);
 }
 
 std::string ChannelArguments::text() const {
-  std::string text = per_luminaire ? " --channels per-luminaire" : "";
+  std::string text = is_off ? " --channels off" : per_luminaire ? " --channels per-luminaire" : "";
   for (const ChannelPattern& pattern : patterns) {
     text += " --channels " + quoted(pattern.channel + "=" + pattern.glob);
   }

@@ -13,7 +13,8 @@ namespace lightwell {
 
 /// Light channels that a solution keeps apart.
 struct ChannelArguments {
-  bool is_off = false;  ///< "--channels off" was given
+  bool is_off = false;   ///< "--channels off" was given
+  bool by_kind = false;  ///< "--channels kinds" was given, which is the default
   bool per_luminaire = false;
   std::vector<ChannelPattern> patterns{};
 

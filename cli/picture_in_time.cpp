@@ -21,7 +21,7 @@ RenderOptions options_of(const RenderArguments& arguments, const RenderOptions& 
 std::vector<RenderArguments> from_best_to_quickest(const RenderArguments& arguments) {
   RenderArguments draft = arguments, interpolated = arguments;
   draft.quality = interpolated.quality = "draft";
-  if (draft.pass == "gather") draft.pass = "direct";
+  if (draft.pass == "gather") draft.pass = "auto";
   interpolated.pass = "interpolate";
   return {arguments, draft, interpolated};
 }

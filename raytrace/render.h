@@ -21,6 +21,7 @@ enum class Pass {
   interpolate,  ///< direct and indirect light interpolated from the solution
   direct,       ///< direct light by shadow rays, indirect light interpolated
   gather,       ///< direct light by shadow rays, indirect light by a final gather at every hit
+  automatic,    ///< as `direct`, but light of the sky's dome interpolated where DomeOnMesh is fine
 };
 
 /// Options of many samples per pixel in place of subdivision: for pictures with a lens or motion,
@@ -39,7 +40,7 @@ struct SampleOptions {
 };
 
 struct RenderOptions {
-  Pass pass = Pass::direct;
+  Pass pass = Pass::automatic;
   /// Most mirror and glass events along one path of the ray tree (see deepest_path).
   int max_depth = 10;
   /// Branches of less weight do not fork, and end by chance below a tenth of it.

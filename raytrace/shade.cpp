@@ -90,6 +90,7 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
   }
+  if (options.pass == Pass::automatic) dome_ = dome_on_mesh(caster.mesh(), direct_light, solution);
   if (needs_caustic_photons(solution, options)) {
     caustics_ = options.caustics ? options.caustics
                                  : trace_caustics(scene, caster, direct_light, options.photons,
@@ -458,10 +459,13 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   if (state.number) shadows.max_rays = shadows.min_rays;
   Arriving E;
   const ShadowOrigin from = shadow_origin(hit, at);
+  const bool has_dome = dome_.is_fine(hit.element);
   E.direct = direct_light_.irradiance(
       *state.caster, {.at = {from.position, normal, from.facet},
                       .key = random_key(state.key, branch.node, RandomPurpose::ray_tree_shadows),
-                      .shadows = shadows});
+                      .shadows = shadows,
+                      .lights = has_dome ? Lights::all_but_dome : Lights::all});
+  if (has_dome) E.direct += interpolate(mesh, dome_.irradiance, hit);
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
         *state.caster,

@@ -12,6 +12,7 @@
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/caustic_map.h"
+#include "raytrace/dome_on_mesh.h"
 #include "raytrace/lamp_samples.h"
 #include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
@@ -247,6 +248,7 @@ class RayTree {
   bool with_layers_ = false;
   Eigen::Array3f white_rgb_;             ///< RGB of a reflectance of 1 under equal-energy light
   std::optional<PixelGather> gather_{};  ///< for Pass::gather
+  DomeOnMesh dome_{};                    ///< for Pass::automatic
   std::shared_ptr<const CausticMap> caustics_{};  ///< replaces the solution's caustics; null: none
   static constexpr int gloss_point_count = 1024;
   SobolPoints gloss_points_;  ///< samples of one key; further samples use a new scrambling

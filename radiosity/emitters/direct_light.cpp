@@ -377,7 +377,7 @@ const FreeSource* DirectLight::dome() const {
 // Emitters come first, then lamps, then sky and sun.
 int DirectLight::first_light(Lights lights) const {
   std::size_t first = 0;
-  if (lights != Lights::all) first = emitters_.size();
+  if (lights == Lights::free || lights == Lights::distant) first = emitters_.size();
   if (lights == Lights::distant) {
     first += static_cast<std::size_t>(
         std::ranges::count_if(free_sources_, [](const auto& s) { return !s.is_distant(); }));
@@ -414,7 +414,7 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     }
     if (!(shadow.light() > 0.0f).any()) continue;  // switched off
     if (shadow.source && shadow.source->is_dome()) {
-      dome = shadow;
+      if (query.lights != Lights::all_but_dome) dome = shadow;
       continue;
     }
     shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, query.at)

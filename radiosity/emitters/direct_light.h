@@ -65,8 +65,8 @@ struct EmitterVisibility {
   std::uint64_t hidden = 0;  ///< bit i: light i is fully hidden
 };
 
-/// Lights that give a sum: all, free sources only, or sky and sun only.
-enum class Lights { all, free, distant };
+/// Lights that give a sum: all, free sources only, sky and sun only, or all but the sky's dome.
+enum class Lights { all, free, distant, all_but_dome };
 
 /// A point that direct light is computed at, and with which effort.
 struct LightQuery {

@@ -126,6 +126,20 @@ EmitterChannels channels_by_pattern(const Scene& scene, std::span<const ChannelP
   return as_channels(scene, std::move(names), of_light);
 }
 
+EmitterChannels channels_by_kind(const Scene& scene) {
+  const std::vector<Light> lights = lights_of(scene);
+  const std::size_t outside = scene.surfaces.size() + scene.lamps.size();
+  std::vector<std::string> names;
+  std::vector<int> of_light(lights.size(), -1);
+  // From the last on: sky and sun follow the lamps.
+  for (std::size_t i = lights.size(); i-- > 0;) {
+    if (!lights[i].shines) continue;
+    of_light[i] = channel_of(names, i < outside ? electric_channel : lights[i].name);
+  }
+  if (names.size() < 2) return {};
+  return as_channels(scene, std::move(names), of_light);
+}
+
 EmitterChannels channels_per_luminaire(const Scene& scene) {
   const std::vector<Light> lights = lights_of(scene);
   std::vector<std::string> names;

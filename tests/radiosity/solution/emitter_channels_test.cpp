@@ -65,6 +65,22 @@ TEST(EmitterChannels, PerLuminaireThereIsOneForEachName) {
   EXPECT_EQ(channels.of_surface, (std::vector<int>{-1, 0, 1, 2}));
 }
 
+TEST(EmitterChannels, ByKindThereIsOneForSkySunAndElectricLight) {
+  Scene scene = office();
+  EXPECT_TRUE(channels_by_kind(scene).empty())
+      << "electric light alone has nothing to be apart from";
+  scene.lamps.push_back({.name = "spot"});
+  scene.sky = Sky{.scale = constant_spectrum(scene.bands, 1.0f)};
+  const EmitterChannels two = channels_by_kind(scene);
+  EXPECT_EQ(two.names, (Names{"sky", "electric"}));
+  EXPECT_EQ(two.of_surface, (std::vector<int>{-1, 1, 1, 1}));
+  EXPECT_EQ(two.of_source, (std::vector<int>{1, 0}));
+  scene.sky->sun = Sun{.irradiance = constant_spectrum(scene.bands, 1.0f)};
+  const EmitterChannels three = channels_by_kind(scene);
+  EXPECT_EQ(three.names, (Names{"sun", "sky", "electric"}));
+  EXPECT_EQ(three.of_source, (std::vector<int>{2, 1, 0}));
+}
+
 TEST(EmitterChannels, APatternWithoutEmitterIsRefusedWithTheNearestName) {
   const std::string what = refusal({{"desk", "desk 3"}});
   EXPECT_NE(what.find("'desk 3' matches the name of no emitter"), std::string::npos) << what;

@@ -1,0 +1,55 @@
+#include "raytrace/dome_on_mesh.h"
+
+#include <algorithm>
+
+namespace lightwell {
+namespace {
+
+// Returns whether no light but source number `dome` belongs to its channel.
+bool is_alone_in_channel(const PatchMesh& mesh, const RadiositySolution& solution, int dome) {
+  const int channel = solution.source_channel[dome];
+  if (channel < 0 || std::ranges::count(solution.source_channel, channel) != 1) return false;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (solution.patch_channel[p] == channel) return false;
+  }
+  return true;
+}
+
+BandArray irradiance_of_dome(const PatchMesh& mesh, const DirectLight& direct_light,
+                             const RadiositySolution& solution) {
+  const FreeSource* const dome = direct_light.dome();
+  if (!dome) return {};
+  if (direct_light.light_count() == 1) return solution.direct_irradiance;
+  if (solution.channels.empty() || !is_alone_in_channel(mesh, solution, dome->number)) return {};
+  const LightChannel& channel =
+      solution.channels[static_cast<std::size_t>(solution.source_channel[dome->number])];
+  return channel.direct_irradiance.rowwise() * channel.scale.transpose();
+}
+
+bool is_even_over(const PatchMesh& mesh, const BandArray& E, int element) {
+  float least = 0.0f, most = 0.0f;
+  for (int c = 0; c < mesh.corner_count(element); ++c) {
+    const float here = E.row(mesh.corners[element][c]).mean();
+    least = c == 0 ? here : std::min(least, here);
+    most = std::max(most, here);
+  }
+  return most - least <= DomeOnMesh::even * most;
+}
+
+}  // namespace
+
+DomeOnMesh dome_on_mesh(const PatchMesh& mesh, const DirectLight& direct_light,
+                        const RadiositySolution& solution) {
+  if (solution.interpolation_error.size() != mesh.element_count()) return {};
+  DomeOnMesh dome{.irradiance = irradiance_of_dome(mesh, direct_light, solution)};
+  if (dome.irradiance.size() == 0) return {};
+  dome.fine.resize(static_cast<std::size_t>(mesh.element_count()));
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const bool is_fine = solution.interpolation_error[e] <= DomeOnMesh::small_error ||
+                         is_even_over(mesh, dome.irradiance, e);
+    dome.fine[static_cast<std::size_t>(e)] = is_fine ? 1 : 0;
+  }
+  return dome;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "mesh/patches/patch_mesh.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/solution/solution.h"
+
+namespace lightwell {
+
+/// Irradiance straight from the dome of the sky as a solution holds it: without noise, and free of
+/// cost for a picture. A window lights a room evenly, so the mesh follows its light nearly
+/// everywhere; shadow rays of a pixel would find the same light again, with noise.
+struct DomeOnMesh {
+  BandArray irradiance{};  ///< at vertices, W/m^2; empty: not known apart from other light
+  /// Per element, 1 where interpolation is as good as shadow rays: where the estimated error of
+  /// interpolated light is at most `small_error`, or the dome's light hardly differs between the
+  /// corners, so that the error is one of other light.
+  std::vector<char> fine{};
+
+  /// Relative RMS error, about the noise of the shadow rays of a pixel.
+  static constexpr float small_error = 0.02f;
+  /// Greatest difference between corners, as a share of the brightest, that counts as even. Over an
+  /// element of that difference, light that is not linear but a parabola is off by an eighth of it.
+  static constexpr float even = 0.15f;
+
+  bool is_fine(int element) const { return !fine.empty() && fine[element] != 0; }
+};
+
+/// The dome's irradiance, if the dome is the only direct light of the scene or has a channel of its
+/// own (see channels_by_kind), and the solution knows the error of its interpolation. Otherwise
+/// empty.
+DomeOnMesh dome_on_mesh(const PatchMesh& mesh, const DirectLight& direct_light,
+                        const RadiositySolution& solution);
+
+}  // namespace lightwell
