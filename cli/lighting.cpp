@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -10,13 +11,17 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
-#include "cli/lighting_page.h"
+#include "cli/lighting/figures.h"
+#include "cli/lighting/measure.h"
+#include "cli/lighting/page.h"
 #include "cli/lux_range.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/patches/mesh_bounds.h"
+#include "raytrace/encode_png.h"
+#include "raytrace/scene_renderer.h"
 #include "scene/errors.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/nearest_name.h"
@@ -42,18 +47,23 @@ struct LightingArguments {
   double maintenance_factor = 1.0;
   int rays = 1024;
   std::optional<LuxRange> range;
+  std::string picture;  // camera; empty: the first; no_picture: none
 };
 
-Named named_number(const std::string& text, char mark, const char* option) {
+constexpr const char* no_picture = "none";
+
+// `least`: the least value that is allowed.
+Named named_number(const std::string& text, char mark, const char* option, double least) {
   const std::size_t at = text.rfind(mark);
   Named named{.name = text.substr(0, at)};
   if (at != std::string::npos && at > 0) {
     const char* const last = text.data() + text.size();
     const auto [end, bad] = std::from_chars(text.data() + at + 1, last, named.value);
-    if (bad == std::errc() && end == last && named.value > 0.0 && named.value < 1e9) return named;
+    if (bad == std::errc() && end == last && named.value >= least && named.value < 1e9)
+      return named;
   }
-  throw CLI::ValidationError(
-      option, fmt::format("'{}' is not NAME{}NUMBER with a number above 0", text, mark));
+  throw CLI::ValidationError(option, fmt::format("'{}' is not NAME{}NUMBER with a number {} 0",
+                                                 text, mark, least > 0.0 ? "above" : "from"));
 }
 
 int find_surface(const Scene& scene, const std::string& name) {
@@ -99,6 +109,9 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
     const double known = i < design.watts.size() ? design.watts[i] : 0.0;
     row.watts += known;
     if (!(known > 0.0)) partly_known.insert(row.name);
+    const SharedLuminaireFile file = i < design.files.size() ? design.files[i] : nullptr;
+    if (row.count == 1) row.file = file;
+    if (row.file != file) row.file = nullptr;
   }
   for (LuminaireRow& row : rows) {
     if (partly_known.contains(row.name)) row.watts = 0.0;
@@ -120,168 +133,52 @@ void set_watts(std::vector<LuminaireRow>& rows, const std::vector<Named>& watts,
 }
 
 /// Points of the grids: those of the scene file, of --surface and of --plane, in this order.
-std::vector<CalculationSurface> grids(const LightingArguments& arguments, const Scene& scene,
-                                      const LightingDesign& design, const Eigen::Vector3d& up) {
-  std::vector<CalculationSurface> surfaces;
+std::vector<LuxGrid> grids(const LightingArguments& arguments, const Scene& scene,
+                           const LightingDesign& design, const Eigen::Vector3d& up) {
+  std::vector<LuxGrid> grids;
   const double metres = scene.metres_per_unit;
   const double spacing = arguments.spacing * metres;
   constexpr double strip = 0.5;  // m; strip along walls that EN 12464-1 leaves out
   const double margin = arguments.margin ? *arguments.margin * metres : strip;
   for (const CalculationGrid& grid : design.grids) {
     const double usual = grid.height > 0.0 ? margin : 0.0;
-    surfaces.push_back(
-        {.grid = lux_grid(scene, grid.surface, up,
-                          {.height = grid.height,
-                           .margin = grid.margin.value_or(usual),
-                           .spacing = grid.spacing > 0.0 ? grid.spacing : spacing})});
-    surfaces.back().grid.name = grid.name;
+    grids.push_back(lux_grid(scene, grid.surface, up,
+                             {.height = grid.height,
+                              .margin = grid.margin.value_or(usual),
+                              .spacing = grid.spacing > 0.0 ? grid.spacing : spacing}));
+    grids.back().name = grid.name;
   }
   for (const std::string& name : arguments.surfaces) {
-    surfaces.push_back(
-        {.grid = lux_grid(scene, find_surface(scene, name), up, {.spacing = spacing})});
+    grids.push_back(lux_grid(scene, find_surface(scene, name), up, {.spacing = spacing}));
   }
   for (const Named& plane : arguments.planes) {
-    surfaces.push_back(
-        {.grid = lux_grid(scene, find_surface(scene, plane.name), up,
-                          {.height = plane.value * metres, .margin = margin, .spacing = spacing})});
-    surfaces.back().grid.name =
-        fmt::format("{} + {:g} {}", plane.name, plane.value, scene.unit_name);
+    grids.push_back(
+        lux_grid(scene, find_surface(scene, plane.name), up,
+                 {.height = plane.value * metres, .margin = margin, .spacing = spacing}));
+    grids.back().name = fmt::format("{} + {:g} {}", plane.name, plane.value, scene.unit_name);
   }
-  return surfaces;
+  return grids;
 }
 
-// Bound of the first point that has the given illuminance; null where nothing is known.
-Json within_of(const LuxField& field, double lux) {
-  Eigen::Index at = 0;
-  (field.lux - lux).abs().minCoeff(&at);
-  const double within = field.lux_within[at];
-  return std::isfinite(within) ? Json(within) : Json();
-}
-
-Json figures_json(const LightingReport& report) {
-  Json surfaces = Json::array(), observers = Json::array(), lamps = Json::array();
-  for (const CalculationSurface& surface : report.surfaces) {
-    const auto& [grid, field] = surface;
-    surfaces.push_back({{"name", grid.name},
-                        {"E_m", field.mean},
-                        {"E_min", field.least},
-                        {"E_max", field.greatest},
-                        {"E_min_within", within_of(field, field.least)},
-                        {"E_max_within", within_of(field, field.greatest)},
-                        {"U_0", field.uniformity},
-                        {"mean_within", field.mean_within * field.mean},
-                        {"point_within_relative", field.point_within},
-                        {"points", grid.points.size()},
-                        {"spacing_m", {grid.step_u, grid.step_v}},
-                        {"height_m", grid.options.height},
-                        {"margin_m", grid.options.margin},
-                        {"area_m2", grid.area}});
-    if (const auto power = power_density(report, surface)) {
-      surfaces.back()["W_per_m2"] = power->watts_per_area;
-      surfaces.back()["W_per_m2_per_100_lx"] = power->per_hundred_lux;
-    }
-  }
-  for (const auto& [name, glare] : report.observers) {
-    Json sources = Json::array();
-    for (const GlareSource& source : glare.sources) {
-      sources.push_back({{"name", source.name},
-                         {"luminance", source.luminance},
-                         {"solid_angle", source.solid_angle},
-                         {"position_index", source.position_index}});
-    }
-    Json ugr;  // null: no luminaire in sight
-    if (glare.ugr) ugr = *glare.ugr;
-    observers.push_back({{"name", name},
-                         {"UGR", std::move(ugr)},
-                         {"background_luminance", glare.background},
-                         {"sources", std::move(sources)},
-                         {"left_out", glare.left_out}});
-  }
-  for (const LuminaireRow& row : report.luminaires) {
-    lamps.push_back({{"name", row.name}, {"number", row.count}, {"lumens", row.flux}});
-    if (row.watts > 0.0) lamps.back()["watts"] = row.watts;
-  }
-  return {{"maintenance_factor", report.maintenance_factor},
-          {"luminaires", std::move(lamps)},
-          {"surfaces", std::move(surfaces)},
-          {"observers", std::move(observers)}};
-}
-
-std::string points_csv(const LightingReport& report) {
-  std::string csv = "surface,x,y,z,lux,lux_within\n";
-  for (const auto& [grid, field] : report.surfaces) {
-    std::string name = grid.name;
-    for (std::size_t at = 0; (at = name.find('"', at)) != std::string::npos; at += 2) {
-      name.insert(at, 1, '"');
-    }
-    // A spreadsheet would compute a name that begins like a formula.
-    if (name.find_first_of("=+-@") == 0) name.insert(0, 1, '\'');
-    for (std::size_t i = 0; i < grid.points.size(); ++i) {
-      const Eigen::Vector3d p = grid.points[i].position / report.metres_per_unit;
-      const double lux = field.lux[static_cast<Eigen::Index>(i)];
-      const double within = field.lux_within[static_cast<Eigen::Index>(i)];
-      csv += fmt::format("\"{}\",{:.6g},{:.6g},{:.6g},{:.6g},", name, p.x(), p.y(), p.z(), lux);
-      csv += std::isnan(within) ? "\n" : fmt::format("{:.3g}\n", within);
-    }
-  }
-  return csv;
-}
-
-void print_figures(const LightingReport& report) {
-  for (const CalculationSurface& surface : report.surfaces) {
-    const LuxField& field = surface.field;
-    fmt::print("{}: E_m {:.4g} lx (± {:.2g} %), E_min {:.4g}, E_max {:.4g}, U_0 {:.2f}\n",
-               surface.grid.name, field.mean, 100.0 * field.mean_within, field.least,
-               field.greatest, field.uniformity);
-    if (const auto power = power_density(report, surface)) {
-      fmt::print("{}: {:.2f} W/m2, {:.2f} W/m2 per 100 lx\n", surface.grid.name,
-                 power->watts_per_area, power->per_hundred_lux);
-    }
-  }
-  for (const auto& [name, glare] : report.observers) {
-    if (glare.ugr) {
-      fmt::print("{}: UGR {:.1f}\n", name, *glare.ugr);
-    } else {
-      fmt::print("{}: no luminaire in sight, so no UGR\n", name);
-    }
-  }
-}
-
-/// A solved scene with what rays from points need.
-struct MeasurableScene {
-  MeasurableScene(const Scene& of, const SolvedScene& solved)
-      : scene(of), solution(solved.solution), caster(solved.mesh), direct_light(of, solved.mesh) {}
-
-  const Scene& scene;
-  const RadiositySolution& solution;
-  ElementCaster caster;
-  DirectLight direct_light;
-};
-
-void measure_surfaces(const MeasurableScene& lit, const GatherOptions& gathering,
-                      LightingReport& made) {
-  for (CalculationSurface& surface : made.surfaces) {
-    surface.grid = without_buried_points(lit.caster, std::move(surface.grid));
-    surface.field = measure_grid(lit.scene, lit.caster, lit.direct_light, lit.solution,
-                                 surface.grid, made.maintenance_factor, gathering);
-    stop_if_interrupted();
-  }
-}
-
-std::vector<Observer> rate_glare(const MeasurableScene& lit,
-                                 const std::vector<std::string>& cameras,
-                                 const LightingDesign& design, GatherOptions gathering) {
-  constexpr int rays_of_an_eye = 1 << 14;
-  gathering.rays = std::max(gathering.rays, rays_of_an_eye);
-  std::vector<Observer> observers;
-  for (const std::string& name : cameras) {
-    observers.push_back({.name = name,
-                         .glare = unified_glare_rating(lit.scene, lit.caster, lit.direct_light,
-                                                       lit.solution, choose_camera(lit.scene, name),
-                                                       gathering, design.luminous_height)});
-    stop_if_interrupted();
-  }
-  return observers;
+// The picture of the named camera, of the first one by default, with light from the solution alone.
+// Empty for a scene without cameras.
+std::optional<ReportPicture> picture_of(const LightingArguments& arguments, const Scene& scene,
+                                        const SolvedScene& solved) {
+  if (arguments.picture == no_picture || scene.cameras.empty()) return {};
+  Camera camera =
+      arguments.picture.empty() ? scene.cameras.front() : choose_camera(scene, arguments.picture);
+  constexpr double width = 1000.0;  // pixels
+  camera.height = std::max(1, static_cast<int>(std::lround(width * camera.height / camera.width)));
+  camera.width = static_cast<int>(width);
+  SceneRenderer renderer(scene, solved.mesh, solved.solution);
+  const Image image = renderer.render(camera, {.pass = Pass::interpolate, .photons = 0});
+  ToneMapping tone;
+  if (const auto light = renderer.incident_light(camera)) tone.metered_scale = light->exposure;
+  return ReportPicture{
+      .camera = camera.name,
+      .width = camera.width,
+      .height = camera.height,
+      .png = encode_png(camera.width, camera.height, tone_map(image, scene.bands, tone))};
 }
 
 void write_outputs(const LightingArguments& arguments, const LightingReport& made,
@@ -293,6 +190,11 @@ void write_outputs(const LightingArguments& arguments, const LightingReport& mad
     if (kind == ".json") write_json(file, figures);
     report.add_file(file);
   }
+}
+
+bool needs_picture(const LightingArguments& arguments) {
+  return std::ranges::any_of(
+      arguments.outputs, [](const std::string& file) { return lower_extension(file) == ".html"; });
 }
 
 int report_lighting(const LightingArguments& arguments, Console& console) {
@@ -313,32 +215,49 @@ int report_lighting(const LightingArguments& arguments, Console& console) {
         "with '--plane floor@0.75' or as [[grids]] in the scene file, or observers with "
         "'--observer CAMERA'");
   }
-  const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  // Names are looked up before anything is computed.
+  std::vector<Camera> eyes;
+  for (const std::string& name : arguments.observers) eyes.push_back(choose_camera(scene, name));
+  if (!arguments.picture.empty() && arguments.picture != no_picture) {
+    choose_camera(scene, arguments.picture);
+  }
+  SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   LightingReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
+                      .heading = design.heading,
                       .provenance = solved.solution.provenance,
                       .metres_per_unit = scene.metres_per_unit,
                       .unit_name = scene.unit_name,
                       .maintenance_factor = arguments.maintenance_factor,
                       .rays = arguments.rays,
                       .error_estimate = solved.solution.error_estimate};
+  if (scene.sky) {
+    made.sky = scene.sky->name.empty() ? "sky" : scene.sky->name;
+    made.north = scene.sky->north;
+  }
+  const Stopwatch watch;
+  made.luminaires = luminaires(scene, solved.mesh, DirectLight(scene, solved.mesh), design);
+  set_watts(made.luminaires, arguments.watts, scene);
+  Measurements what{.eyes = std::move(eyes),
+                    .maintenance_factor = arguments.maintenance_factor,
+                    .gathering = {.rays = arguments.rays},
+                    .luminous_heights = design.luminous_height,
+                    .between = stop_if_interrupted};
+  what.gathering.run.progress = console.progress();
   // --surface and --plane name surfaces of the file, which merge_planar_regions() may have joined
   // with others: names->apart() separates them again.
-  made.surfaces = grids(arguments, clean_up.names ? clean_up.names->apart(scene) : scene, design,
-                        guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)));
-  const Stopwatch watch;
-  const MeasurableScene lit(scene, solved);
-  made.luminaires = luminaires(scene, solved.mesh, lit.direct_light, design);
-  set_watts(made.luminaires, arguments.watts, scene);
-  GatherOptions gathering{.rays = arguments.rays};
-  gathering.run.progress = console.progress();
-  measure_surfaces(lit, gathering, made);
-  made.observers = rate_glare(lit, arguments.observers, design, gathering);
+  const ElementCaster caster(solved.mesh);
+  for (LuxGrid& grid : grids(arguments, clean_up.names ? clean_up.names->apart(scene) : scene,
+                             design, guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)))) {
+    what.grids.push_back(without_buried_points(caster, std::move(grid)));
+  }
+  measure(scene, solved, what, made);
+  if (needs_picture(arguments)) made.picture = picture_of(arguments, scene, solved);
   console.finish_phase();
   report.add_phase("measure", watch.seconds());
   const Json figures = figures_json(made);
   for (const auto& [key, value] : figures.items()) report.add(key, value);
   write_outputs(arguments, made, figures, report);
-  if (!console.options().json) print_figures(made);
+  if (!console.options().json) fmt::print("{}", figures_text(made));
   report.print();
   return exit_done;
 }
@@ -371,7 +290,7 @@ Action add_report(CLI::App& command) {
           "--plane",
           [arguments](const std::vector<std::string>& texts) {
             for (const auto& text : texts) {
-              arguments->planes.push_back(named_number(text, '@', "--plane"));
+              arguments->planes.push_back(named_number(text, '@', "--plane", 0.0));
             }
           },
           "measure on a plane at this height above a surface: floor@0.75; may be repeated")
@@ -404,7 +323,8 @@ Action add_report(CLI::App& command) {
           "--watts",
           [arguments](const std::vector<std::string>& texts) {
             for (const auto& text : texts) {
-              arguments->watts.push_back(named_number(text, '=', "--watts"));
+              arguments->watts.push_back(
+                  named_number(text, '=', "--watts", std::numeric_limits<double>::min()));
             }
           },
           "electric power of each luminaire of this name; may be repeated")
@@ -416,6 +336,10 @@ Action add_report(CLI::App& command) {
       ->type_name("N")
       ->check(power_of_two());
   add_lux_range(command, arguments->range);
+  command
+      .add_option("--picture", arguments->picture,
+                  "camera of the picture on the page (default: the first), or none")
+      ->type_name("CAMERA");
   command.footer(
       "Example: lightwell report office.toml office.vtp --plane floor@0.75 --maintenance 0.8 "
       "--observer desk -o office.html");

@@ -5,6 +5,7 @@
 #include "cli/arguments.h"
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"

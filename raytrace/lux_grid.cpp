@@ -216,6 +216,34 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
   return open.points.empty() ? grid : open;
 }
 
+namespace {
+
+// Sets the mean, the extremes and the uniformity of a field from its points.
+void summarise(LuxField& field) {
+  field.mean = field.lux.mean();
+  field.least = field.lux.minCoeff();
+  field.greatest = field.lux.maxCoeff();
+  field.uniformity = field.mean > 0.0 ? field.least / field.mean : 0.0;
+}
+
+// Root mean square of the relative bounds of points. In near darkness the relative error would
+// reach 100 %, so 0.1 of the mean is the least divisor.
+double relative_bound(const LuxField& field) {
+  const Eigen::ArrayXd within = field.lux_within.isNaN().select(0.0, field.lux_within);
+  return std::sqrt((within / field.lux.max(0.1 * field.mean)).square().mean());
+}
+
+}  // namespace
+
+LuxField sum_of(const LuxField& a, const LuxField& b) {
+  LuxField sum{.lux = a.lux + b.lux, .lux_within = a.lux_within + b.lux_within};
+  summarise(sum);
+  if (!(sum.mean > 0.0)) return sum;
+  sum.point_within = relative_bound(sum);
+  sum.mean_within = (a.mean_within * a.mean + b.mean_within * b.mean) / sum.mean;
+  return sum;
+}
+
 LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const RadiositySolution& solution,
                       const LuxGrid& grid, double factor, const GatherOptions& options) {
@@ -227,15 +255,11 @@ LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
   for (Eigen::Index i = 0; i < count; ++i) {
     field.lux[i] = factor * luminous(scene.bands, E.row(i).transpose());
   }
-  field.mean = field.lux.mean();
-  field.least = field.lux.minCoeff();
-  field.greatest = field.lux.maxCoeff();
+  summarise(field);
   if (!(field.mean > 0.0)) return field;
-  field.uniformity = field.least / field.mean;
-  // In near darkness the relative error would reach 100 %, so 0.1 of the mean is the least divisor.
+  field.point_within = relative_bound(field);
   const Eigen::ArrayXd within = field.lux_within.isNaN().select(0.0, field.lux_within);
   const Eigen::ArrayXd shared = factor * bounds.read_within;
-  field.point_within = std::sqrt((within / field.lux.max(0.1 * field.mean)).square().mean());
   const double noise = (within.square() - shared.square()).max(0.0).sum();
   field.mean_within =
       std::hypot(std::sqrt(noise) / static_cast<double>(count), shared.mean()) / field.mean;

@@ -63,6 +63,10 @@ struct LuxField {
   double point_within = 0.0, mean_within = 0.0;
 };
 
+/// The sum of two kinds of light at the same points. Bounds add up: the errors of two gathers along
+/// the same directions are not independent.
+LuxField sum_of(const LuxField& a, const LuxField& b);
+
 /// Illuminance at the points of a grid, times `factor` (for example a maintenance factor). The
 /// gathers are those of probe_irradiance() with bounds.
 LuxField measure_grid(const Scene& scene, const ElementCaster& caster,

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "radiosity/emitters/sky_light.h"
@@ -175,9 +174,28 @@ GatherOptions probe_options(const LitScene& lit, const BandArray& radiosity,
 // Bound of the error that a gather takes over from the solution, as a multiple of read_errors().
 constexpr double of_read_error = 1.0;
 
-// Light of the gather at the probes; `caustic` light decides over the bounds alone.
+/// Caustics at probes, which the mesh holds.
+struct Caustics {
+  BandArray irradiance{};       ///< probes x bands, W/m^2
+  Eigen::ArrayXd lux_within{};  ///< bound of their error, lx
+};
+
+// Caustics have no estimate of their error. Where they vary little over an element, as lamps in a
+// pane or a mirror do, their error is taken to be less than they are. The bound of a focus, whose
+// shape the mesh does not follow, is the light of its brightest corner.
+double caustic_bound(const PatchMesh& mesh, const RadiositySolution& solution,
+                     const ElementHit& hit) {
+  double most = 0.0;
+  for (int c = 0; c < mesh.corner_count(hit.element); ++c) {
+    const Spectrum here = solution.caustic_irradiance.row(mesh.corners[hit.element][c]).transpose();
+    most = std::max(most, luminous(solution.bands, here));
+  }
+  return most;
+}
+
+// Light of the gather at the probes, without caustics; the error of `caustics` adds to the bounds.
 BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const GatherPoints& points,
-                       const GatherOptions& options, const BandArray& caustic,
+                       const GatherOptions& options, const Caustics& caustics,
                        const RadiositySolution& solution, ProbeBounds* bounds) {
   const GatherOptions at_probes = probe_options(lit, radiosity, options);
   if (!bounds) {
@@ -188,13 +206,7 @@ BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const Ga
       .accuracy = bounds->accuracy,
       .besides = of_read_error * read_errors(lit, solution, radiosity, points, at_probes.rays)};
   SureIrradiance sure = sure_gather(lit, radiosity, points, at_probes, goal);
-  for (int i = 0; i < points.size(); ++i) {
-    const double lux = luminous(lit.scene.bands, caustic.row(i).transpose());
-    if (lux > sure.lux_within[i]) {
-      sure.lux_within[i] = std::numeric_limits<double>::quiet_NaN();
-    }
-  }
-  bounds->lux_within = std::move(sure.lux_within);
+  bounds->lux_within = (sure.lux_within.square() + caustics.lux_within.square()).sqrt();
   bounds->read_within = goal.besides;
   bounds->missed = sure.missed;
   return std::move(sure.irradiance);
@@ -263,8 +275,9 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   const bool has_caustics = solution.caustic_irradiance.size() > 0;
   // Rays from the probe do not find light of emitters through mirrors and glass; the mesh holds
   // this light.
-  BandArray caustic =
-      BandArray::Zero(static_cast<Eigen::Index>(probes.size()), scene.bands.count());
+  const auto count = static_cast<Eigen::Index>(probes.size());
+  Caustics caustics{.irradiance = BandArray::Zero(count, scene.bands.count()),
+                    .lux_within = Eigen::ArrayXd::Zero(count)};
   std::vector<GatherPoint> points;
   points.reserve(probes.size());
   for (const Probe& probe : probes) {
@@ -273,9 +286,11 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
       point.position = point_on_surface->position;
       point.facet = point_on_surface->hit.facet;
       if (has_caustics && point_on_surface->hit.element >= 0) {
-        caustic.row(static_cast<Eigen::Index>(points.size())) =
+        const auto row = static_cast<Eigen::Index>(points.size());
+        caustics.irradiance.row(row) =
             interpolate(caster.mesh(), solution.caustic_irradiance, point_on_surface->hit)
                 .transpose();
+        caustics.lux_within[row] = caustic_bound(caster.mesh(), solution, point_on_surface->hit);
       }
     }
     points.push_back(point);
@@ -284,8 +299,8 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   const LitScene lit{scene, caster, direct_light};
   const MirroredLight mirrored =
       mirrored_in_air(lit, solution, points, options, bounds ? bounds->accuracy : 0.0);
-  BandArray E = probe_gather(lit, B, points, options, caustic, solution, bounds) + caustic;
-  E += mirrored.irradiance;
+  BandArray E = probe_gather(lit, B, points, options, caustics, solution, bounds);
+  E += caustics.irradiance + mirrored.irradiance;
   if (bounds) {
     bounds->lux_within = (bounds->lux_within.square() + mirrored.lux_within.square()).sqrt();
   }

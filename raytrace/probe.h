@@ -32,8 +32,8 @@ struct ProbeBounds {
   double accuracy = 0.0;
   /// Per probe, lx, with odds of about 19 to 1: the noise of the gather, and the error of the
   /// solution's light that its rays read (see read_errors), as far as the solution knows its own
-  /// error. NaN where nothing is known: there is no light at all, or more than the bound comes as
-  /// caustics, whose error has no estimate.
+  /// error. Caustics count as uncertain by all of their light, at the brightest corner of their
+  /// element. NaN where nothing is known: there is no light at all.
   Eigen::ArrayXd lux_within{};
   /// The part of `lux_within` that comes from the solution, and that probes near each other share.
   Eigen::ArrayXd read_within{};

@@ -83,7 +83,8 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
                                [](Layer layer) { return first_sampled_column(layer) >= 0; })),
       white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
       gloss_points_(gloss_point_count),
-      lamps_(direct_light) {
+      lamps_(direct_light),
+      openings_(scene, direct_light) {
   if (textures_->is_empty()) textures_ = nullptr;
   constexpr double rounding = 1e-6;  // share of the scene's diagonal
   if (!normals_.is_empty()) least_lift_ = rounding * scene_bounds(scene).diagonal();
@@ -199,6 +200,7 @@ void RayTree::follow(Branch branch, TreeState& state) const {
                     .chain = branch.chain,
                     .turns = branch.turns});
   }
+  if (!openings_.empty() && shows_lamp(branch, hit, state)) return;
   if (!state.lamps_alone && branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
     result.fingerprint = random_key(result.fingerprint, branch.node,
@@ -224,6 +226,24 @@ void RayTree::follow(Branch branch, TreeState& state) const {
   split(branch, hit, at, state);
 }
 
+// Adds the radiance of the opening of a luminaire where it hides the hit. Rough surfaces sample
+// lamps in add_free_source().
+bool RayTree::shows_lamp(const Branch& branch, const ElementHit& hit, TreeState& state) const {
+  if (state.lamps_alone || !branch.is_sharp) return false;
+  const double end = hit.facet < 0 ? std::numeric_limits<double>::infinity() : hit.t;
+  Ray ray = branch.ray;
+  ray.direction.normalize();
+  const auto seen = openings_.first(ray, end * branch.ray.direction.norm());
+  if (!seen) return false;
+  if (branch.weight.maxCoeff() >= options_.contrast) {
+    constexpr std::uint64_t of_lamps = std::uint64_t{1} << 32;  // beyond all smooth surfaces
+    state.result.fingerprint = random_key(state.result.fingerprint, branch.node,
+                                          of_lamps + static_cast<std::uint64_t>(seen->lamp), false);
+  }
+  if (state.shades) add_seen(branch, seen->radiance, state);
+  return true;
+}
+
 // Adds radiance of the sky, and of the sun except off rough surfaces, which sample the sun in
 // add_free_source().
 void RayTree::add_background(const Branch& branch, TreeState& state) const {
@@ -240,6 +260,11 @@ void RayTree::add_background(const Branch& branch, TreeState& state) const {
       L += source.light / static_cast<float>(sun.solid_angle());
     }
   }
+  add_seen(branch, L, state);
+}
+
+// Adds radiance of something that no light of the scene falls on.
+void RayTree::add_seen(const Branch& branch, const Spectrum& L, TreeState& state) const {
   const Spectrum seen = branch.weight * L;
   state.result.radiance += seen;
   if (!with_layers_) return;

@@ -16,6 +16,7 @@
 #include "raytrace/lamp_samples.h"
 #include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
+#include "raytrace/visible_lamps.h"
 #include "scene/facet_normals.h"
 #include "scene/facet_textures.h"
 #include "scene/sampling.h"
@@ -189,7 +190,9 @@ class RayTree {
 
   RaySample outline(const Ray& ray) const;
   void follow(Branch branch, TreeState& state) const;
+  bool shows_lamp(const Branch& branch, const ElementHit& hit, TreeState& state) const;
   void add_background(const Branch& branch, TreeState& state) const;
+  void add_seen(const Branch& branch, const Spectrum& L, TreeState& state) const;
   void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
              TreeState& state) const;
   void scatter(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
@@ -253,6 +256,7 @@ class RayTree {
   static constexpr int gloss_point_count = 1024;
   SobolPoints gloss_points_;  ///< samples of one key; further samples use a new scrambling
   LampSamples lamps_;
+  VisibleLamps openings_;
   BrightPatches bright_{};  ///< rough mirrors aim at these beside the lamps
   /// Lobes of the front and the back of each material; empty if the material is not rough.
   std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};

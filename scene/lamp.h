@@ -39,7 +39,8 @@ struct LampOpening {
   bool is_point() const { return !(along_c0 > 0.0 || along_c90 > 0.0); }
 };
 
-/// A light source that is no surface: rays do not meet a lamp, and pictures do not show one. The
+/// A light source that is no surface: rays of light do not meet a lamp. Pictures show its opening.
+/// The
 /// intensity in a direction is `intensity` times relative_intensity().
 struct Lamp {
   std::string name{};
@@ -50,6 +51,7 @@ struct Lamp {
   Spectrum intensity{};  ///< W/sr, >= 0; with a web, W/sr for each unit of its values
   IntensityShape shape{};
   LampOpening opening{};
+  bool visible = true;  ///< pictures show the opening
 
   Eigen::Vector3d aim() const { return -axes.col(2); }
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -7,6 +8,14 @@
 #include "scene/scene.h"
 
 namespace lightwell {
+
+struct LuminaireFile;
+using SharedLuminaireFile = std::shared_ptr<const LuminaireFile>;
+
+/// What a report prints at its top (the [report] table): text for people, each empty unless given.
+struct ReportHeading {
+  std::string project{}, client{}, author{}, date{}, remarks{};
+};
 
 /// A plane over a surface of a scene on which illuminance is calculated (a [[grids]] table).
 struct CalculationGrid {
@@ -25,13 +34,15 @@ struct LightingDesign {
   std::vector<double> watts{};  ///< electric power; 0: unknown
   /// Height in m of the luminous sides in the lamp's photometric file.
   std::vector<double> luminous_height{};
+  std::vector<SharedLuminaireFile> files{};  ///< photometric file; null: none
+  ReportHeading heading{};
 };
 
-/// Reads the design from the file of `scene`: the [[grids]] tables and the electric power of the
-/// [[lamps]] tables. The power of a lamp is its key `watts`, else the power in its photometric
-/// file. The photometric file's power is ignored where the key `lumens` rescales the flux, since
-/// the lamp is another luminaire then. Empty for formats other than the native one. Throws what
-/// read_scene throws.
+/// Reads the design from the file of `scene`: the [[grids]] tables, the [report] table and the
+/// photometric files and electric power of the [[lamps]] tables. The power of a lamp is its key
+/// `watts`, else the power in its photometric file. The photometric file's power is ignored where
+/// the key `lumens` rescales the flux, since the lamp is another luminaire then. Empty for formats
+/// other than the native one. Throws what read_scene throws.
 LightingDesign read_lighting_design(const Scene& scene);
 
 }  // namespace lightwell

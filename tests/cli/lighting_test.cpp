@@ -121,7 +121,9 @@ TEST_F(ReportCommand, FiguresAreThoseOfThePoints) {
   for (const char* piece : {"room + 0.75 m", "<svg", "UGR", "maintenance factor of 0.8"}) {
     EXPECT_TRUE(says(page, piece));
   }
-  EXPECT_EQ(page.find("src="), std::string::npos) << "it holds all it needs";
+  for (std::size_t at = 0; (at = page.find("src=\"", at)) != std::string::npos; ++at) {
+    EXPECT_EQ(page.compare(at + 5, 5, "data:"), 0) << "it holds all it needs";
+  }
 }
 
 /// Power density is 40 W over the 12 m2 of the floor.
@@ -156,6 +158,143 @@ TEST_F(ReportCommand, MaintenanceDimsAllAlike) {
   };
   const double full = mean("1");
   EXPECT_EQ(mean("0.5"), 0.5 * full) << "halving a double rounds nothing";
+}
+
+// A room of 4 m x 3 m with a window under a sky, an emitting panel, a table and a spot.
+std::string daylit_room(bool with_sky, bool with_lamps) {
+  std::string text = R"(
+title = "Room <1> & \"2\""
+[report]
+client = "A & B"
+date = "2026-11-26"
+[materials.white]
+reflectance = 0.5
+[materials.pane]
+glass = { ior = 1.5, thin = true }
+[[surfaces]]
+name = "floor"
+material = "white"
+polygon = [[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]]
+[[surfaces]]
+name = "shell"
+material = "white"
+polygons = [
+  [[0, 0, 2.5], [0, 3, 2.5], [4, 3, 2.5], [4, 0, 2.5]],
+  [[0, 0, 0], [0, 0, 2.5], [4, 0, 2.5], [4, 0, 0]],
+  [[4, 3, 0], [4, 3, 2.5], [0, 3, 2.5], [0, 3, 0]],
+  [[0, 3, 0], [0, 3, 2.5], [0, 0, 2.5], [0, 0, 0]],
+]
+[[surfaces]]
+name = "window"
+material = "pane"
+polygon = [[4, 0, 0], [4, 3, 0], [4, 3, 2.5], [4, 0, 2.5]]
+[[surfaces]]
+name = "table"
+material = "white"
+box = { min = [1, 1, 0.68], max = [2, 2, 0.70] }
+[[cameras]]
+name = "eye"
+position = [0.5, 1.5, 1.2]
+look_at = [4, 1.5, 1.0]
+up = [0, 0, 1]
+size = [64, 48]
+)";
+  if (with_sky) {
+    text += R"([sky]
+kind = "uniform"
+illuminance = 5000
+up = [0, 0, 1]
+north = [0, 1, 0]
+)";
+  }
+  if (!with_lamps) return text;
+  return text + R"([[lamps]]
+name = "spot"
+position = [1, 1.5, 2.4]
+lumens = 900
+watts = 9
+)";
+}
+
+class DaylightReport : public CommandTest {
+ protected:
+  Json report(const std::string& scene, const Words& solve, const Words& more) {
+    folder.write("daylit.toml", scene);
+    const Ended solved =
+        run(Words{"solve", "daylit.toml", "-o", "daylit.vtp", "--quiet"} + solve + quick());
+    EXPECT_EQ(solved.code, 0) << solved.err;
+    return run_json(
+        Words{"report", "daylit.toml", "daylit.vtp", "--plane", "floor@0.75", "--rays", "256"} +
+        more);
+  }
+};
+
+/// Each part is what a scene with nothing else would have, and the factor is that of lamps alone.
+TEST_F(DaylightReport, KeepsElectricLightAndDaylightApart) {
+  const Words factor = {"--maintenance", "0.8"};
+  const Json both = report(daylit_room(true, true), {}, factor);
+  EXPECT_EQ(both["contains"], "electric and daylight, apart");
+  const Json day = report(daylit_room(true, false), {}, factor);
+  EXPECT_EQ(day["contains"], "daylight");
+  const Json lamps = report(daylit_room(false, true), {}, factor);
+  EXPECT_EQ(lamps["contains"], "electric");
+  const auto figure = [](const Json& surface, const char* key) {
+    return surface[key].get<double>();
+  };
+  const Json& mixed = both["surfaces"][0];
+  // Bounds of two gathers each, with odds of 19 to 1.
+  for (const auto& [part, alone] : {std::pair(mixed["daylight"], day["surfaces"][0]),
+                                    std::pair(mixed["electric"], lamps["surfaces"][0])}) {
+    EXPECT_NEAR(figure(part, "E_m"), figure(alone, "E_m"),
+                figure(part, "mean_within") + figure(alone, "mean_within"));
+    EXPECT_GT(figure(part, "E_m"), 10.0);
+  }
+  // Sums of a few doubles.
+  constexpr double rounding = 1e-14;
+  EXPECT_NEAR(figure(mixed, "E_m"),
+              figure(mixed["daylight"], "E_m") + figure(mixed["electric"], "E_m"),
+              rounding * figure(mixed, "E_m"));
+  EXPECT_DOUBLE_EQ(figure(mixed, "W_per_m2_per_100_lx"),
+                   9.0 / 12.0 / (figure(mixed["electric"], "E_m") / 100.0));
+}
+
+TEST_F(DaylightReport, SaysThatAMixtureCannotBeToldApart) {
+  const Json json = report(daylit_room(true, true), {"--channels", "off"}, {"-o", "a.html"});
+  EXPECT_EQ(json["contains"], "electric and daylight, together");
+  EXPECT_FALSE(json["surfaces"][0].contains("electric"));
+  EXPECT_FALSE(json["surfaces"][0].contains("W_per_m2_per_100_lx"));
+  EXPECT_TRUE(says(content_of(folder / "a.html"), "together</b>"));
+}
+
+/// The page has what is handed over: heading, picture, plan with walls, window, table, luminaire,
+/// observer, axes, scale, north and isolux lines.
+TEST_F(DaylightReport, ThePageIsComplete) {
+  report(daylit_room(true, true), {}, {"--observer", "eye", "-o", "a.html", "-o", "a.csv"});
+  const std::string page = content_of(folder / "a.html");
+  for (const char* piece :
+       {"Room &lt;1&gt; &amp; &quot;2&quot;", "<dt>Client</dt><dd>A &amp; B</dd>", "2026-11-26",
+        "data:image/png;base64,", "View 'eye'", "class=\"wall\"", "class=\"pane\"",
+        "class=\"edge\"", "class=\"luminaire\"", "class=\"eye\"", "class=\"iso\"", "x, m", "y, m",
+        "1 : 40 on A4 paper", "class=\"north\"", "<b>electric light</b>", "<b>daylight</b>"}) {
+    EXPECT_TRUE(says(page, piece));
+  }
+  EXPECT_EQ(content_of(folder / "a.csv").substr(0, 56),
+            "surface,x,y,z,lux,lux_within,electric_lux,daylight_lux\n\"");
+}
+
+TEST_F(DaylightReport, APlaneAtHeightZeroIsTheSurfaceItself) {
+  const Json json = report(daylit_room(false, true), {}, {"--plane", "floor@0", "--margin", "0.5"});
+  ASSERT_EQ(json["surfaces"].size(), 2u);
+  EXPECT_EQ(json["surfaces"][1]["height_m"], 0.0);
+  EXPECT_GT(json["surfaces"][1]["E_m"].get<double>(), 0.0);
+}
+
+TEST_F(DaylightReport, WrongNamesEndItBeforeAnythingIsMeasured) {
+  report(daylit_room(false, true), {}, {});
+  const Ended ended = run({"report", "daylit.toml", "daylit.vtp", "--plane", "floor@0.75",
+                           "--observer", "ey", "-o", "b.html"});
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_EQ(ended.err.find("gather"), std::string::npos) << ended.err;
 }
 
 TEST_F(ReportCommand, PrintsItsFigures) {

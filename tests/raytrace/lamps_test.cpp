@@ -106,5 +106,59 @@ TEST(LampPictures, HighlightIsThatOfASmallBall) {
   EXPECT_NEAR(mean(false) / mean(true), 1.0, 0.007);
 }
 
+// A room with a lamp of 0.4 m x 0.4 m below its ceiling, aimed down, and a mirror as its floor.
+Scene room_with_panel(const IntensityShape& shape) {
+  Scene scene;
+  Material mirror = test::diffuse(scene.bands, 0.0f);
+  mirror.specular = constant_spectrum(scene.bands, 0.5f);
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  const int floor = test::add_material(scene, mirror);
+  test::add_box(scene, {0, 0, 0}, {4, 4, 3}, {grey, grey, grey, grey, floor, grey}, true);
+  scene.lamps = {{.name = "panel",
+                  .position = {2, 2, 2.8},
+                  .axes = lamp_axes(-Eigen::Vector3d::UnitZ()),
+                  .intensity = constant_spectrum(scene.bands, 8.0f),
+                  .shape = shape,
+                  .opening = {.along_c0 = 0.4, .along_c90 = 0.4}}};
+  return scene;
+}
+
+// The middle pixel of a narrow picture.
+float middle_of(const Scene& scene, const SolvedScene& solved, const Eigen::Vector3d& from,
+                const Eigen::Vector3d& to) {
+  Camera eye{.position = from, .direction = (to - from).normalized(), .fov_degrees = 1.0};
+  eye.up = eye.direction.unitOrthogonal();
+  eye.width = eye.height = 1;
+  const Image image =
+      render(scene, ElementCaster(solved.mesh), DirectLight(scene, solved.mesh), solved.solution,
+             eye, {.pass = Pass::interpolate, .photons = 0, .max_subdivision = 0});
+  return image.radiance.mean();
+}
+
+TEST(LampPictures, ShowTheOpeningAsBrightAsItsIntensityOverItsArea) {
+  Scene scene = room_with_panel({});
+  const SolvedScene solved = solve_scene(scene, quick());
+  const Eigen::Vector3d panel(2, 2, 2.8);
+  constexpr float rounding = 4e-6f;  // a few floats, and the mean of the corners of a pixel
+  constexpr float L = 8.0f / 0.16f;  // straight below: I / A
+  EXPECT_NEAR(middle_of(scene, solved, {2, 2, 1}, panel), L, rounding * L);
+  // At 45 degrees the opening looks smaller by the cosine, and the intensity is the same. Over a
+  // pixel of a degree the cosine changes by 2 %, evenly about the middle.
+  const float oblique = L / std::cos(std::numbers::pi_v<float> / 4.0f);
+  EXPECT_NEAR(middle_of(scene, solved, {0.9, 2, 1.7}, panel), oblique, 1e-3f * oblique);
+  // The mirror of the floor shows it, half as bright: at (2, 2, -2.8).
+  EXPECT_NEAR(middle_of(scene, solved, {2, 2, 1}, {2, 2, -2.8}), 0.5f * L, rounding * L);
+  scene.lamps[0].visible = false;
+  EXPECT_LT(middle_of(scene, solved, {2, 2, 1}, panel), 0.1f * L) << "the ceiling behind it";
+}
+
+TEST(LampPictures, ShowNoOpeningThatSendsNoLightToTheEye) {
+  Scene scene = room_with_panel(SpotCone{.inner = 0.5, .outer = 0.7});
+  const SolvedScene solved = solve_scene(scene, quick());
+  const float ceiling = middle_of(scene, solved, {0.3, 2, 2.5}, {2, 2, 2.8});
+  scene.lamps[0].visible = false;
+  EXPECT_EQ(middle_of(scene, solved, {0.3, 2, 2.5}, {2, 2, 2.8}), ceiling);
+}
+
 }  // namespace
 }  // namespace lightwell::lamps_test

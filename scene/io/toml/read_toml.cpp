@@ -170,7 +170,7 @@ Scene read_toml(const std::filesystem::path& path) {
   const toml::table root = parse(file);
   const TomlValue all(file.path(), root, "");
   const TomlTable document = all.table({"title", "unit", "bands", "materials", "motions",
-                                        "surfaces", "lamps", "sky", "cameras", "grids"});
+                                        "surfaces", "lamps", "sky", "cameras", "grids", "report"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
@@ -215,8 +215,9 @@ Scene read_toml(const std::filesystem::path& path) {
     }
   }
   settle_toml_motions(document, have_shutter, scene);
-  // Grids do not affect the light; reading the table here reports its errors early.
+  // Grids and headings do not affect the light; reading them here reports their errors early.
   if (const auto grids = document.find("grids")) read_toml_grids(*grids, scene);
+  if (const auto report = document.find("report")) read_toml_heading(*report);
   validate(scene);
   return scene;
 }
@@ -228,8 +229,10 @@ LightingDesign read_lighting_design(const Scene& scene) {
   const TomlValue all(file.path(), root, "");
   LightingDesign design;
   if (const auto grids = all.member("grids")) design.grids = read_toml_grids(*grids, scene);
+  if (const auto report = all.member("report")) design.heading = read_toml_heading(*report);
   if (const auto lamps = all.member("lamps")) {
-    for (const auto& lamp : lamps->elements("lamp")) read_toml_lamp_design(lamp, design);
+    LuminaireFiles files;
+    for (const auto& lamp : lamps->elements("lamp")) read_toml_lamp_design(lamp, files, design);
   }
   return design;
 }

@@ -45,19 +45,36 @@ std::vector<CalculationGrid> read_toml_grids(const TomlValue& grids, const Scene
   return result;
 }
 
-void read_toml_lamp_design(const TomlValue& lamp, LightingDesign& design) {
+ReportHeading read_toml_heading(const TomlValue& report) {
+  const TomlTable table = report.table({"project", "client", "author", "date", "remarks"});
+  const auto text = [&](const char* key) {
+    const auto value = table.find(key);
+    return value ? value->string() : std::string();
+  };
+  return {.project = text("project"),
+          .client = text("client"),
+          .author = text("author"),
+          .date = text("date"),
+          .remarks = text("remarks")};
+}
+
+void read_toml_lamp_design(const TomlValue& lamp, LuminaireFiles& files, LightingDesign& design) {
   double watts = 0.0, luminous_height = 0.0;
+  SharedLuminaireFile luminaire;
   if (const auto file = lamp.member("file")) {
     const auto set = lamp.member("lamp_set");
-    const LuminaireFile luminaire =
-        read_luminaire((file->file().parent_path() / file->name()).lexically_normal(),
-                       set ? static_cast<int>(set->integer_within(1, 20)) : 1);
-    if (!lamp.member("lumens")) watts = luminaire.watts;
-    if (!lamp.member("opening")) luminous_height = luminaire.opening_height;
+    const auto path = (file->file().parent_path() / file->name()).lexically_normal();
+    const int number = set ? static_cast<int>(set->integer_within(1, 20)) : 1;
+    SharedLuminaireFile& read = files[{path, number}];
+    if (!read) read = std::make_shared<const LuminaireFile>(read_luminaire(path, number));
+    luminaire = read;
+    if (!lamp.member("lumens")) watts = luminaire->watts;
+    if (!lamp.member("opening")) luminous_height = luminaire->opening_height;
   }
   if (const auto known = lamp.member("watts")) watts = known->positive();
   design.watts.push_back(watts);
   design.luminous_height.push_back(luminous_height);
+  design.files.push_back(std::move(luminaire));
 }
 
 }  // namespace lightwell

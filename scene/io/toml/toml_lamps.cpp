@@ -151,7 +151,7 @@ void read_toml_lamp(const TomlValue& value, std::size_t number, const TomlBands&
   const TomlTable table = value.renamed(fmt::format("lamp '{}'", lamp.name))
                               .table({"name", "position", "aim", "look_at", "c0", "file",
                                       "lamp_set", "cone", "intensity", "candela", "power", "lumens",
-                                      "colour", "factor", "opening", "round", "watts"});
+                                      "colour", "factor", "opening", "round", "watts", "visible"});
   const Eigen::Vector3d position = table.require("position").vector();
   lamp.position = scene.metres_per_unit * position;
   const bool is_measured = table.has("file");
@@ -170,6 +170,7 @@ void read_toml_lamp(const TomlValue& value, std::size_t number, const TomlBands&
     lamp.intensity *= static_cast<float>(factor->number_at_least(0.0));
   }
   if (const auto watts = table.find("watts")) watts->positive();  // for read_lighting_design
+  if (const auto visible = table.find("visible")) lamp.visible = visible->boolean();
   scene.lamps.push_back(std::move(lamp));
 }
 

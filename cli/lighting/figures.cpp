@@ -1,0 +1,178 @@
+#include "cli/lighting/figures.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+#include <utility>
+
+namespace lightwell {
+namespace {
+
+// Bound of the first point that has the given illuminance; null where nothing is known.
+Json within_of(const LuxField& field, double lux) {
+  Eigen::Index at = 0;
+  (field.lux - lux).abs().minCoeff(&at);
+  const double within = field.lux_within[at];
+  return std::isfinite(within) ? Json(within) : Json();
+}
+
+Json field_json(const LuxField& field) {
+  return {{"E_m", field.mean},
+          {"E_min", field.least},
+          {"E_max", field.greatest},
+          {"E_min_within", within_of(field, field.least)},
+          {"E_max_within", within_of(field, field.greatest)},
+          {"U_0", field.uniformity},
+          {"mean_within", field.mean_within * field.mean},
+          {"point_within_relative", field.point_within}};
+}
+
+Json surface_json(const LightingReport& report, const CalculationSurface& surface) {
+  const LuxGrid& grid = surface.grid;
+  Json json = {{"name", grid.name}};
+  json.update(field_json(surface.field));
+  json["points"] = grid.points.size();
+  json["spacing_m"] = {grid.step_u, grid.step_v};
+  json["height_m"] = grid.options.height;
+  json["margin_m"] = grid.options.margin;
+  json["area_m2"] = grid.area;
+  if (surface.electric) json["electric"] = field_json(*surface.electric);
+  if (surface.daylight) json["daylight"] = field_json(*surface.daylight);
+  if (const auto power = power_density(report, surface)) {
+    json["W_per_m2"] = power->watts_per_area;
+    if (power->per_hundred_lux) json["W_per_m2_per_100_lx"] = *power->per_hundred_lux;
+  }
+  return json;
+}
+
+Json observer_json(const Observer& observer) {
+  Json sources = Json::array();
+  for (const GlareSource& source : observer.glare.sources) {
+    sources.push_back({{"name", source.name},
+                       {"luminance", source.luminance},
+                       {"solid_angle", source.solid_angle},
+                       {"position_index", source.position_index}});
+  }
+  Json ugr;  // null: no luminaire in sight
+  if (observer.glare.ugr) ugr = *observer.glare.ugr;
+  return {{"name", observer.name},
+          {"UGR", std::move(ugr)},
+          {"background_luminance", observer.glare.background},
+          {"sources", std::move(sources)},
+          {"left_out", observer.glare.left_out}};
+}
+
+Json luminaire_json(const LuminaireRow& row) {
+  Json json = {{"name", row.name}, {"number", row.count}, {"lumens", row.flux}};
+  if (row.watts > 0.0) json["watts"] = row.watts;
+  if (row.file) {
+    json["file"] = row.file->file.filename().string();
+    json["luminaire"] = row.file->name;
+    json["maker"] = row.file->maker;
+    if (!row.file->is_radiometric) json["table_lumens"] = row.file->flux();
+    if (row.file->lamp_lumens > 0.0) json["label_lumens"] = row.file->lamp_lumens;
+  }
+  return json;
+}
+
+const char* content_name(LightContent content) {
+  switch (content) {
+    case LightContent::electric:
+      return "electric";
+    case LightContent::daylight:
+      return "daylight";
+    case LightContent::apart:
+      return "electric and daylight, apart";
+    case LightContent::together:
+      break;
+  }
+  return "electric and daylight, together";
+}
+
+std::string line_of(const std::string& name, const LuxField& field) {
+  return fmt::format("{}: E_m {:.4g} lx (± {:.2g} %), E_min {:.4g}, E_max {:.4g}, U_0 {:.2f}\n",
+                     name, field.mean, 100.0 * field.mean_within, field.least, field.greatest,
+                     field.uniformity);
+}
+
+// A name as one cell of a CSV file.
+std::string csv_name(std::string name) {
+  for (std::size_t at = 0; (at = name.find('"', at)) != std::string::npos; at += 2) {
+    name.insert(at, 1, '"');
+  }
+  // A spreadsheet would compute a name that begins like a formula.
+  if (name.find_first_of("=+-@") == 0) name.insert(0, 1, '\'');
+  return name;
+}
+
+}  // namespace
+
+Json figures_json(const LightingReport& report) {
+  Json surfaces = Json::array(), observers = Json::array(), lamps = Json::array();
+  for (const CalculationSurface& surface : report.surfaces) {
+    surfaces.push_back(surface_json(report, surface));
+  }
+  for (const Observer& observer : report.observers) observers.push_back(observer_json(observer));
+  for (const LuminaireRow& row : report.luminaires) lamps.push_back(luminaire_json(row));
+  return {{"contains", content_name(report.content)},
+          {"maintenance_factor", report.maintenance_factor},
+          {"luminaires", std::move(lamps)},
+          {"surfaces", std::move(surfaces)},
+          {"observers", std::move(observers)}};
+}
+
+std::string points_csv(const LightingReport& report) {
+  const bool is_apart = report.content == LightContent::apart;
+  std::string csv = "surface,x,y,z,lux,lux_within";
+  csv += is_apart ? ",electric_lux,daylight_lux\n" : "\n";
+  for (const CalculationSurface& surface : report.surfaces) {
+    const std::string name = csv_name(surface.grid.name);
+    for (std::size_t i = 0; i < surface.grid.points.size(); ++i) {
+      const auto point = static_cast<Eigen::Index>(i);
+      const Eigen::Vector3d p = surface.grid.points[i].position / report.metres_per_unit;
+      const double within = surface.field.lux_within[point];
+      const auto out = std::back_inserter(csv);
+      fmt::format_to(out, "\"{}\",{:.6g},{:.6g},{:.6g},{:.6g},", name, p.x(), p.y(), p.z(),
+                     surface.field.lux[point]);
+      if (!std::isnan(within)) fmt::format_to(out, "{:.3g}", within);
+      if (is_apart) {
+        fmt::format_to(out, ",{:.6g},{:.6g}", surface.electric->lux[point],
+                       surface.daylight->lux[point]);
+      }
+      csv += '\n';
+    }
+  }
+  return csv;
+}
+
+std::string figures_text(const LightingReport& report) {
+  std::string text;
+  if (report.content == LightContent::together) {
+    text =
+        "electric light and daylight together, since the solution does not keep them apart; the "
+        "maintenance factor multiplies both\n";
+  }
+  for (const CalculationSurface& surface : report.surfaces) {
+    const std::string& name = surface.grid.name;
+    if (surface.electric) text += line_of(name + ", electric light", *surface.electric);
+    if (surface.daylight) text += line_of(name + ", daylight", *surface.daylight);
+    text += line_of(surface.electric ? name + ", both" : name, surface.field);
+    const auto power = power_density(report, surface);
+    if (!power) continue;
+    text += fmt::format("{}: {:.2f} W/m2", name, power->watts_per_area);
+    if (power->per_hundred_lux) {
+      text += fmt::format(", {:.2f} W/m2 per 100 lx{}", *power->per_hundred_lux,
+                          surface.electric ? " of electric light" : "");
+    }
+    text += '\n';
+  }
+  for (const Observer& observer : report.observers) {
+    text += observer.glare.ugr
+                ? fmt::format("{}: UGR {:.1f}\n", observer.name, *observer.glare.ugr)
+                : fmt::format("{}: no luminaire in sight, so no UGR\n", observer.name);
+  }
+  return text;
+}
+
+}  // namespace lightwell

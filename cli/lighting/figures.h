@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+
+#include "cli/lighting/lighting_report.h"
+#include "cli/report.h"
+
+namespace lightwell {
+
+/// All figures of a report but the values of points.
+Json figures_json(const LightingReport& report);
+
+/// Illuminance and bound of every point, and where they are apart also electric light and daylight.
+std::string points_csv(const LightingReport& report);
+
+/// The figures that people look for first, a line each.
+std::string figures_text(const LightingReport& report);
+
+}  // namespace lightwell

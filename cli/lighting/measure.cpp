@@ -1,0 +1,133 @@
+#include "cli/lighting/measure.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "cli/lighting/plan_lines.h"
+#include "radiosity/solution/relight.h"
+
+namespace lightwell {
+namespace {
+
+/// Kinds of light in a channel.
+struct Kinds {
+  bool electric = false, daylight = false;
+};
+
+// Kinds of light that reach a scene at its present scales: of the sources whose channel is
+// `channel`, or of all with channel -1.
+Kinds kinds_of(const Scene& scene, const SolvedScene& solved, const DirectLight& lights,
+               int channel) {
+  Kinds kinds;
+  const RadiositySolution& solution = solved.solution;
+  const auto is_asked = [&](const std::vector<int>& of, int i) {
+    return channel < 0 || of[static_cast<std::size_t>(i)] == channel;
+  };
+  for (int p = 0; p < solved.mesh.patch_count(); ++p) {
+    if (!is_asked(solution.patch_channel, p)) continue;
+    kinds.electric |= (solved.mesh.emission.row(p) > 0.0f).any();
+  }
+  const auto lamps = static_cast<int>(scene.lamps.size());
+  for (const FreeSource& source : lights.free_sources()) {
+    if (!is_asked(solution.source_channel, source.number) || !(source.light > 0.0f).any()) continue;
+    (source.number < lamps ? kinds.electric : kinds.daylight) = true;
+  }
+  return kinds;
+}
+
+/// A solved scene with what rays from points need.
+struct MeasurableScene {
+  const Scene& scene;
+  const SolvedScene& solved;
+  const ElementCaster& caster;
+  DirectLight lights;
+};
+
+std::vector<LuxField> fields(const MeasurableScene& lit, const Measurements& what, double factor) {
+  std::vector<LuxField> fields;
+  for (const LuxGrid& grid : what.grids) {
+    fields.push_back(measure_grid(lit.scene, lit.caster, lit.lights, lit.solved.solution, grid,
+                                  factor, what.gathering));
+    if (what.between) what.between();
+  }
+  return fields;
+}
+
+std::vector<Observer> observers(const MeasurableScene& lit, const Measurements& what) {
+  constexpr int rays_of_an_eye = 1 << 14;
+  GatherOptions gathering = what.gathering;
+  gathering.rays = std::max(gathering.rays, rays_of_an_eye);
+  std::vector<Observer> found;
+  for (const Camera& eye : what.eyes) {
+    found.push_back(
+        {.name = eye.name,
+         .eye = eye,
+         .glare = unified_glare_rating(lit.scene, lit.caster, lit.lights, lit.solved.solution, eye,
+                                       gathering, what.luminous_heights)});
+    if (what.between) what.between();
+  }
+  return found;
+}
+
+}  // namespace
+
+LightContent light_content(const Scene& scene, const SolvedScene& solved) {
+  const DirectLight lights(scene, solved.mesh);
+  const Kinds all = kinds_of(scene, solved, lights, -1);
+  if (!all.daylight) return LightContent::electric;
+  if (!all.electric) return LightContent::daylight;
+  const auto count = static_cast<int>(solved.solution.channels.size());
+  for (int c = 0; c < count; ++c) {
+    const Kinds kinds = kinds_of(scene, solved, lights, c);
+    if (kinds.electric && kinds.daylight) return LightContent::together;
+  }
+  return count == 0 ? LightContent::together : LightContent::apart;
+}
+
+void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
+             LightingReport& report) {
+  const ElementCaster caster(solved.mesh);
+  const DirectLight tables(scene, solved.mesh);
+  const auto lit = [&] {
+    return MeasurableScene{scene, solved, caster, {scene, solved.mesh, {}, &tables}};
+  };
+  report.content = light_content(scene, solved);
+  report.surfaces = std::vector<CalculationSurface>(what.grids.size());
+  for (std::size_t i = 0; i < what.grids.size(); ++i) {
+    report.surfaces[i].grid = what.grids[i];
+    report.surfaces[i].lines = plan_lines(scene, caster, what.grids[i], what.eyes);
+  }
+  if (report.content != LightContent::apart) {
+    const bool is_maintained = report.content != LightContent::daylight;
+    const MeasurableScene all = lit();
+    std::vector<LuxField> found = fields(all, what, is_maintained ? what.maintenance_factor : 1.0);
+    for (std::size_t i = 0; i < found.size(); ++i) report.surfaces[i].field = std::move(found[i]);
+    report.observers = observers(all, what);
+    return;
+  }
+  const std::vector<Spectrum> scales = effective_scales(solved.solution);
+  const auto alone = [&](bool daylight) {
+    std::vector<Spectrum> some = scales;
+    for (std::size_t c = 0; c < some.size(); ++c) {
+      const Kinds kinds = kinds_of(scene, solved, tables, static_cast<int>(c));
+      if (kinds.daylight != daylight) some[c].setZero();
+    }
+    return some;
+  };
+  const std::vector<Spectrum> of_day = alone(true), of_lamps = alone(false);
+  relight(solved, of_day);
+  std::vector<LuxField> day = fields(lit(), what, 1.0);
+  relight(solved, of_lamps);
+  const MeasurableScene lamps = lit();
+  std::vector<LuxField> electric = fields(lamps, what, what.maintenance_factor);
+  report.observers = observers(lamps, what);
+  relight(solved, scales);
+  for (std::size_t i = 0; i < day.size(); ++i) {
+    CalculationSurface& surface = report.surfaces[i];
+    surface.field = sum_of(day[i], electric[i]);
+    surface.daylight = std::move(day[i]);
+    surface.electric = std::move(electric[i]);
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/lighting/lighting_report.h"
+#include "radiosity/solve.h"
+
+namespace lightwell {
+
+/// Places that a report measures, and how.
+struct Measurements {
+  std::vector<LuxGrid> grids{};
+  std::vector<Camera> eyes{};
+  double maintenance_factor = 1.0;
+  GatherOptions gathering{};
+  std::vector<double> luminous_heights{};  ///< see unified_glare_rating()
+  std::function<void()> between{};         ///< called between grids, to stop early by an exception
+};
+
+/// The light that figures of this solution contain: whether the channels of the solution tell sky
+/// and sun from lamps and emitting surfaces.
+LightContent light_content(const Scene& scene, const SolvedScene& solved);
+
+/// Measures into `report`: content, surfaces and observers. Where electric light and daylight are
+/// kept apart, each is measured by itself, glare is that of electric light alone, and the
+/// maintenance factor multiplies electric light alone. `solved` is relit meanwhile, and is
+/// afterwards as before.
+void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
+             LightingReport& report);
+
+}  // namespace lightwell

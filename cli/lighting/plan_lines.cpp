@@ -1,0 +1,289 @@
+#include "cli/lighting/plan_lines.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+#include <variant>
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+// Coordinates of a plan: u and v in the plane of the grid, and the height above it.
+struct PlanFrame {
+  const LuxGrid& grid;
+  Vector3d normal;
+
+  explicit PlanFrame(const LuxGrid& of) : grid(of), normal(of.u.cross(of.v)) {}
+  Vector2d flat(const Vector3d& p) const {
+    return {(p - grid.corner).dot(grid.u), (p - grid.corner).dot(grid.v)};
+  }
+  double height(const Vector3d& p) const { return (p - grid.corner).dot(normal); }
+};
+
+bool is_in(const PlanLines& plan, const Vector2d& p) {
+  return (p.array() >= plan.low.array()).all() && (p.array() <= plan.high.array()).all();
+}
+
+bool may_show(const PlanLines& plan, const Vector2d& a, const Vector2d& b) {
+  return (a.cwiseMax(b).array() >= plan.low.array()).all() &&
+         (a.cwiseMin(b).array() <= plan.high.array()).all();
+}
+
+// The area over the grid and its margin, and some of what is behind the walls.
+void set_area(const LuxGrid& grid, PlanLines& plan) {
+  const Vector2d size(grid.columns * grid.step_u, grid.rows * grid.step_v);
+  constexpr double wall = 0.5, share = 0.15;  // m; of the longer side, for small models
+  const double border = grid.options.margin + std::min(wall, share * size.maxCoeff());
+  plan.low = Vector2d::Constant(-border);
+  plan.high = size + Vector2d::Constant(border);
+}
+
+// Median free height above the points, m; infinite in the open.
+double free_height(const ElementCaster& caster, const LuxGrid& grid) {
+  constexpr double off_the_surface = 1e-3;  // m
+  std::vector<Ray> rays;
+  for (const Probe& point : grid.points) {
+    rays.push_back(
+        {.origin = point.position + off_the_surface * point.normal, .direction = point.normal});
+  }
+  std::vector<ElementHit> hits(rays.size());
+  caster.closest_hits(rays, hits);
+  std::vector<double> heights;
+  for (const ElementHit& hit : hits) {
+    heights.push_back(hit.facet >= 0 ? hit.t : std::numeric_limits<double>::infinity());
+  }
+  const auto middle = heights.begin() + static_cast<std::ptrdiff_t>(heights.size() / 2);
+  std::nth_element(heights.begin(), middle, heights.end());
+  return heights.empty() ? std::numeric_limits<double>::infinity() : *middle;
+}
+
+template <class Visit>
+void for_each_facet(const Scene& scene, Visit&& visit) {
+  for (const Surface& surface : scene.surfaces) {
+    const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
+    if (!mesh) continue;
+    const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
+    for (const Facet& facet : mesh->facets) visit(*mesh, facet, material);
+  }
+}
+
+template <class Visit>
+void for_each_edge(const PolygonMesh& mesh, const Facet& facet, Visit&& visit) {
+  const auto around = [&](const std::vector<int>& loop) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      visit(mesh.vertices[static_cast<std::size_t>(loop[i])],
+            mesh.vertices[static_cast<std::size_t>(loop[(i + 1) % loop.size()])]);
+    }
+  };
+  around(facet.boundary);
+  for (const auto& hole : facet.holes) around(hole);
+}
+
+// Where the plane at plan.cut_height crosses a facet: between the first and the second crossing of
+// its boundary along the line, between the third and the fourth, and so on.
+void cut_facet(const PlanFrame& frame, const PolygonMesh& mesh, const Facet& facet, bool is_pane,
+               PlanLines& plan) {
+  const Vector3d along3 = facet_normal(mesh, facet).cross(frame.normal);
+  const Vector2d along(along3.dot(frame.grid.u), along3.dot(frame.grid.v));
+  std::vector<Vector2d> crossings;
+  for_each_edge(mesh, facet, [&](const Vector3d& a, const Vector3d& b) {
+    const double ha = frame.height(a) - plan.cut_height, hb = frame.height(b) - plan.cut_height;
+    if ((ha >= 0.0) == (hb >= 0.0)) return;
+    crossings.push_back(frame.flat(a + ha / (ha - hb) * (b - a)));
+  });
+  std::ranges::sort(crossings, {}, [&](const Vector2d& p) { return p.dot(along); });
+  for (std::size_t i = 0; i + 1 < crossings.size(); i += 2) {
+    if (!may_show(plan, crossings[i], crossings[i + 1])) continue;
+    (is_pane ? plan.panes : plan.walls).push_back({crossings[i], crossings[i + 1]});
+  }
+}
+
+void cut_spheres(const Scene& scene, const PlanFrame& frame, PlanLines& plan) {
+  for (const Surface& surface : scene.surfaces) {
+    const auto* sphere = std::get_if<Sphere>(&surface.shape);
+    if (!sphere) continue;
+    const double height = frame.height(sphere->center);
+    const double lowest = height - sphere->radius;
+    if (lowest > plan.cut_height || height < -frame.grid.options.height - sphere->radius) continue;
+    constexpr int sides = 48;
+    const double off = std::max(0.0, height - plan.cut_height);  // cut below the middle
+    const double radius = std::sqrt(std::max(0.0, sphere->radius * sphere->radius - off * off));
+    const Vector2d middle = frame.flat(sphere->center);
+    const auto at = [&](int i) {
+      const double turn = 2.0 * std::numbers::pi * i / sides;
+      return Vector2d(middle + radius * Vector2d(std::cos(turn), std::sin(turn)));
+    };
+    for (int i = 0; i < sides; ++i) {
+      if (may_show(plan, at(i), at(i + 1))) plan.edges.push_back({at(i), at(i + 1)});
+    }
+  }
+}
+
+// An edge of facets below the cutting plane.
+struct Edge3 {
+  Vector3d from, to;
+  Vector3d normal;      // of the first facet
+  bool is_kept = true;  // false: between two facets that lie nearly in one plane
+};
+
+// Coordinates on a raster of 10 micrometres, so that facets of different surfaces share edges.
+using RasterPoint = std::array<std::int64_t, 3>;
+RasterPoint raster(const Vector3d& p) {
+  constexpr double per_metre = 1e5;
+  return {std::llround(p.x() * per_metre), std::llround(p.y() * per_metre),
+          std::llround(p.z() * per_metre)};
+}
+
+std::vector<Edge3> edges_below(const Scene& scene, const PlanFrame& frame, const PlanLines& plan) {
+  const double floor = -frame.grid.options.height;
+  constexpr double slack = 0.02;  // m, for floors that are not quite level
+  constexpr double flat = 0.9;    // cosine of 26 degrees; tessellated bodies bend less at an edge
+  std::map<std::pair<RasterPoint, RasterPoint>, Edge3> edges;
+  for_each_facet(scene, [&](const PolygonMesh& mesh, const Facet& facet, const Material&) {
+    const Vector3d normal = facet_normal(mesh, facet);
+    for_each_edge(mesh, facet, [&](Vector3d a, Vector3d b) {
+      const double ha = frame.height(a), hb = frame.height(b);
+      if (std::max(ha, hb) < floor - slack || std::min(ha, hb) > plan.cut_height) return;
+      if (!may_show(plan, frame.flat(a), frame.flat(b))) return;
+      const std::pair<RasterPoint, RasterPoint> key = std::minmax(raster(a), raster(b));
+      if (ha > plan.cut_height) a += (ha - plan.cut_height) / (ha - hb) * (b - a);
+      if (hb > plan.cut_height) b += (hb - plan.cut_height) / (hb - ha) * (a - b);
+      const auto [at, is_new] = edges.try_emplace(key, Edge3{a, b, normal});
+      if (!is_new) at->second.is_kept = std::abs(at->second.normal.dot(normal)) < flat;
+    });
+  });
+  std::vector<Edge3> kept;
+  constexpr double shortest = 0.005;  // m in the plan; upright edges are points
+  for (const auto& [key, edge] : edges) {
+    const double length = (frame.flat(edge.to) - frame.flat(edge.from)).norm();
+    if (edge.is_kept && length > shortest) kept.push_back(edge);
+  }
+  constexpr std::size_t most = 5000;
+  std::ranges::stable_sort(kept, std::greater{},
+                           [](const Edge3& edge) { return (edge.to - edge.from).norm(); });
+  if (kept.size() > most) kept.resize(most);
+  return kept;
+}
+
+// Adds the pieces of edges that nothing below the cutting plane hides from above.
+void add_seen(const ElementCaster& caster, const PlanFrame& frame, const std::vector<Edge3>& edges,
+              PlanLines& plan) {
+  constexpr double piece_length = 0.1, aside = 1e-3;  // m
+  constexpr int most_pieces = 64;
+  for (const Edge3& edge : edges) {
+    const Vector3d way = edge.to - edge.from;
+    const int pieces =
+        std::clamp(static_cast<int>(std::ceil(way.norm() / piece_length)), 1, most_pieces);
+    const Vector3d side = aside * way.cross(frame.normal).normalized();
+    std::vector<Ray> rays;  // two for each piece, on either side of the edge
+    for (int i = 0; i < pieces; ++i) {
+      const Vector3d middle = edge.from + (i + 0.5) / pieces * way;
+      const double up = plan.cut_height - frame.height(middle);
+      for (const double sign : {1.0, -1.0}) {
+        rays.push_back({.origin = middle + sign * side + aside * frame.normal,
+                        .direction = frame.normal,
+                        .t_max = std::max(up - aside, 0.0)});
+      }
+    }
+    std::vector<std::uint8_t> blocked(rays.size());
+    caster.occluded(rays, blocked);
+    int first = -1;
+    for (int i = 0; i <= pieces; ++i) {
+      const auto at = static_cast<std::size_t>(2 * i);
+      const bool is_seen = i < pieces && (blocked[at] == 0 || blocked[at + 1] == 0);
+      if (is_seen && first < 0) first = i;
+      if (is_seen || first < 0) continue;
+      plan.edges.push_back({frame.flat(edge.from + double(first) / pieces * way),
+                            frame.flat(edge.from + double(i) / pieces * way)});
+      first = -1;
+    }
+  }
+}
+
+std::vector<Vector2d> opening_outline(const PlanFrame& frame, const Lamp& lamp) {
+  constexpr int sides = 32;
+  constexpr double of_a_point = 0.12;  // m, size of the sign of a lamp without an opening
+  const bool is_point = lamp.opening.is_point();
+  const double a = 0.5 * (is_point ? of_a_point : lamp.opening.along_c0);
+  const double b = 0.5 * (is_point ? of_a_point : lamp.opening.along_c90);
+  const auto at = [&](double x, double y) {
+    return frame.flat(lamp.position + x * lamp.axes.col(0) + y * lamp.axes.col(1));
+  };
+  if (!is_point && !lamp.opening.is_round) return {at(a, b), at(-a, b), at(-a, -b), at(a, -b)};
+  std::vector<Vector2d> outline;
+  for (int i = 0; i < sides; ++i) {
+    const double turn = 2.0 * std::numbers::pi * i / sides;
+    outline.push_back(at(a * std::cos(turn), b * std::sin(turn)));
+  }
+  return outline;
+}
+
+// Luminaires between the grid and a little above what is over it: not those of the next storey.
+void add_luminaires(const Scene& scene, const PlanFrame& frame, double free_height,
+                    PlanLines& plan) {
+  constexpr double ceiling_void = 0.3;  // m
+  constexpr std::size_t most = 5000;
+  const auto is_over = [&](const Vector3d& p) {
+    const double height = frame.height(p);
+    return height > 0.0 && height < free_height + ceiling_void && is_in(plan, frame.flat(p));
+  };
+  for (const Lamp& lamp : scene.lamps) {
+    if (!is_over(lamp.position) || plan.luminaires.size() >= most) continue;
+    plan.luminaires.push_back({opening_outline(frame, lamp), frame.flat(lamp.position)});
+  }
+  for_each_facet(scene, [&](const PolygonMesh& mesh, const Facet& facet, const Material& material) {
+    if (!material.is_emitter() || plan.luminaires.size() >= most) return;
+    Vector3d middle = Vector3d::Zero();
+    PlanLuminaire luminaire;
+    for (const int v : facet.boundary) {
+      const Vector3d& p = mesh.vertices[static_cast<std::size_t>(v)];
+      middle += p / static_cast<double>(facet.boundary.size());
+      luminaire.outline.push_back(frame.flat(p));
+    }
+    luminaire.middle = frame.flat(middle);
+    if (is_over(middle)) plan.luminaires.push_back(std::move(luminaire));
+  });
+}
+
+void add_eyes(std::span<const Camera> eyes, const PlanFrame& frame, PlanLines& plan) {
+  int number = 0;
+  for (const Camera& eye : eyes) {
+    ++number;
+    const Vector2d position = frame.flat(eye.position);
+    if (!is_in(plan, position)) continue;
+    Vector2d direction(eye.direction.dot(frame.grid.u), eye.direction.dot(frame.grid.v));
+    constexpr double upright = 0.1;
+    direction = direction.norm() > upright ? Vector2d(direction.normalized()) : Vector2d::Zero();
+    plan.eyes.push_back({position, direction, number});
+  }
+}
+
+}  // namespace
+
+PlanLines plan_lines(const Scene& scene, const ElementCaster& caster, const LuxGrid& grid,
+                     std::span<const Camera> eyes) {
+  const PlanFrame frame(grid);
+  PlanLines plan;
+  set_area(grid, plan);
+  constexpr double cut_of_plans = 1.2;  // m above the floor, through windows and doors
+  const double above = free_height(caster, grid);
+  plan.cut_height = std::min(cut_of_plans - grid.options.height, 0.5 * above);
+  for_each_facet(scene, [&](const PolygonMesh& mesh, const Facet& facet, const Material& material) {
+    cut_facet(frame, mesh, facet, material.dielectric.has_value(), plan);
+  });
+  cut_spheres(scene, frame, plan);
+  add_seen(caster, frame, edges_below(scene, frame, plan), plan);
+  add_luminaires(scene, frame, above, plan);
+  add_eyes(eyes, frame, plan);
+  return plan;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,93 @@
+#include "raytrace/visible_lamps.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+#include <variant>
+
+#include "scene/lamp.h"
+
+namespace lightwell {
+namespace {
+
+double area_of(const LampOpening& opening) {
+  const double box = opening.along_c0 * opening.along_c90;
+  return opening.is_round ? 0.25 * std::numbers::pi * box : box;
+}
+
+// Adds the opening of a lamp as one group: a quad, or a fan of triangles for an ellipse.
+void add_opening(const Lamp& lamp, int group, CastGeometry& geometry) {
+  const auto vertex = [&](double x, double y) {
+    geometry.vertices.push_back(lamp.position + 0.5 * lamp.opening.along_c0 * x * lamp.axes.col(0) +
+                                0.5 * lamp.opening.along_c90 * y * lamp.axes.col(1));
+    return static_cast<int>(geometry.vertices.size()) - 1;
+  };
+  constexpr int sides = 48;
+  if (!lamp.opening.is_round) {
+    geometry.quads.push_back({vertex(1, 1), vertex(-1, 1), vertex(-1, -1), vertex(1, -1)});
+    return;
+  }
+  const int middle = vertex(0, 0);
+  for (int i = 0; i < sides; ++i) {
+    const double turn = 2.0 * std::numbers::pi * i / sides;
+    vertex(std::cos(turn), std::sin(turn));
+    geometry.triangles.push_back({middle, middle + 1 + i, middle + 1 + (i + 1) % sides});
+    geometry.group.push_back(group);
+  }
+}
+
+}  // namespace
+
+VisibleLamps::VisibleLamps(const Scene& scene, const DirectLight& direct_light)
+    : scene_(scene), intensity_(scene.lamps.size()) {
+  for (const FreeSource& source : direct_light.free_sources()) {
+    if (!std::holds_alternative<LampLight>(source.shape)) continue;
+    intensity_[static_cast<std::size_t>(source.number)] = source.light;
+  }
+  CastGeometry geometry;
+  std::vector<int> groups_of_quads;
+  // Triangles are numbered before quads.
+  for (const bool is_round : {true, false}) {
+    for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
+      const Lamp& lamp = scene.lamps[i];
+      if (!lamp.visible || lamp.opening.is_round != is_round || !(area_of(lamp.opening) > 0.0)) {
+        continue;
+      }
+      const auto group = static_cast<int>(lamp_.size());
+      lamp_.push_back(static_cast<int>(i));
+      add_opening(lamp, group, geometry);
+      if (!is_round) groups_of_quads.push_back(group);
+    }
+  }
+  if (lamp_.empty()) return;
+  geometry.group.insert(geometry.group.end(), groups_of_quads.begin(), groups_of_quads.end());
+  caster_ = std::make_unique<const RayCaster>(geometry);
+}
+
+std::optional<VisibleLamps::Seen> VisibleLamps::first(const Ray& ray, double end) const {
+  if (!caster_) return {};
+  Ray rest{.origin = ray.origin, .direction = ray.direction, .t_max = end};
+  // A ray passes an opening that sends no light its way; few openings stand one behind another.
+  constexpr int most_passed = 8;
+  for (int passed = 0; passed < most_passed; ++passed) {
+    Hit hit;
+    caster_->closest_hits({&rest, 1}, {&hit, 1});
+    if (hit.group < 0) return {};
+    const int number = lamp_[static_cast<std::size_t>(hit.group)];
+    const Lamp& lamp = scene_.lamps[static_cast<std::size_t>(number)];
+    const double share = relative_intensity(lamp, -ray.direction);
+    if (share > 0.0) {
+      // Luminous sides, which the flat opening stands for, keep their luminance near the plane.
+      constexpr double grazing = 0.1;  // cosine of 84 degrees
+      const double cosine = std::max(grazing, std::abs(ray.direction.dot(lamp.axes.col(2))));
+      const auto per_area = static_cast<float>(share / (cosine * area_of(lamp.opening)));
+      return Seen{number, intensity_[static_cast<std::size_t>(number)] * per_area};
+    }
+    rest.origin += hit.t * rest.direction;
+    rest.origin_group = hit.group;
+    rest.t_max = end - (rest.origin - ray.origin).dot(ray.direction);
+  }
+  return {};
+}
+
+}  // namespace lightwell
