@@ -13,6 +13,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "cli/white_balance.h"
 #include "radiosity/solution/solution_file.h"
 #include "scene/io/text_file.h"
 
@@ -24,6 +25,7 @@ struct ExportArguments {
   std::vector<std::string> outputs;
   double exposure_ev = 0.0;
   std::optional<LuxRange> range;
+  WhiteChoice white{};
   bool lightmap = false;
   std::string lightmap_pass = "interpolate";
   LightmapOptions light{};
@@ -105,7 +107,7 @@ void write_file(const std::filesystem::path& file, const Exported& exported,
     write_obj(file, model);
     report.add_file(std::filesystem::path(file).replace_extension(".mtl"));
   } else {
-    write_walkthrough(file, model, arguments.range);
+    write_walkthrough(file, model, arguments.range, arguments.white);
   }
   report.add_file(file);
   report.add_phase("write_" + kind.substr(1), watch.seconds());
@@ -218,6 +220,10 @@ Action add_export(CLI::App& command) {
       ->type_name("SCENE");
   add_exposure(command, arguments->exposure_ev);
   add_lux_range(command, arguments->range);
+  add_white_balance(command, arguments->white)
+      ->description(
+          "light that the page shows as white at first: as-lit (default), auto, or a temperature\n"
+          "such as 2700K");
   add_lightmap(command, *arguments);
   command.callback([arguments] { check(*arguments); });
   command.footer(

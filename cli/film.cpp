@@ -10,6 +10,7 @@
 
 #include "cli/arguments.h"
 #include "cli/lux_range.h"
+#include "cli/white_balance.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
@@ -49,43 +50,12 @@ bool holds(const std::vector<Layer>& layers, Layer layer) {
   return std::find(layers.begin(), layers.end(), layer) != layers.end();
 }
 
-// Sets the white balance named by `words`: "as-lit", "auto", "2700K" or "2700".
-void set_white(const std::string& words, FilmArguments& film) {
-  film.white = FilmArguments::White::as_lit;
-  if (words == "as-lit") return;
-  film.white = FilmArguments::White::automatic;
-  if (words == "auto") return;
-  film.white = FilmArguments::White::black_body;
-  std::string_view number = words;
-  if (number.ends_with('K') || number.ends_with('k')) number.remove_suffix(1);
-  const auto kelvin = parse_finite(number);
-  if (!kelvin || !(*kelvin >= coldest_white && *kelvin <= hottest_white)) {
-    throw CLI::ValidationError(
-        "--white-balance",
-        fmt::format("'as-lit', 'auto' or a temperature from {:g}K to {:g}K is needed, not '{}'",
-                    coldest_white, hottest_white, words));
-  }
-  film.white_kelvin = *kelvin;
-}
-
-std::string white_text(const FilmArguments& film) {
-  switch (film.white) {
-    case FilmArguments::White::automatic:
-      return " --white-balance auto";
-    case FilmArguments::White::black_body:
-      return fmt::format(" --white-balance {:g}K", film.white_kelvin);
-    case FilmArguments::White::as_lit:
-      break;
-  }
-  return "";
-}
-
 Eigen::Array3f balance_for(const FilmArguments& film, const Picture& picture) {
-  using White = FilmArguments::White;
-  if (film.white == White::black_body) {
-    return white_balance(colour_of_black_body(film.white_kelvin));
+  using Kind = WhiteChoice::Kind;
+  if (film.white.kind == Kind::black_body) {
+    return white_balance(colour_of_black_body(film.white.kelvin));
   }
-  const bool is_automatic = film.white == White::automatic && picture.incident;
+  const bool is_automatic = film.white.kind == Kind::automatic && picture.incident;
   return is_automatic ? white_balance(picture.incident->colour) : Eigen::Array3f::Ones();
 }
 
@@ -233,13 +203,7 @@ void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn h
           "picture)")
       ->type_name("EV")
       ->group(more);
-  command
-      .add_option_function<std::string>(
-          "--white-balance", [this](const std::string& words) { set_white(words, *this); },
-          "light that shows white in the .png: as-lit (default), auto, or a temperature such as "
-          "2700K")
-      ->type_name("WHITE")
-      ->group(more);
+  add_white_balance(command, white)->group(more);
 }
 
 void FilmArguments::add_false_colour_to(CLI::App& command, const std::string& group) {
@@ -318,7 +282,7 @@ ToneMapping FilmArguments::tones(const Picture& picture) const {
 std::string FilmArguments::tones_text(double exposure_ev) const {
   return fmt::format("--tone-map {} --exposure {:g}{}", tone_map, exposure_ev,
                      ev100 ? fmt::format(" --ev100 {:g}", *ev100) : "") +
-         white_text(*this);
+         white_text(white);
 }
 
 void write_picture(const fs::path& file, const Picture& picture, const FilmArguments& film) {

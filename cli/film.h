@@ -25,9 +25,7 @@ struct FilmArguments {
   ExrOptions exr{};
   std::string tone_map = "auto";
   std::optional<double> ev100{};
-  enum class White { as_lit, automatic, black_body };
-  White white = White::as_lit;
-  double white_kelvin = 6500.0;         ///< of White::black_body
+  WhiteChoice white{};
   std::optional<Layer> false_colour{};  ///< layer that PNG files show in false colours
   std::optional<LuxRange> range{};      ///< of the false colours; unset: of the picture's values
 

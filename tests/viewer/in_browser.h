@@ -180,8 +180,8 @@ class InBrowser : public testing::TestWithParam<BrowserKind> {
     const std::string sandbox = ::geteuid() == 0 ? " --no-sandbox " : " ";
     const std::string options =
         with_webgl ? "--use-angle=swiftshader --enable-unsafe-swiftshader" : "--disable-3d-apis";
-    return output_of(at_home(browser + " --headless" + sandbox + options +
-                             " --window-size=640,640 --virtual-time-budget=60000 --dump-dom"));
+    return output_of(at_home(browser + " --headless" + sandbox + options + " --window-size=" +
+                             window_size + " --virtual-time-budget=60000 --dump-dom"));
   }
 
   /// Standard output of driven.html.
@@ -200,6 +200,7 @@ class InBrowser : public testing::TestWithParam<BrowserKind> {
 
   TemporaryFolder folder;
   std::string browser;
+  std::string window_size = "800,640";  ///< Chromium's, pixels
   bool has_display = false;
 };
 

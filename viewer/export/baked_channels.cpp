@@ -64,13 +64,14 @@ BakedChannel bake(const SolvedScene& alone, const LightChannel& channel,
   const BandArray radiance = shown_radiance(alone, materials);
   const auto count = static_cast<Eigen::Index>(mesh_vertex.size());
   baked.radiance.resize(count, 3);
-  baked.illuminance.resize(count, baked.lumens.size());
+  BandArray arriving(count, bands.count());
   for (Eigen::Index i = 0; i < count; ++i) {
     const int v = mesh_vertex[static_cast<std::size_t>(i)];
-    const Spectrum L = radiance.row(v).transpose() * within, e = E.row(v).transpose() * within;
+    const Spectrum L = radiance.row(v).transpose() * within;
     baked.radiance.row(i) = linear_rgb(bands, L).unaryExpr(&finite_or_black).transpose();
-    baked.illuminance.row(i) = luminous_columns(bands, e).unaryExpr(&finite_or_black).transpose();
+    arriving.row(i) = E.row(v) * within.transpose();
   }
+  baked.illuminance = illuminance_shares(arriving, bands);
   return baked;
 }
 
@@ -90,6 +91,16 @@ Spectrum factor_within(const RadiositySolution& solution, int channel) {
 }
 
 }  // namespace
+
+RgbArray illuminance_shares(const BandArray& irradiance, const Bands& bands) {
+  const Bands primaries = rgb_bands(bands.lumens_per_watt);
+  RgbArray shares(irradiance.rows(), 3);
+  for (Eigen::Index i = 0; i < irradiance.rows(); ++i) {
+    const Spectrum rgb = linear_rgb(bands, irradiance.row(i).transpose());
+    shares.row(i) = luminous_columns(primaries, rgb).unaryExpr(&finite_or_black).transpose();
+  }
+  return shares;
+}
 
 std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene) {
   if (!scene.sky) return {};

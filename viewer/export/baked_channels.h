@@ -19,6 +19,10 @@ inline float finite_or_black(float value) {
 std::vector<ElementKind> kinds_with_all_on(const SolvedScene& solved,
                                            const std::vector<Material>& materials);
 
+/// Illuminance as lx of red, green and blue, whose sum is the illuminance: Y of each primary in the
+/// linear RGB of irradiance (rows x bands, W/m^2).
+RgbArray illuminance_shares(const BandArray& irradiance, const Bands& bands);
+
 /// Sky and sun of a scene; empty without a sky.
 std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene);
 

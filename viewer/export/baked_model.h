@@ -50,11 +50,10 @@ struct BakedCamera {
 struct BakedChannel {
   std::string name{};
   // Per vertex.
-  RgbArray radiance{};  ///< as BakedModel::radiance
-  /// lx, vertices x 3: shares of red, green and blue, whose sum is the illuminance. Spectral:
-  /// vertices x 1.
-  BandArray illuminance{};
-  Spectrum lumens{};  ///< luminous flux of the channel's emitters, in the columns of `illuminance`
+  RgbArray radiance{};     ///< as BakedModel::radiance
+  RgbArray illuminance{};  ///< lx, see illuminance_shares()
+  /// Luminous flux of the channel's emitters: of red, green and blue; spectral: one number.
+  Spectrum lumens{};
   Eigen::Array3f weight = Eigen::Array3f::Ones();  ///< effective; spectral: three equal numbers
 };
 

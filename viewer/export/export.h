@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "raytrace/light_meter.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_model.h"
 #include "viewer/export/lightmap.h"
@@ -71,8 +72,10 @@ bool is_exported_library(const std::filesystem::path& mtl);
 
 /// Writes a self-contained page for a web browser: the model, the program that draws the model
 /// (viewer/export/web) and a library for WebGL 2. `lux_range` is the scale of the false colours;
-/// default: lux_range() of the model's illuminance. docs/export.md describes the data.
+/// default: lux_range() of the model's illuminance. `white`: light that shows as grey until the
+/// page's own choice. docs/export.md describes the data.
 void write_walkthrough(const std::filesystem::path& path, const BakedModel& model,
-                       const std::optional<LuxRange>& lux_range = {});
+                       const std::optional<LuxRange>& lux_range = {},
+                       const WhiteChoice& white = {});
 
 }  // namespace lightwell

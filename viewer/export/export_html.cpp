@@ -65,11 +65,24 @@ class Page {
   std::string_view rest_ = web::page_html;
 };
 
+/// The page's own scripts; each may use those before it.
+std::string program() {
+  std::string text;
+  for (const std::string_view script :
+       {web::texts_js, web::spheres_js, web::model_js, web::white_js, web::picture_js, web::sky_js,
+        web::probe_js, web::walk_js, web::lights_js, web::isolux_js, web::legend_js, web::plan_js,
+        web::measure_js, web::gestures_js, web::stick_js, web::panels_js, web::page_js}) {
+    text += script;
+    text += '\n';
+  }
+  return text;
+}
+
 }  // namespace
 
 void write_walkthrough(const std::filesystem::path& path, const BakedModel& model,
-                       const std::optional<LuxRange>& range) {
-  const PageData data = page_data(model, range.value_or(lux_range(model.illuminance)));
+                       const std::optional<LuxRange>& range, const WhiteChoice& white) {
+  const PageData data = page_data(model, range.value_or(lux_range(model.illuminance)), white);
   Page page;
   page.put("title", escaped(title_of(model)));
   page.put("style", web::page_css);
@@ -77,14 +90,7 @@ void write_walkthrough(const std::filesystem::path& path, const BakedModel& mode
   page.put("data", base64(data.bytes));
   page.put("licenses", web::licenses_txt);
   page.put("library", web::library_js);
-  page.put("spheres", web::spheres_js);
-  page.put("model", web::model_js);
-  page.put("picture", web::picture_js);
-  page.put("sky", web::sky_js);
-  page.put("probe", web::probe_js);
-  page.put("walk", web::walk_js);
-  page.put("lights", web::lights_js);
-  page.put("page", web::page_js);
+  page.put("program", program());
   write_whole(path, {page.finish()});
 }
 

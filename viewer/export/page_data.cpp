@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <set>
 #include <span>
 
 #include "raytrace/encode_png.h"
+#include "viewer/export/baked_channels.h"
 #include "viewer/export/write_whole.h"
 
 namespace lightwell {
@@ -85,7 +87,6 @@ Json append_channel(const BakedChannel& channel, std::string& bytes) {
                 {"lumens", numbers(channel.lumens)}};
   basis["radiance"] = append_halves(numbers(channel.radiance), bytes);
   basis["illuminance"] = append_halves(numbers(channel.illuminance), bytes);
-  basis["illuminance"]["components"] = channel.illuminance.cols();
   return basis;
 }
 
@@ -98,7 +99,8 @@ Json append_bases(const BakedModel& model, std::string& bytes) {
   if (!bases.empty()) return bases;
   Json basis = {{"name", "all light"}};
   basis["radiance"] = append_halves(numbers(model.radiance), bytes);
-  basis["illuminance"] = append_halves(model.illuminance, bytes);
+  const RgbArray shares = illuminance_shares(model.irradiance, model.bands);
+  basis["illuminance"] = append_halves(numbers(shares), bytes);
   bases.push_back(std::move(basis));
   return bases;
 }
@@ -189,7 +191,7 @@ Json cameras(const BakedModel& model, const Eigen::Vector3d& low) {
 }
 
 Json scale_of(const LuxRange& range) {
-  return {{"low", range.low}, {"high", range.high}, {"steps", scale_steps(range)}};
+  return {{"low", range.low}, {"high", range.high}};
 }
 
 Json false_colors_of(const BakedModel& model, const LuxRange& range) {
@@ -207,9 +209,24 @@ Json false_colors_of(const BakedModel& model, const LuxRange& range) {
           {"palette", std::move(palette)}};
 }
 
+/// Choices of light that shows as grey: the first one, and the colours of black bodies.
+Json white_of(const WhiteChoice& white) {
+  using Kind = WhiteChoice::Kind;
+  std::set<double> temperatures = {2700.0, 3000.0, 3500.0, 4000.0, 5000.0, 6500.0};
+  if (white.kind == Kind::black_body) temperatures.insert(white.kelvin);
+  Json bodies = Json::array();
+  for (const double kelvin : temperatures) {
+    bodies.push_back({{"kelvin", kelvin}, {"colour", numbers(colour_of_black_body(kelvin))}});
+  }
+  const Json first = white.kind == Kind::as_lit      ? Json("as-lit")
+                     : white.kind == Kind::automatic ? Json("auto")
+                                                     : Json(white.kelvin);
+  return {{"first", first}, {"black_bodies", std::move(bodies)}};
+}
+
 }  // namespace
 
-PageData page_data(const BakedModel& model, const LuxRange& range) {
+PageData page_data(const BakedModel& model, const LuxRange& range, const WhiteChoice& white) {
   const Box box = turned_bounds(model);
   PageData page;
   page.about = {{"format", 1},
@@ -240,6 +257,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range) {
   page.about["materials"] = materials(model);
   page.about["cameras"] = cameras(model, box.low);
   page.about["false_colors"] = false_colors_of(model, range);
+  page.about["white"] = white_of(white);
   return page;
 }
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "raytrace/light_meter.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_model.h"
 
@@ -15,8 +16,9 @@ struct PageData {
   std::string bytes{};             ///< arrays, little-endian
 };
 
-/// Data of a model's page. `range`: scale of the false colours of illuminance, lx.
-PageData page_data(const BakedModel& model, const LuxRange& range);
+/// Data of a model's page. `range`: scale of the false colours of illuminance, lx; `white`: light
+/// that shows as grey at first.
+PageData page_data(const BakedModel& model, const LuxRange& range, const WhiteChoice& white = {});
 
 /// Base64 of RFC 4648, with padding.
 std::string base64(const std::string& bytes);

@@ -34,11 +34,11 @@ driver.run(async (page, found) => {
   found.percents = [0, 1].map((c) => control('percent', c).value);
   found.sliders = [0, 1].map((c) => control('slider', c).value);
   found.colours = [0, 1].map((c) => control('colour', c).value);
-  found.open = !element('lights').hidden && element('lights').open;
+  found.open = !element('lights').hidden;
   tap('t');
-  found.closed = !element('lights').open;
+  found.closed = element('lights').hidden;
   tap('t');
-  const exposure = () => page.picture.uniforms.scale.value;
+  const exposure = () => page.picture.uniforms.scale.value[0];
   const before = exposure();
   found.in_force = await read();
   put('slider', 0, 30);

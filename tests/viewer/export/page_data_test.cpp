@@ -10,6 +10,7 @@
 #include "tests/temporary_folder.h"
 #include "tests/viewer/lit_sides.h"
 #include "tests/viewer/page_values.h"
+#include "viewer/export/baked_channels.h"
 #include "viewer/export/export.h"
 
 namespace lightwell::page_data_test {
@@ -81,7 +82,11 @@ TEST_F(PageOf, LightIsKeptToElevenBits) {
   };
   ASSERT_EQ(page.about["bases"].size(), 1u);
   check(basis["radiance"], model.radiance.data(), 3 * n);
-  check(basis["illuminance"], model.illuminance.data(), n);
+  const RgbArray shares = illuminance_shares(model.irradiance, model.bands);
+  check(basis["illuminance"], shares.data(), 3 * n);
+  for (std::size_t v = 0; v < n; ++v) {  // single precision
+    EXPECT_NEAR(shares.row(v).sum(), model.illuminance[v], 1e-6 * model.illuminance[v]);
+  }
 }
 
 TEST_F(PageOf, FacesAndTheirPartsAreAllThere) {

@@ -30,7 +30,7 @@ driver.run(async (page, found) => {
   found.wall_pixel = pixel(0.5, 0.5);
   page.camera.aspect = page.bookmark.aspect;  // of the camera's own picture, not of the window
   page.fit_view();
-  found.measured_exposure = page.picture.meter();
+  found.measured_exposure = page.picture.meter().exposure;
   page.resize();
   tap('+');
   found.brighter_pixel = pixel(0.5, 0.5);
@@ -65,7 +65,7 @@ driver.run(async (page, found) => {
   found.back_at = page.model.to_scene(page.camera.position);
   tap('o');
   await wait(100);
-  found.orbits = page.orbit.enabled_here;
+  found.orbits = page.mode === 'orbit';
   tap('x');
 });
 </script>)";

@@ -1,6 +1,6 @@
 // Light channels: a switch, a slider and a colour for each. Settings mean what those of 'lightwell relight' do.
 
-const most_open_at_first = 8;  // channels; of more, the panel starts closed
+const most_open_at_first = 8;  // channels; of more, or on a small screen, the panel starts closed
 
 // IEC 61966-2-1.
 function srgb_decode(v) { return v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4; }
@@ -52,42 +52,32 @@ class Lights {
     this.channels = model.bases.flatMap((basis, i) =>
       (described[i].weight ? [new Channel(basis, described[i].lumens)] : []));
     if (this.channels.length === 0) return;
-    this.panel.hidden = false;
-    this.panel.open = this.channels.length <= most_open_at_first;
-    for (const row of document.querySelectorAll('.of-lights')) row.hidden = false;
+    element('open-lights').hidden = false;
     for (const channel of this.channels) this.add_row(channel);
+    const opens = this.channels.length <= most_open_at_first && !small_screen.matches;
+    if (opens) toggle_panel('lights', true);
   }
 
-  toggle() {
-    if (this.channels.length === 0) return false;
-    this.panel.open = !this.panel.open;
-    return true;
-  }
-
-  /** Whether a key is for what has the focus in the panel. */
-  takes({target, code}) {
-    return target instanceof Node && this.panel.contains(target) && /^(Arrow|Space|Enter|Home|End|Page)/.test(code);
-  }
+  toggle() { return this.channels.length > 0 && toggle_panel('lights'); }
 
   add_row(channel) {
-    const input = (type, label) => {
+    const input = (type, title) => {
       const made = document.createElement('input');
       made.type = made.className = type;
-      made.setAttribute('aria-label', `${channel.basis.name}: ${label}`);
-      made.title = label;
+      Object.assign(made.dataset, {title, of: channel.basis.name});
       return made;
     };
     const name = document.createElement('span'), percent = document.createElement('output');
     name.textContent = name.title = channel.basis.name;
-    const power = input('checkbox', 'on or off');
-    const slider = Object.assign(input('range', 'brightness; double click: 100 %'), {className: 'slider',
+    const power = input('checkbox', 'on_off');
+    const slider = Object.assign(input('range', 'brightness'), {className: 'slider',
       min: 0, max: Math.max(200, Math.ceil(100 * channel.factor)), step: 1});
-    const colour = channel.takes_colour ? input('color', 'colour, at the same luminous flux') : document.createElement('i');
+    const colour = channel.takes_colour ? input('color', 'colour') : document.createElement('i');
     if (channel.takes_colour) colour.className = 'colour';
     const show = () => {
       power.checked = channel.on;
       slider.value = 100 * channel.factor;
-      percent.value = `${Number((100 * channel.factor).toPrecision(3))} %`;
+      percent.value = `${number_text(100 * channel.factor, {maximumSignificantDigits: 3})} %`;
       for (const part of [name, slider, percent]) part.classList.toggle('off', !channel.on);
     };
     const change = (values) => {
@@ -104,7 +94,10 @@ class Lights {
       if (channel.set_colour(linear_of(colour.value))) change({on: true});
     });
     colour.addEventListener('change', show_colour);  // not while it is being chosen
-    element('channels').append(power, name, slider, percent, colour);
+    const row = document.createElement('div');
+    row.className = 'channel';
+    row.append(power, name, slider, percent, colour);
+    element('channels').append(row);
     show();
     show_colour();
   }

@@ -28,7 +28,8 @@ function table_of_halves() {
 
 /**
  * Geometry and light. Positions are metres, y upwards, from the model's lowest corner. Light is a sum of bases, each
- * with radiance (linear RGB, W/(m^2 sr)) and illuminance (lx) per vertex, times a weight for red, green and blue.
+ * with radiance (linear RGB, W/(m^2 sr)) and illuminance (lx of red, green and blue, which are added) per vertex, times a
+ * weight for red, green and blue.
  * mix() adds them up once weights have changed.
  */
 class Model {
@@ -43,9 +44,8 @@ class Model {
     this.bases = about.bases.map((basis) => ({
       name: basis.name,
       weight: basis.weight ?? [1, 1, 1],
-      components: basis.illuminance.components ?? 1,
       radiance: this.unpack_halves(basis.radiance, 3 * n, halves),
-      illuminance: this.unpack_halves(basis.illuminance, (basis.illuminance.components ?? 1) * n, halves),
+      illuminance: this.unpack_halves(basis.illuminance, 3 * n, halves),
     }));
     if (about.pictures) {
       this.places = new Float32Array(bytes.buffer, about.places.offset, 2 * n);
@@ -56,7 +56,7 @@ class Model {
     about.element_count = about.face_count;
     split_spheres(this);
     this.radiance = new Float32Array(3 * about.vertex_count);
-    this.illuminance = new Float32Array(about.vertex_count);
+    this.illuminance = new Float32Array(3 * about.vertex_count);
     this.mix();
     this.split_faces();
   }
@@ -116,16 +116,14 @@ class Model {
   /** Adds the bases up with their weights. */
   mix() {
     const L = this.radiance.fill(0), E = this.illuminance.fill(0);
-    for (const {weight: [r, g, b], components, radiance, illuminance} of this.bases) {
+    for (const {weight: [r, g, b], radiance, illuminance} of this.bases) {
       if (r === 0 && g === 0 && b === 0) continue;
-      for (let i = 0; i < L.length; i += 3) {
-        L[i] += r * radiance[i];
-        L[i + 1] += g * radiance[i + 1];
-        L[i + 2] += b * radiance[i + 2];
-      }
-      for (let v = 0; v < E.length; ++v) {
-        E[v] += components === 1 ? r * illuminance[v]
-          : r * illuminance[3 * v] + g * illuminance[3 * v + 1] + b * illuminance[3 * v + 2];
+      for (const [sum, values] of [[L, radiance], [E, illuminance]]) {
+        for (let i = 0; i < sum.length; i += 3) {
+          sum[i] += r * values[i];
+          sum[i + 1] += g * values[i + 1];
+          sum[i + 2] += b * values[i + 2];
+        }
       }
     }
   }

@@ -1,9 +1,15 @@
-// The page: what buttons, keys and the mouse do.
+// The page: what buttons, keys, mouse and fingers do.
 
-const element = (id) => document.getElementById(id);
+function element(id) { return document.getElementById(id); }
 
 /** What false colours can show, and its unit; buttons have these names. */
 const measures = {illuminance: 'lx', luminance: 'cd/m²'};
+/** Ways to look; buttons have these names. */
+const modes = ['walk', 'orbit', 'plan'];
+/** A picture taller than this, in degrees, would look warped: on a narrow screen its sides are cut instead. */
+const tallest_view = 84;
+const wheel_step = 1.0015;  // for each pixel that a wheel scrolls
+const rest_time = 160;  // ms without motion, before isolux lines get their labels
 
 class Page {
   constructor(model) {
@@ -21,62 +27,102 @@ class Page {
     this.walker = new Walker(this.camera, this.tree, about.size);
     this.locked = new Library.PointerLockControls(this.camera, this.canvas);
     this.orbit = new Library.OrbitControls(this.camera, null);
+    this.plan = new Plan(model, (origin, way) => this.walker.first_hit(origin, way, Infinity));
+    this.measure = new Measure(model);
+    this.white = new WhiteBalance(about.white, () => this.meter_white());
     this.metered = 1;
+    this.light_colour = null;
     this.pointer = null;
     this.pinned = null;
     this.outlined = false;
+    this.levels = [];
+    this.ranges = {};
+    for (const measure of Object.keys(measures)) this.reset_range(measure);
     this.lights = new Lights(model, () => { this.light_due = true; });
-    this.set_up_text();
+    set_up_panels();
+    set_up_stick(this.walker);
+    watch_devices();
+    this.set_up_choices();
     this.set_up_buttons();
     this.set_up_keys();
-    this.set_up_mouse();
+    this.set_up_gestures();
+    this.set_mode('walk');
     this.resize();
     this.go_to(0);
     this.set_false_colors(null);
+    this.say_all();
     new ResizeObserver(() => this.resize()).observe(this.canvas);
     this.time = performance.now();
     this.frame = this.frame.bind(this);
     requestAnimationFrame(this.frame);
   }
 
-  set_up_text() {
+  /** All words, in the language of the moment. */
+  say_all() {
     const {about} = this.model;
+    show_texts();
     element('heading').textContent = document.title;
     element('origin').textContent =
-      `Computed with Lightwell ${about.version} from ${about.scene_file}: ${about.element_count} elements.` +
-      (about.relative_units ? ' Its light is in no known unit; figures are relative.' : '');
+      text('computed', {version: about.version, file: about.scene_file, count: about.element_count}) +
+      (about.relative_units ? ` ${text('relative_units')}` : '');
+    fill_help(element('finger-help'), finger_help);
+    fill_help(element('key-help'), key_help);
+    this.measure.show();
+    this.apply_exposure();
+    this.show_range();
+  }
+
+  set_up_choices() {
     element('licenses-text').textContent = element('licenses').textContent;
-    about.cameras.forEach((camera, i) => {
+    this.model.about.cameras.forEach((camera, i) => {
       element('cameras').append(new Option(`${i < 9 ? `${i + 1} ` : ''}${camera.name}`, i));
     });
+    for (const [code, {language: name}] of Object.entries(texts)) element('language').append(new Option(name, code));
+    element('language').value = language;
+    const choose = (id, act) => element(id).addEventListener('change', (event) => act(event.target.value));
+    choose('cameras', (value) => {
+      this.go_to(Number(value));
+      this.canvas.focus();
+    });
+    choose('language', (value) => {
+      language = value;
+      this.say_all();
+    });
+    choose('levels', () => this.set_isolux(true));
+    choose('low', () => this.take_range());
+    choose('high', () => this.take_range());
+    choose('range-scale', () => this.take_range());
   }
 
   set_up_buttons() {
-    const click = (id, act) => element(id).addEventListener('click', () => {
+    const click = (id, act) => element(id).addEventListener('click', (event) => {
       act();
-      this.canvas.focus();  // so that Space does not press the button again
+      if (event.detail > 0) this.canvas.focus();  // after a click, not Enter: Space is to raise the eye, not to press again
     });
-    click('mode', () => this.set_orbit(!this.orbit.enabled_here));
+    for (const mode of modes) click(mode, () => this.set_mode(mode));
     click('auto', () => this.expose());
     for (const measure of Object.keys(measures)) click(measure, () => this.switch_false_colors(measure));
+    click('isolux', () => this.set_isolux(this.levels.length === 0));
+    click('measure', () => this.set_measuring(!this.measure.is_on));
+    click('reset', () => {
+      this.reset_range(this.range_shown());
+      this.show_range();
+    });
+    click('outlines', () => this.set_outlines(!this.outlined));
+    click('look-through', () => this.look_through(!this.picture.looks_through));
     click('lock', () => this.lock());
-    click('ask', () => this.toggle_help());
     // Keys walk again after the mouse has moved a slider.
-    element('lights').addEventListener('pointerup', (event) => {
-      if (event.target.type !== 'color') this.canvas.focus();
-    });
+    for (const panel of ['lights', 'adjust']) {
+      element(panel).addEventListener('pointerup', ({target}) => {
+        if (target.type === 'range' || target.type === 'checkbox') this.canvas.focus();
+      });
+    }
     element('exposure').addEventListener('input', () => this.apply_exposure());
-    element('cameras').addEventListener('change', (event) => {
-      this.go_to(Number(event.target.value));
-      this.canvas.focus();
-    });
   }
 
   set_up_keys() {
     window.addEventListener('keydown', (event) => {
-      if (event.ctrlKey || event.metaKey || event.altKey || event.target instanceof HTMLSelectElement) return;
-      if (event.target instanceof HTMLInputElement && event.code.startsWith('Arrow')) return;
-      if (this.lights.takes(event)) return;
+      if (event.ctrlKey || event.metaKey || event.altKey || is_for_control(event)) return;
       if (this.press(event)) event.preventDefault();
     });
     window.addEventListener('keyup', (event) => this.walker.release(event.code));
@@ -92,48 +138,63 @@ class Page {
       case '-': return this.change_exposure(-1 / 3);
       case 'v': return this.switch_false_colors('illuminance');
       case 'u': return this.switch_false_colors('luminance');
+      case 'i': return this.set_isolux(this.levels.length === 0);
+      case 'g': return this.set_measuring(!this.measure.is_on);
       case 't': return this.lights.toggle();
+      case 'b': return toggle_panel('adjust');
       case 'm': return this.set_outlines(!this.outlined);
       case 'x': return this.look_through(!this.picture.looks_through);
-      case 'o': return this.set_orbit(!this.orbit.enabled_here);
+      case 'o': return this.set_mode(this.mode === 'orbit' ? 'walk' : 'orbit');
+      case 'p': return this.set_mode(this.mode === 'plan' ? 'walk' : 'plan');
       case 'l': return this.lock();
       case 'r': return this.go_to(0);
-      case 'h': case '?': return this.toggle_help();
-      case 'Escape': return this.pin(null) && this.toggle_help(false);
+      case 'h': case '?': return toggle_panel('help');
+      case 'Escape': return this.escape();
     }
-    if (code in ways && this.orbit.enabled_here) this.set_orbit(false);
+    if (code in ways && this.mode !== 'walk') this.set_mode('walk');
     return this.walker.press(code);
   }
 
-  set_up_mouse() {
-    const canvas = this.canvas;
-    let down = null;
-    canvas.addEventListener('pointerdown', (event) => {
-      down = {x: event.clientX, y: event.clientY, moved: false};
-      if (!this.locked.isLocked) canvas.setPointerCapture(event.pointerId);
+  escape() {
+    for (const name of ['help', 'adjust']) toggle_panel(name, false);
+    this.set_measuring(false);
+    return this.pin(null);
+  }
+
+  set_up_gestures() {
+    const {canvas, camera, walker} = this;
+    let depth = 1;  // of what is between two fingers
+    const angle = () => camera.fov * Math.PI / 180 / canvas.clientHeight;
+    watch_gestures(canvas, {
+      captures: () => !this.locked.isLocked,
+      hover: (place) => {
+        this.pointer = place;
+        this.probe_due = true;
+      },
+      drag: (dx, dy) => {
+        if (this.locked.isLocked) return;
+        // What was under the pointer stays under it.
+        if (this.mode === 'walk') walker.look(dx * angle(), dy * angle());
+        if (this.mode === 'plan') this.plan.shift(dx, dy, canvas.clientHeight);
+        this.due = true;
+      },
+      pair: ({x, y}) => { depth = this.depth_at(x, y); },
+      pinch: ({dx, dy, ratio, x, y}) => {
+        if (this.mode === 'plan') {
+          this.plan.shift(dx, dy, canvas.clientHeight);
+          this.plan.zoom(ratio, x, y, canvas);
+        }
+        if (this.mode === 'walk') {
+          const step = 2 * depth * Math.tan(camera.fov * Math.PI / 360) / canvas.clientHeight;
+          walker.shift(new Library.Vector3(-dx * step, dy * step, -depth * (1 - 1 / ratio)).applyQuaternion(camera.quaternion));
+          depth /= ratio;
+        }
+        this.due = true;
+      },
+      tap: (place) => this.tap(place),
+      double_tap: (place) => this.walk_to(place),
     });
-    canvas.addEventListener('pointermove', (event) => {
-      this.pointer = {x: event.clientX, y: event.clientY};
-      this.probe_due = true;
-      if (!down) return;
-      const dx = event.clientX - down.x, dy = event.clientY - down.y;
-      if (!down.moved && Math.hypot(dx, dy) < 4) return;
-      Object.assign(down, {x: event.clientX, y: event.clientY, moved: true});
-      if (this.orbit.enabled_here || this.locked.isLocked) return;
-      // What was under the pointer stays under it.
-      const angle = this.camera.fov * Math.PI / 180 / canvas.clientHeight;
-      this.walker.look(dx * angle, dy * angle);
-      this.due = true;
-    });
-    canvas.addEventListener('pointerup', () => {
-      if (down && !down.moved) this.pin(this.hit_at(this.pointer_place()));
-      down = null;
-    });
-    canvas.addEventListener('pointerleave', () => {
-      this.pointer = null;
-      this.probe_due = true;
-    });
-    this.orbit.enabled_here = false;
+    canvas.addEventListener('wheel', (event) => this.turn_wheel(event), {passive: false});
     this.orbit.addEventListener('change', () => { this.due = true; });
     this.locked.addEventListener('change', () => { this.due = true; });
     for (const [name, on] of [['lock', true], ['unlock', false]]) {
@@ -144,21 +205,60 @@ class Page {
     }
   }
 
-  lock() {
-    this.set_orbit(false);
-    this.locked.lock();
-    return true;
+  turn_wheel(event) {
+    if (this.mode === 'orbit') return;
+    event.preventDefault();
+    const pixels = event.deltaY * (event.deltaMode === 1 ? 16 : 1), ratio = wheel_step ** -pixels;
+    const {clientX: x, clientY: y} = event;
+    if (this.mode === 'plan') this.plan.zoom(ratio, x, y, this.canvas);
+    else this.walker.shift(this.ray_through(this.place_of({x, y})).direction.multiplyScalar(this.depth_at(x, y) * (1 - 1 / ratio)));
+    this.due = true;
   }
 
-  toggle_help(on = element('help').hidden) {
-    element('help').hidden = !on;
+  /** A reading, or a place to measure from; on the mark of a reading: lets it go. */
+  tap({x, y, type}) {
+    const hit = this.hit_at(this.locked.isLocked ? {x: 0, y: 0} : this.place_of({x, y}));
+    if (this.measure.is_on) {
+      if (hit) this.measure.add(hit.point);
+      return this.due = true;
+    }
+    const at = this.pinned && on_canvas(this.pinned.point, this.picture.camera, this.canvas);
+    const on_mark = type === 'touch' && at && Math.hypot(at.x - x, at.y - y) < 22;
+    return this.pin(on_mark ? null : hit);
+  }
+
+  walk_to(place) {
+    if (this.measure.is_on) return this.tap(place);
+    const hit = this.hit_at(this.place_of(place));
+    if (!hit) return false;
+    this.pin(null);
+    if (this.mode === 'plan') return this.stand_at(hit.point);
+    this.set_mode('walk');
+    this.walker.go_to(hit.point);
+    if (matchMedia('(prefers-reduced-motion: reduce)').matches) this.walker.arrive();
+    return this.due = true;
+  }
+
+  /** From the plan: the eye stands over that point, and looks level. */
+  stand_at(point) {
+    const {camera, walker} = this, yaw = new Library.Euler().setFromQuaternion(camera.quaternion, 'YXZ').y;
+    const from = new Library.Vector3(point.x, this.plan.camera.position.y, point.z);
+    const floor = walker.first_hit(from, new Library.Vector3(0, -1, 0), Infinity)?.point.y ?? 0;
+    camera.position.set(point.x, floor + walker.normal_eye_height, point.z);
+    camera.quaternion.setFromEuler(new Library.Euler(0, yaw, 0, 'YXZ'));
+    return this.set_mode('walk');
+  }
+
+  lock() {
+    this.set_mode('walk');
+    this.locked.lock();
     return true;
   }
 
   go_to(number) {
     const bookmark = this.model.about.cameras[number];
     if (!bookmark) return false;
-    this.set_orbit(false);
+    this.set_mode('walk');
     const back = new Library.Vector3(...bookmark.direction).negate(), up = new Library.Vector3(...bookmark.up);
     const axes = new Library.Matrix4().makeBasis(up.clone().cross(back), up, back);
     this.camera.quaternion.setFromRotationMatrix(axes);
@@ -168,7 +268,10 @@ class Page {
     element('cameras').value = number;
     element('exposure').value = 0;
     this.walker.place();
+    this.camera.aspect = bookmark.aspect;  // the white is that of the bookmark's picture
     this.fit_view();
+    this.meter_white();
+    this.resize();
     return this.apply_exposure();
   }
 
@@ -176,7 +279,8 @@ class Page {
   fit_view() {
     const half_width = Math.tan(this.bookmark.fov_degrees * Math.PI / 360);
     const narrower = Math.min(this.camera.aspect, this.bookmark.aspect);
-    this.camera.fov = Math.atan(half_width / narrower) * 360 / Math.PI;
+    const own = Math.atan(half_width / this.bookmark.aspect) * 360 / Math.PI;
+    this.camera.fov = Math.min(Math.atan(half_width / narrower) * 360 / Math.PI, Math.max(own, tallest_view));
     this.camera.updateProjectionMatrix();
     this.due = true;
   }
@@ -186,13 +290,17 @@ class Page {
     if (clientWidth === 0 || clientHeight === 0) return;
     this.picture.resize(clientWidth, clientHeight);
     if (this.bookmark) this.fit_view();
+    this.plan.camera.aspect = clientWidth / clientHeight;
+    this.plan.camera.updateProjectionMatrix();
     this.due = true;
   }
 
   expose() {
     this.mix_light();
-    this.camera.updateMatrixWorld();
-    this.metered = this.picture.meter() ?? this.metered;
+    this.picture.camera.updateMatrixWorld();
+    const light = this.picture.meter();
+    this.metered = light?.exposure ?? this.metered;
+    this.light_colour = light?.colour ?? this.light_colour;
     element('exposure').value = 0;
     return this.apply_exposure();
   }
@@ -203,82 +311,154 @@ class Page {
   }
 
   apply_exposure() {
-    const stops = element('exposure').valueAsNumber;
-    element('stops').value = `${stops < 0 ? '−' : '+'}${Math.abs(stops).toFixed(1)}`;
-    this.picture.set_scale(this.metered * 2 ** stops);
+    const stops = element('exposure').valueAsNumber, size = {minimumFractionDigits: 1, maximumFractionDigits: 1};
+    element('stops').value = `${stops < 0 ? '−' : '+'}${number_text(Math.abs(stops), size)} ${text('stops')}`;
+    this.picture.set_scale(this.metered * 2 ** stops, this.white.gains(this.light_colour));
     return this.due = true;
+  }
+
+  /** Automatic white is that of the light on what is seen now. */
+  meter_white() {
+    this.mix_light();
+    this.picture.camera.updateMatrixWorld();
+    if (this.white.is_automatic) this.light_colour = this.picture.meter()?.colour ?? this.light_colour;
+    return this.apply_exposure();
   }
 
   switch_false_colors(measure) { return this.set_false_colors(this.false_colors === measure ? null : measure); }
 
-  /** Of 'illuminance' or 'luminance'; null: light. */
+  /** Of a measure; null: light. */
   set_false_colors(measure) {
     this.false_colors = measure;
-    this.picture.set_false_colors(measure);
-    for (const each of Object.keys(measures)) element(each).setAttribute('aria-pressed', each === measure);
+    for (const name of Object.keys(measures)) element(name).setAttribute('aria-pressed', measure === name);
     element('legend').hidden = measure === null;
-    if (measure !== null) draw_legend(this.model.about, measure);
+    return this.show_range();
+  }
+
+  range_shown() { return this.false_colors ?? 'illuminance'; }
+  unit_of(measure) { return this.model.about.relative_units ? text('relative') : measures[measure]; }
+
+  reset_range(measure) {
+    const {low, high} = this.model.about.false_colors[measure];
+    this.ranges[measure] = {low, high, logarithmic: low > 0};
+  }
+
+  /** Takes the range that has been typed, if it is one. A logarithmic scale from 0 starts three decades below its end. */
+  take_range() {
+    const logarithmic = element('range-scale').value === 'logarithmic', high = element('high').valueAsNumber;
+    const typed = element('low').valueAsNumber, low = logarithmic && !(typed > 0) ? high / 1000 : typed;
+    if (is_sound({low, high, logarithmic})) this.ranges[this.range_shown()] = {low, high, logarithmic};
+    this.show_range();
+  }
+
+  show_range() {
+    const measure = this.range_shown(), range = this.ranges[measure];
+    element('low').value = Number(range.low.toPrecision(4));
+    element('high').value = Number(range.high.toPrecision(4));
+    element('range-scale').value = range.logarithmic ? 'logarithmic' : 'linear';
+    element('range-unit').textContent = this.unit_of(measure);
+    this.picture.set_false_colors(this.false_colors, range);
+    const levels = measure === 'illuminance' ? this.levels : [];
+    draw_legend(this.model.about.false_colors.palette, range, this.unit_of(measure), levels);
+    return this.due = true;
+  }
+
+  set_isolux(on) {
+    const {high} = this.model.about.false_colors.illuminance;
+    this.levels = on ? isolux_levels(element('levels').value, high) : [];
+    this.picture.set_isolux(this.levels);
+    element('isolux').setAttribute('aria-pressed', on);
+    return this.show_range();
+  }
+
+  set_measuring(on) {
+    this.measure.switch_on(on);
+    this.pin(null);
+    element('measure').setAttribute('aria-pressed', on);
     return this.due = true;
   }
 
   set_outlines(on) {
     this.outlined = on;
     this.picture.show_outlines(on);
+    element('outlines').setAttribute('aria-pressed', on);
     return this.due = true;
   }
 
   look_through(on) {
     this.picture.look_through(on);
+    element('look-through').setAttribute('aria-pressed', on);
     return this.due = this.probe_due = true;
   }
 
-  set_orbit(on) {
-    if (on === this.orbit.enabled_here) return true;
-    this.orbit.enabled_here = on;
-    element('mode').textContent = on ? 'Walk' : 'Orbit';
-    if (on) {
+  set_mode(mode) {
+    for (const name of modes) element(name).setAttribute('aria-pressed', name === mode);
+    document.body.dataset.mode = mode;
+    element('ruler').hidden = mode !== 'plan';
+    if (mode === this.mode) return true;
+    if (this.mode === 'orbit') this.orbit.disconnect();
+    this.mode = mode;
+    this.walker.place();
+    this.canvas.style.touchAction = 'none';
+    this.picture.camera = mode === 'plan' ? this.plan.camera : this.camera;
+    if (mode === 'orbit') {
       // Around what is looked at, if that is near enough to be part of the room.
       const hit = this.hit_at({x: 0, y: 0}), size = new Library.Vector3(...this.model.about.size);
       this.orbit.target.copy(hit ? hit.point : size.multiplyScalar(0.5));
       this.orbit.connect(this.canvas);
       this.orbit.update();
-    } else {
-      this.orbit.disconnect();
-      this.canvas.style.touchAction = 'none';
-      this.walker.place();
     }
-    return this.look_through(on);
+    if (mode === 'plan') this.plan.open(this.camera.position, this.canvas, element('bar').getBoundingClientRect().bottom);
+    return this.look_through(mode !== 'walk');
   }
 
-  /** Where the reading is taken: the pointer, or the middle while it is locked; in [-1,1], y upwards. */
+  /** A place of the canvas in [-1,1], y upwards. */
+  place_of({x, y}) {
+    const {clientWidth, clientHeight} = this.canvas;
+    return {x: 2 * x / clientWidth - 1, y: 1 - 2 * y / clientHeight};
+  }
+
+  /** Where the reading is taken: the pointer, or the middle while it is locked. */
   pointer_place() {
     if (this.locked.isLocked) return {x: 0, y: 0};
-    if (!this.pointer) return null;
-    const {clientWidth, clientHeight} = this.canvas;
-    return {x: 2 * this.pointer.x / clientWidth - 1, y: 1 - 2 * this.pointer.y / clientHeight};
+    return this.pointer && this.place_of(this.pointer);
+  }
+
+  ray_through(place) {
+    const {camera} = this.picture;
+    camera.updateMatrixWorld();
+    const beyond = new Library.Vector3(place.x, place.y, 0.5).unproject(camera);
+    const from = this.mode === 'plan' ? new Library.Vector3(place.x, place.y, -1).unproject(camera) : camera.position.clone();
+    return new Library.Ray(from, beyond.sub(from).normalize());
   }
 
   hit_at(place) {
-    if (!place) return null;
-    this.camera.updateMatrixWorld();
-    const beyond = new Library.Vector3(place.x, place.y, 0.5).unproject(this.camera);
-    const ray = new Library.Ray(this.camera.position.clone(), beyond.sub(this.camera.position).normalize());
-    return pick(this.model, this.tree, ray, this.picture.looks_through);
+    return place && pick(this.model, this.tree, this.ray_through(place), this.picture.looks_through);
+  }
+
+  /** How far what is seen there is, metres. */
+  depth_at(x, y) {
+    const hit = this.hit_at(this.place_of({x, y}));
+    return hit ? hit.point.distanceTo(this.picture.camera.position) : 0.5 * Math.hypot(...this.model.about.size);
   }
 
   /** Keeps a reading on show; null lets it go. */
   pin(hit) {
     this.pinned = hit;
-    element('pin').hidden = !hit;
     return this.due = this.probe_due = true;
   }
 
-  place_pin() {
-    if (!this.pinned) return;
-    const at = this.pinned.point.clone().project(this.camera);
-    element('pin').hidden = at.z > 1;
-    element('pin').style.left = `${(at.x + 1) / 2 * this.canvas.clientWidth}px`;
-    element('pin').style.top = `${(1 - at.y) / 2 * this.canvas.clientHeight}px`;
+  draw_marks() {
+    const {canvas, picture: {camera}} = this;
+    camera.updateMatrixWorld();
+    const at = this.pinned && on_canvas(this.pinned.point, camera, canvas);
+    element('pin').hidden = !at;
+    if (at) Object.assign(element('pin').style, {left: `${at.x}px`, top: `${at.y}px`});
+    element('marks').replaceChildren();
+    this.measure.draw(camera, canvas);
+    if (this.mode !== 'plan') return;
+    draw_eye(this.camera, camera, canvas);
+    draw_ruler(this.plan, canvas.clientHeight);
   }
 
   /** Brings picture and readings up to date with the lights. */
@@ -294,52 +474,43 @@ class Page {
     // A page that was hidden does not leap when it is back.
     const seconds = Math.min(0.1, Math.max(0, (now - this.time) / 1000));
     this.time = now;
-    if (!this.orbit.enabled_here && this.walker.advance(seconds)) this.due = true;
+    if (this.mode === 'walk' && this.walker.advance(seconds)) this.due = true;
     this.mix_light();
     if (this.due || this.probe_due) {
-      show_reading(this.model, this.pinned ?? this.hit_at(this.pointer_place()), element('probe'));
-      this.place_pin();
+      const hit = this.measure.is_on ? null : this.pinned ?? this.hit_at(this.pointer_place());
+      show_reading(this.model, hit, element('probe'));
       this.probe_due = false;
     }
-    if (this.due) {
-      this.due = false;
-      this.picture.draw();
-    }
+    if (this.due) this.draw(now);
+    else if (this.labels_due && now - this.drawn > rest_time) this.label();
     requestAnimationFrame(this.frame);
   }
-}
 
-function draw_legend(about, measure) {
-  const {palette} = about.false_colors, {low, high, steps} = about.false_colors[measure];
-  const context = element('scale').getContext('2d');
-  for (let i = 0; i < 256; ++i) {
-    context.fillStyle = `#${palette.substr(6 * i, 6)}`;
-    context.fillRect(0, 255 - i, 1, 1);
+  draw(now) {
+    this.due = false;
+    this.drawn = now;
+    this.labels_due = true;
+    element('labels').replaceChildren();
+    this.picture.draw();
+    this.draw_marks();
   }
-  element('unit').textContent = about.relative_units ? 'relative' : measures[measure];
-  for (const label of document.querySelectorAll('.step')) label.remove();
-  for (const value of steps) {
-    const place = low === 0 ? value / high : Math.log(value / low) / Math.log(high / low);
-    const label = document.createElement('span');
-    label.className = 'step';
-    label.textContent = Number(value.toPrecision(4));
-    label.style.top = `calc(30px + ${1 - place} * (100% - 44px))`;
-    element('legend').append(label);
+
+  label() {
+    this.labels_due = false;
+    label_isolux(this.picture, this.levels, this.canvas);
   }
 }
 
 function begin() {
   const message = element('message');
-  const fail = (text) => {
-    message.textContent = text;
+  const say = (words) => {
+    message.textContent = words;
     message.hidden = false;
   };
-  if (!document.createElement('canvas').getContext('webgl2')) {
-    fail('This browser shows no WebGL 2, which this page draws with. Switch hardware acceleration on, or open the ' +
-         'page in a current Firefox, Chromium or Safari.');
-    return;
-  }
-  window.addEventListener('error', (event) => fail(`The page failed: ${event.message}`));
+  show_texts();
+  if (!document.createElement('canvas').getContext('webgl2')) return say(text('no_webgl'));
+  say(text('unpacking'));
+  window.addEventListener('error', (event) => say(text('failed', {what: event.message})));
   // After the message is on the screen.
   setTimeout(() => {
     const model = new Model(JSON.parse(element('about').textContent), decode_base64(element('data').textContent));

@@ -12,9 +12,9 @@ vec3 srgb_encode(vec3 x) {
 
 const vertex_program = `
 in vec3 radiance;
-in float illuminance;
+in vec3 illuminance;
 out vec3 L;
-out float E;
+out vec3 E_rgb;
 #ifdef WITH_PICTURE
 in vec2 place;
 in vec3 picture_gain;
@@ -23,7 +23,7 @@ out vec3 gain;
 #endif
 void main() {
   L = radiance;
-  E = illuminance;
+  E_rgb = illuminance;
 #ifdef WITH_PICTURE
   at = place;
   gain = picture_gain;
@@ -35,12 +35,16 @@ const fragment_program = `
 precision highp float;
 precision highp sampler2D;
 in vec3 L;
-in float E;
+in vec3 E_rgb;             // lx of red, green and blue
 out vec4 pixel;
 uniform int shows;         // 0: light, 1: illuminance and 2: luminance in false colours, 3: illuminance for the light meter
-uniform float scale;       // exposure
+uniform vec3 scale;        // exposure, with the white balance
 uniform float opacity;
-uniform vec2 range;        // of the false colours; even from 0, else logarithmic
+uniform vec2 range;        // of the false colours
+uniform bool logarithmic;
+uniform float levels[24];  // of isolux lines, lx
+uniform int level_count;
+uniform float line_width;  // pixels
 uniform float lumens_per_watt;
 uniform sampler2D palette;
 #ifdef WITH_PICTURE
@@ -51,8 +55,18 @@ uniform bool is_there;     // it has been decoded
 #endif
 
 ${display_functions}
+
+// Distance to the nearest isolux line, in pixels. Where the illuminance is even there is none.
+float pixels_to_line(float E, float slope) {
+  float nearest = 1e9;
+  for (int i = 0; i < level_count; ++i) nearest = min(nearest, abs(E - levels[i]));
+  return slope > 1e-5 * E ? nearest / slope : 1e9;
+}
+
 void main() {
   vec3 shown = L;
+  float E = E_rgb.r + E_rgb.g + E_rgb.b;
+  float slope = length(vec2(dFdx(E), dFdy(E)));
 #ifdef WITH_PICTURE
   // Holes have no colour: what blending took of theirs is made up for.
   vec4 texel = texture(picture, at);
@@ -62,15 +76,21 @@ void main() {
   if (!gl_FrontFacing) {
     pixel = vec4(0.0, 0.0, 0.0, 1.0);
   } else if (shows == 3) {
-    pixel = vec4(E, 0.0, 0.0, 1.0);
+    pixel = vec4(E_rgb, 1.0);
   } else if (shows != 0) {
     float value = shows == 1 ? E : lumens_per_watt * dot(shown, vec3(0.2126729, 0.7151522, 0.0721750));
-    float place = range.x == 0.0 ? value / range.y
+    float place = !logarithmic ? (value - range.x) / (range.y - range.x)
                 : value > 0.0 ? log(value / range.x) / log(range.y / range.x) : 0.0;
     // Texel centres are the ends of the scale.
     pixel = vec4(texture(palette, vec2((clamp(place, 0.0, 1.0) * 255.0 + 0.5) / 256.0, 0.5)).rgb, opacity);
   } else {
     pixel = vec4(srgb_encode(shoulder(scale * shown)), opacity);
+  }
+  if (level_count > 0 && gl_FrontFacing && shows != 3 && opacity == 1.0) {
+    // A bright line on a wider dark one reads on any colour.
+    float away = pixels_to_line(E, slope);
+    pixel.rgb = mix(vec3(0.05), pixel.rgb, smoothstep(line_width, line_width + 1.0, away));
+    pixel.rgb = mix(vec3(1.0), pixel.rgb, smoothstep(0.5 * line_width - 0.5, 0.5 * line_width + 0.5, away));
   }
 }`;
 
@@ -92,24 +112,29 @@ void main() {
   pixel = vec4(0.1, 0.1, 0.1, 1.0);
 }`;
 
+/** Y of the linear primaries. */
+const luminance_weights = [0.2126729, 0.7151522, 0.0721750];
 const glass_opacity = 0.2;
 const metering_width = 160;
 
 /**
- * The multiplier of radiance for which white paper under the mean light shows white; null without light. The mean is that
- * of the illuminances within a factor 10 of the median. `pixels`: lx, three more numbers.
+ * The mean light of pixels, lx of red, green and blue and a fourth number each: the exposure, which is the multiplier of
+ * radiance for which white paper under that light shows white, and the light's colour, of luminance 1. Means are those of
+ * the illuminances within a factor 10 of the median. Null without light.
  */
-function exposure_scale(pixels, lumens_per_watt) {
-  const E = [];
+function incident_light(pixels, lumens_per_watt) {
+  const lit = [];
   for (let i = 0; i < pixels.length; i += 4) {
-    if (pixels[i] > 0 && Number.isFinite(pixels[i])) E.push(pixels[i]);
+    const E = pixels[i] + pixels[i + 1] + pixels[i + 2];
+    if (E > 0 && Number.isFinite(E)) lit.push({E, i});
   }
-  if (E.length === 0) return null;
-  E.sort((a, b) => a - b);
-  const median = E[Math.floor(E.length / 2)];
-  const typical = E.filter((e) => e >= median / 10 && e <= 10 * median);
-  const mean = typical.reduce((sum, e) => sum + e, 0) / typical.length;
-  return Math.PI * lumens_per_watt / mean;
+  if (lit.length === 0) return null;
+  lit.sort((a, b) => a.E - b.E);
+  const median = lit[Math.floor(lit.length / 2)].E;
+  const typical = lit.filter(({E}) => E >= median / 10 && E <= 10 * median), sums = [0, 0, 0];
+  for (const {i} of typical) sums.forEach((_, c) => { sums[c] += pixels[i + c]; });
+  const sum = sums[0] + sums[1] + sums[2];
+  return {exposure: Math.PI * lumens_per_watt * typical.length / sum, colour: sums.map((x, c) => x / (luminance_weights[c] * sum))};
 }
 
 function palette_texture(hex) {
@@ -135,20 +160,24 @@ class Picture {
     this.renderer = new Library.WebGLRenderer({canvas, antialias: true, alpha: false});
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.scene = new Library.Scene();
-    this.camera = new Library.PerspectiveCamera();
+    this.own_camera = this.camera = new Library.PerspectiveCamera();
     this.looks_through = false;
     this.picture_came = () => {};  // for the owner to set: there is something to draw
     this.uniforms = {
       shows: {value: 0},
-      scale: {value: 1},
+      scale: {value: [1, 1, 1]},
       range: {value: [0, 1]},
+      logarithmic: {value: false},
+      levels: {value: new Array(most_levels).fill(0)},
+      level_count: {value: 0},
+      line_width: {value: 1},
       lumens_per_watt: {value: model.about.lumens_per_watt},
       palette: {value: palette_texture(model.about.false_colors.palette)},
     };
     this.geometry = new Library.BufferGeometry();
     this.geometry.setAttribute('position', new Library.BufferAttribute(model.positions, 3));
     this.geometry.setAttribute('radiance', new Library.BufferAttribute(model.radiance, 3));
-    this.geometry.setAttribute('illuminance', new Library.BufferAttribute(model.illuminance, 1));
+    this.geometry.setAttribute('illuminance', new Library.BufferAttribute(model.illuminance, 3));
     this.geometry.setIndex(new Library.BufferAttribute(model.triangles, 1));
     if (model.places) {
       this.geometry.setAttribute('place', new Library.BufferAttribute(model.places, 2));
@@ -218,15 +247,22 @@ class Picture {
     for (const back of this.backs) back.visible = !looks_through;
   }
 
-  /** Of 'illuminance' or 'luminance'; null: light. */
-  set_false_colors(measure) {
+  /** Of 'illuminance' or 'luminance' in a range; null: light. */
+  set_false_colors(measure, range) {
     this.uniforms.shows.value = measure === null ? 0 : measure === 'illuminance' ? 1 : 2;
     if (measure === null) return;
-    const {low, high} = this.model.about.false_colors[measure];
-    this.uniforms.range.value = [low, high];
+    this.uniforms.range.value = [range.low, range.high];
+    this.uniforms.logarithmic.value = range.logarithmic;
   }
 
-  set_scale(scale) { this.uniforms.scale.value = scale; }
+  /** Lines of these illuminances, lx. */
+  set_isolux(levels) {
+    levels.forEach((level, i) => { this.uniforms.levels.value[i] = level; });
+    this.uniforms.level_count.value = levels.length;
+  }
+
+  /** `gains`: factors of the white balance. */
+  set_scale(scale, gains) { this.uniforms.scale.value = gains.map((gain) => scale * gain); }
 
   /** Tells the graphics card that the model has been mixed anew. */
   light_changed() {
@@ -265,35 +301,36 @@ class Picture {
 
   resize(width, height) {
     this.renderer.setSize(width, height, false);
-    this.camera.aspect = width / height;
+    this.uniforms.line_width.value = 1.6 * this.renderer.getPixelRatio();
+    this.own_camera.aspect = width / height;
   }
 
   draw() {
-    this.fit_depth();
+    if (this.camera === this.own_camera) this.fit_depth();
     this.renderer.setRenderTarget(null);
     this.renderer.render(this.scene, this.camera);
   }
 
   /** From inside, as near as a depth buffer of 24 bits affords. */
   fit_depth() {
-    const size = new Library.Vector3().fromArray(this.model.about.size);
-    const diagonal = size.length(), to_center = this.camera.position.distanceTo(size.multiplyScalar(0.5));
-    this.camera.near = Math.max(to_center - 0.51 * diagonal, 5e-4 * diagonal);
-    this.camera.far = Math.max(to_center + 0.51 * diagonal, 2 * this.camera.near);
-    this.camera.updateProjectionMatrix();
+    const {camera} = this, size = new Library.Vector3().fromArray(this.model.about.size);
+    const diagonal = size.length(), to_center = camera.position.distanceTo(size.multiplyScalar(0.5));
+    camera.near = Math.max(to_center - 0.51 * diagonal, 5e-4 * diagonal);
+    camera.far = Math.max(to_center + 0.51 * diagonal, 2 * camera.near);
+    camera.updateProjectionMatrix();
   }
 
-  /** The exposure for what the camera sees now; null if that is dark or cannot be measured. */
-  meter() {
+  /** lx of red, green and blue, and another number, of all pixels of a coarse picture; null if they cannot be read. */
+  incident_pixels(width) {
     if (!this.renderer.extensions.has('EXT_color_buffer_float')) return null;
-    const width = metering_width, height = Math.max(1, Math.round(width / this.camera.aspect));
+    const height = Math.max(1, Math.round(width / this.camera.aspect));
     const target = new Library.WebGLRenderTarget(width, height, {type: Library.FloatType});
     const pixels = new Float32Array(4 * width * height), shown = this.uniforms.shows.value;
     const outlined = this.outlines?.visible;
     this.uniforms.shows.value = 3;
     this.glass.visible = false;  // a veil is not to be measured
     this.show_outlines(false);
-    this.fit_depth();
+    if (this.camera === this.own_camera) this.fit_depth();
     this.renderer.setRenderTarget(target);
     this.renderer.clear();
     this.renderer.render(this.scene, this.camera);
@@ -303,6 +340,20 @@ class Picture {
     this.uniforms.shows.value = shown;
     this.glass.visible = true;
     this.show_outlines(Boolean(outlined));
-    return exposure_scale(pixels, this.uniforms.lumens_per_watt.value);
+    return {pixels, width, height};
+  }
+
+  /** Exposure and colour of light for what the camera sees now; null if that is dark or cannot be measured. */
+  meter() {
+    const seen = this.incident_pixels(metering_width);
+    return seen && incident_light(seen.pixels, this.uniforms.lumens_per_watt.value);
+  }
+
+  /** Illuminance of a coarse picture, rows from below; null if it cannot be measured. */
+  measure_illuminance(width) {
+    const seen = this.incident_pixels(width);
+    if (!seen) return null;
+    const {pixels, height} = seen;
+    return {E: Float32Array.from({length: width * height}, (_, i) => pixels[4 * i] + pixels[4 * i + 1] + pixels[4 * i + 2]), width, height};
   }
 }

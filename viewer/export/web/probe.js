@@ -38,8 +38,10 @@ function light_at(model, face, point) {
   const texel_at = model.kept_pictures?.[model.about.parts[model.part_of_face[face]].picture];
   weights.forEach((w, c) => {
     const v = model.corners[4 * face + c];
-    illuminance += w * model.illuminance[v];
-    for (let k = 0; k < 3; ++k) radiance[k] += w * model.radiance[3 * v + k];
+    for (let k = 0; k < 3; ++k) {
+      illuminance += w * model.illuminance[3 * v + k];
+      radiance[k] += w * model.radiance[3 * v + k];
+    }
     if (!texel_at) return;
     for (let k = 0; k < 2; ++k) place[k] += w * model.places[2 * v + k];
     for (let k = 0; k < 3; ++k) gain[k] += w * model.picture_gain[3 * v + k];
@@ -65,7 +67,7 @@ function pick(model, tree, ray, looks_through) {
 
 /** Four digits at most, and no more than people read. */
 function digits(x) {
-  return Math.abs(x) >= 9999.5 ? x.toFixed(0) : Number(x.toPrecision(4)).toString();
+  return number_text(x, Math.abs(x) >= 9999.5 ? {maximumFractionDigits: 0} : {maximumSignificantDigits: 4});
 }
 
 /** A coordinate to a ten-thousandth of the model's size. */
@@ -81,25 +83,26 @@ function show_reading(model, hit, element) {
   for (const key of Object.keys(element.dataset)) delete element.dataset[key];
   if (!hit) return;
   const {about} = model, part = about.parts[model.part_of_face[hit.face]], at = model.to_scene(hit.point);
-  const name = document.createElement('span');
-  name.textContent = part.name + (part.is_back !== hit.is_black ? ' (back)' : '');
-  const place = `at ${at.map((x) => coordinate(x, about)).join(', ')} ${about.unit_name}`;
+  const name = document.createElement('span'), bracketed = (key) => ` (${text(key)})`;
+  name.textContent = part.name + (part.is_back !== hit.is_black ? bracketed('back') : '');
+  const coordinates = at.map((x) => number_text(coordinate(x, about), {maximumFractionDigits: 20}));
+  const place = `${text('at')} ${coordinates.join(' / ')} ${about.unit_name}`;
   Object.assign(element.dataset, {surface: part.name, x: at[0], y: at[1], z: at[2]});
   if (hit.is_black) {
-    element.append(name, `\nno light\n${place}`);
+    element.append(name, `\n${text('no_light')}\n${place}`);
     return;
   }
   const light = light_at(model, hit.face, hit.point), relative = about.relative_units;
   Object.assign(element.dataset, {illuminance: light.illuminance, luminance: light.luminance,
     radiosity: light.radiosity.join(' ')});
   const lux = document.createElement('b');
-  const within = light.within === null ? '' : ` within ${Number(light.within.toPrecision(2))}`;
+  const within = light.within === null ? '' : ` ± ${number_text(light.within, {maximumSignificantDigits: 2})}`;
   if (light.within !== null) element.dataset.within = light.within;
-  lux.textContent = `${digits(light.illuminance)} ${relative ? '(relative)' : 'lx'}${within}`;
+  lux.textContent = `${digits(light.illuminance)}${within} ${relative ? bracketed('relative') : 'lx'}`;
   const kind = about.materials[part.material].kind;
   // Of many bands the page has only their colour, which is no power.
   const radiosity = about.is_spectral ? ''
-    : `, radiosity ${light.radiosity.map(digits).join(' ')}${relative ? '' : ' W/m²'} (r g b)`;
-  element.append(lux, '  ', name, kind === 'mirror' ? ' (mirror, shown matt)' : '',
-    `\nluminance ${digits(light.luminance)}${relative ? '' : ' cd/m²'}${radiosity}\n${place}`);
+    : `, ${text('radiosity_is')} ${light.radiosity.map(digits).join(' ')}${relative ? '' : ' W/m²'} (r g b)`;
+  element.append(lux, '  ', name, kind === 'mirror' ? bracketed('mirror') : '',
+    `\n${text('luminance_is')} ${digits(light.luminance)}${relative ? '' : ' cd/m²'}${radiosity}\n${place}`);
 }

@@ -15,7 +15,7 @@ precision highp sampler2D;
 in vec3 way;
 out vec4 pixel;
 uniform int shows;       // as for the surfaces
-uniform float scale;
+uniform vec3 scale;
 uniform sampler2D dome;  // a column for each azimuth from north by east, a row for each altitude from the zenith
 uniform vec3 rows;       // above the horizon, below it, together
 uniform mat3 axes;       // to north, east and up

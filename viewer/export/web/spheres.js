@@ -118,7 +118,7 @@ function split_spheres(model) {
   model.positions = longer(model.positions, positions);
   for (const basis of model.bases) {
     basis.radiance = blend(basis.radiance, 3);
-    basis.illuminance = blend(basis.illuminance, basis.components);
+    basis.illuminance = blend(basis.illuminance, 3);
   }
   if (model.places) {
     model.places = blend(model.places, 2);

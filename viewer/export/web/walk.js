@@ -3,6 +3,7 @@
 const run_factor = 3;
 const turning_speed = 1.2;  // rad/s
 const response_time = 0.08;  // s, to full speed and back
+const going_time = 0.8;  // s, to where a double click said
 
 /** Which way a key goes: forward, right, up, turn. */
 const ways = {
@@ -23,6 +24,7 @@ class Walker {
     this.step_height = 0.25 * this.normal_eye_height;
     this.speed = diagonal <= 7 ? 0.2 * diagonal : 1.4 * Math.sqrt(diagonal / 7);
     this.held = new Set();
+    this.pushed = {forward: 0, right: 0};
     this.place();
   }
 
@@ -32,16 +34,48 @@ class Walker {
     this.turning = 0;
     this.eye_height = this.normal_eye_height;
     this.stands = false;
+    this.goal = null;
   }
 
   /** Takes a key; says whether it was one of its own. */
   press(code) {
     if (!(code in ways) && !code.startsWith('Shift')) return false;
     this.held.add(code);
+    if (code in ways) this.goal = null;
     return true;
   }
   release(code) { this.held.delete(code); }
   release_all() { this.held.clear(); }
+
+  /** Walks on by itself, each way in [-1,1] of its speed. */
+  push({forward, right}) {
+    this.pushed = {forward, right};
+    if (forward || right) this.goal = null;
+  }
+
+  /** Walks to the place over or under a point, in about a second, at the height over the floor that the eye has. */
+  go_to(point) {
+    const eye = this.camera.position, floor = this.first_hit(eye, new Library.Vector3(0, -1, 0), Infinity);
+    if (!this.stands && floor && floor.distance < 2 * this.normal_eye_height) this.eye_height = floor.distance;
+    const goal = new Library.Vector3(point.x, 0, point.z), way = Math.hypot(point.x - eye.x, point.z - eye.z);
+    this.goal = {place: goal, speed: Math.max(this.speed, way / going_time), hindered: 0};
+    this.stands = true;
+  }
+
+  /** The whole way at once, for people whom motion makes ill. */
+  arrive() {
+    for (let i = 0; i < 300 && this.goal; ++i) this.advance(1 / 30);
+  }
+
+  /** Shifts the eye, as far as walls allow; it stays there until it walks. */
+  shift(way) {
+    const length = way.length();
+    if (length === 0) return;
+    const direction = way.clone().divideScalar(length), eye = this.camera.position;
+    const wall = this.first_hit(eye, direction, length + this.radius);
+    eye.addScaledVector(direction, wall ? Math.min(length, Math.max(0, wall.distance - this.radius)) : length);
+    this.place();
+  }
 
   /** Turns the eye, rad. */
   look(yaw, pitch) {
@@ -55,7 +89,7 @@ class Walker {
   advance(seconds) {
     const sum = [0, 0, 0, 0];
     for (const code of this.held) ways[code]?.forEach((x, i) => { sum[i] += Math.sign(x); });
-    const [forward, right, up, turn] = sum.map((x) => Math.sign(x));
+    const [, , up, turn] = sum.map((x) => Math.sign(x));
     const runs = this.held.has('ShiftLeft') || this.held.has('ShiftRight');
     const speed = this.speed * (runs ? run_factor : 1);
 
@@ -64,21 +98,46 @@ class Walker {
     if (Math.abs(this.turning) > 1e-3 * turning_speed) this.look(this.turning * seconds, 0);
     else this.turning = 0;
 
-    const yaw = new Library.Euler().setFromQuaternion(this.camera.quaternion, 'YXZ').y;
-    const wanted = new Library.Vector3(right, 0, -forward).applyEuler(new Library.Euler(0, yaw, 0));
-    if (wanted.lengthSq() > 0) wanted.setLength(speed);
+    const wanted = this.goal ? this.velocity_to_goal() : this.pushed_velocity(sum, speed);
     this.velocity.lerp(wanted, blend);
     if (this.velocity.length() < 1e-3 * this.speed) this.velocity.set(0, 0, 0);
-    if (forward || right || up) this.stands = true;
+    if (wanted.lengthSq() > 0 || up) this.stands = true;
 
     const before = this.camera.position.clone();
     // No stride is longer than half the body is thick, or it could be beyond a wall before that is noticed.
-    const strides = Math.max(1, Math.ceil(speed * seconds / (0.5 * this.radius)));
+    const strides = Math.max(1, Math.ceil(Math.max(speed, this.velocity.length()) * seconds / (0.5 * this.radius)));
     for (let i = 0; i < strides; ++i) {
       this.stride(this.velocity.clone().multiplyScalar(seconds / strides));
       this.settle(up * speed, seconds / strides);
     }
-    return this.turning !== 0 || before.distanceToSquared(this.camera.position) > 0;
+    if (this.goal) this.watch_progress(before, seconds);
+    return this.turning !== 0 || this.goal !== null || before.distanceToSquared(this.camera.position) > 0;
+  }
+
+  /** Where keys and the stick push to, level. */
+  pushed_velocity([forward, right], speed) {
+    const yaw = new Library.Euler().setFromQuaternion(this.camera.quaternion, 'YXZ').y;
+    const keys = new Library.Vector3(Math.sign(right), 0, -Math.sign(forward));
+    if (keys.lengthSq() > 0) keys.normalize();
+    keys.add(new Library.Vector3(this.pushed.right, 0, -this.pushed.forward));
+    return keys.clampLength(0, 1).multiplyScalar(speed).applyEuler(new Library.Euler(0, yaw, 0));
+  }
+
+  /** Slower the nearer the goal is, so that the eye stops there. */
+  velocity_to_goal() {
+    const way = this.goal.place.clone().sub(this.camera.position).setY(0);
+    return way.clampLength(0, this.goal.speed * 2 * response_time).divideScalar(2 * response_time);
+  }
+
+  /** Forgets the goal once it is reached, or a wall has been in the way for a while. */
+  watch_progress(before, seconds) {
+    const {goal} = this, left = goal.place.clone().sub(this.camera.position).setY(0).length();
+    const moved = this.camera.position.clone().sub(before).setY(0).length();
+    goal.hindered = moved < 0.05 * goal.speed * seconds ? goal.hindered + seconds : 0;
+    if (left < 0.02 * this.radius || goal.hindered > 0.3) {
+      this.goal = null;
+      this.velocity.set(0, 0, 0);
+    }
   }
 
   /** One stride, level, as far as walls allow. */
