@@ -55,6 +55,7 @@ for (const kind of ['move', 'enter', 'leave', 'over', 'out', 'down', 'up']) {
 window.requestAnimationFrame = (draw) => setTimeout(() => draw(performance.now()), 16);
 const report = (found) => {
   const text = encodeURIComponent(JSON.stringify(found));
+  if (window.parent !== window) return window.parent.postMessage(text, '*');
   document.getElementById('result').textContent = text;
   if (!window.dump) return;
   window.dump(document.getElementById('result').outerHTML);
@@ -70,6 +71,18 @@ const driver = {
   },
   tap(key, code = '') {
     for (const type of ['keydown', 'keyup']) window.dispatchEvent(new KeyboardEvent(type, {key, code}));
+  },
+  // Of a finger, in pixels.
+  touch(kind, id, x, y, target = element('view')) {
+    const event = {pointerId: id, pointerType: 'touch', clientX: x, clientY: y, bubbles: true};
+    target.dispatchEvent(new PointerEvent(`pointer${kind}`, event));
+  },
+  // After a time in which two taps are no double tap.
+  async tap_finger(x, y) {
+    await driver.wait(400);
+    for (const kind of ['down', 'up']) driver.touch(kind, 1, x, y);
+    do await driver.frame(); while (window.lightwell.probe_due);
+    return {...element('probe').dataset};
   },
   async read(x, y) {
     const page = window.lightwell, canvas = element('view');
@@ -97,6 +110,21 @@ const driver = {
   },
 };
 </script>)";
+
+/// A page of its own that shows page.html as large as a device's screen, for windows are not that
+/// small, and reports what the page finds.
+inline std::string in_frame(int width, int height) {
+  return "<body style=\"margin: 0\"><pre id=\"result\"></pre><iframe src=\"page.html\" width=\"" +
+         std::to_string(width) + "\" height=\"" + std::to_string(height) +
+         "\" style=\"border: 0\"></iframe>" + R"(<script>
+window.addEventListener('message', ({data}) => {
+  document.getElementById('result').textContent = data;
+  if (!window.dump) return;
+  window.dump(document.getElementById('result').outerHTML);
+  window.close();
+});
+</script></body>)";
+}
 
 /// Preferences of a new profile: only the page is opened, nothing is fetched (the proxy at port 9
 /// does not exist), and pages may write to standard output and close.
@@ -133,6 +161,12 @@ inline std::string decoded(const std::string& text) {
 
 enum class BrowserKind { chromium, firefox };
 
+struct PageOptions {
+  bool with_webgl = true;
+  WhiteChoice white{};
+  int width = 0, height = 0;  ///< of the screen, pixels; 0: the browser's window
+};
+
 /// A test of a page in each of the browsers.
 class InBrowser : public testing::TestWithParam<BrowserKind> {
  protected:
@@ -154,14 +188,17 @@ class InBrowser : public testing::TestWithParam<BrowserKind> {
   }
 
   /// Opens the page with a script that gives its findings to report(), and returns them.
-  Json run(const BakedModel& model, const std::string& drive, bool with_webgl = true) {
-    write_walkthrough(folder / "page.html", model, LuxRange{.low = 0.0, .high = 4000.0});
+  Json run(const BakedModel& model, const std::string& drive, const PageOptions& options = {}) {
+    write_walkthrough(folder / "page.html", model, LuxRange{.low = 0.0, .high = 4000.0},
+                      options.white);
     std::string page = content_of(folder / "page.html");
     page.replace(page.find("<head>"), 6, watch);
     const std::size_t end = page.rfind("</body>");
     page.replace(end, 7, "<pre id=\"result\"></pre>" + drive + "</body>");
-    folder.write("driven.html", page);
-    const std::string said = is_firefox() ? firefox(with_webgl) : chromium(with_webgl);
+    folder.write(options.width > 0 ? "page.html" : "driven.html", page);
+    if (options.width > 0) folder.write("driven.html", in_frame(options.width, options.height));
+    const std::string said =
+        is_firefox() ? firefox(options.with_webgl) : chromium(options.with_webgl);
     const std::string mark = "<pre id=\"result\">";
     const std::size_t begin = said.find(mark) + mark.size(), stop = said.find("</pre>", begin);
     const std::string complaints = content_of(folder / "said");
@@ -180,8 +217,8 @@ class InBrowser : public testing::TestWithParam<BrowserKind> {
     const std::string sandbox = ::geteuid() == 0 ? " --no-sandbox " : " ";
     const std::string options =
         with_webgl ? "--use-angle=swiftshader --enable-unsafe-swiftshader" : "--disable-3d-apis";
-    return output_of(at_home(browser + " --headless" + sandbox + options + " --window-size=" +
-                             window_size + " --virtual-time-budget=60000 --dump-dom"));
+    return output_of(at_home(browser + " --headless" + sandbox + options +
+                             " --window-size=800,700 --virtual-time-budget=60000 --dump-dom"));
   }
 
   /// Standard output of driven.html.
@@ -200,7 +237,6 @@ class InBrowser : public testing::TestWithParam<BrowserKind> {
 
   TemporaryFolder folder;
   std::string browser;
-  std::string window_size = "800,640";  ///< Chromium's, pixels
   bool has_display = false;
 };
 

@@ -82,6 +82,17 @@ inline SolvedScene solved_box() {
   return quads.solved();
 }
 
+/// The box with light that varies over each wall.
+inline SolvedScene shaded_box() {
+  SolvedScene box = solved_box();
+  for (int v = 0; v < box.mesh.vertex_count(); ++v) {
+    const Eigen::Vector3d p = box.mesh.position(v);
+    box.solution.direct_irradiance.row(v) *=
+        static_cast<float>(1.0 + 0.5 * p.x() + 0.2 * p.y() + 0.1 * p.z() * p.x());
+  }
+  return box;
+}
+
 /// A camera in front of the opening.
 inline Camera box_camera() {
   Camera camera;

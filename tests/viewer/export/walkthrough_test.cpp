@@ -70,17 +70,6 @@ driver.run(async (page, found) => {
 });
 </script>)";
 
-/// The box with light that varies over each wall, seen from the front.
-SolvedScene shaded_box() {
-  SolvedScene box = solved_box();
-  for (int v = 0; v < box.mesh.vertex_count(); ++v) {
-    const Eigen::Vector3d p = box.mesh.position(v);
-    box.solution.direct_irradiance.row(v) *=
-        static_cast<float>(1.0 + 0.5 * p.x() + 0.2 * p.y() + 0.1 * p.z() * p.x());
-  }
-  return box;
-}
-
 TEST_P(InBrowser, ThePageShowsAndMeasuresTheSolution) {
   const SolvedScene box = shaded_box();
   Scene scene = box_scene();
@@ -196,9 +185,9 @@ driver.run(async (page, found) => {
 }
 
 TEST_P(InBrowser, WithoutWebGlThePageSaysWhatToDo) {
-  const Json found =
-      run(bake_model(solved_box(), box_scene()),
-          "<script>report({message: element('message').textContent})</script>", false);
+  const Json found = run(bake_model(solved_box(), box_scene()),
+                         "<script>report({message: element('message').textContent})</script>",
+                         {.with_webgl = false});
   ASSERT_FALSE(found.is_null());
   EXPECT_TRUE(says(found["message"], "This browser shows no WebGL 2")) << found;
 }

@@ -35,7 +35,7 @@ function watch_gestures(canvas, does) {
   canvas.addEventListener('pointermove', (event) => {
     const {clientX: x, clientY: y} = event, finger = fingers.get(event.pointerId);
     if (event.pointerType !== 'touch') does.hover({x, y});
-    if (!finger) return;
+    if (!finger || (x === finger.x && y === finger.y)) return;
     if (!press.moved && Math.hypot(x - press.x, y - press.y) < slack(press.type)) return;
     press.moved = true;
     const before = spread(fingers), dx = x - finger.x, dy = y - finger.y;

@@ -94,9 +94,11 @@ class Lights {
       if (channel.set_colour(linear_of(colour.value))) change({on: true});
     });
     colour.addEventListener('change', show_colour);  // not while it is being chosen
-    const row = document.createElement('div');
+    const row = document.createElement('div'), target = document.createElement('label');  // larger than the box, for thumbs
+    target.className = 'power';
+    target.append(power);
     row.className = 'channel';
-    row.append(power, name, slider, percent, colour);
+    row.append(target, name, slider, percent, colour);
     element('channels').append(row);
     show();
     show_colour();

@@ -183,6 +183,8 @@ class Walker {
     const least = 0.5 * this.radius;
     if (floor) this.eye_height = Math.max(2 * least, this.eye_height + rise * seconds);
     const wanted = floor ? floor.point.y + this.eye_height : eye.y + rise * seconds;
+    // A floor is found to a rounding, after which no eye would ever rest.
+    if (Math.abs(wanted - eye.y) < 1e-9 * this.normal_eye_height) return;
     const most = 3 * this.speed * seconds;
     let step = Math.min(most, Math.max(-most, wanted - eye.y));
     const ceiling = step > 0 ? this.first_hit(eye, new Library.Vector3(0, 1, 0), step + least) : null;
