@@ -110,6 +110,21 @@ TEST_F(ExportCommand, RefusesLightmapsThatCannotBe) {
   refused({"--lightmap"}, 1, "it is a folder");
 }
 
+TEST_F(ExportCommand, SetsTheFirstWhiteBalanceOfThePage) {
+  const auto page_with = [&](const Words& white) {
+    const Ended ended = run(Words{"export", "room.vtp", "-o", "a.html", "--quiet"} + white);
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return content_of(folder / "a.html");
+  };
+  EXPECT_TRUE(says(page_with({}), "\"first\":\"as-lit\""));
+  EXPECT_TRUE(says(page_with({"--white-balance", "auto"}), "\"first\":\"auto\""));
+  const std::string warm = page_with({"--white-balance", "2850K"});
+  EXPECT_TRUE(says(warm, "\"first\":2850.0"));
+  EXPECT_TRUE(says(warm, "{\"kelvin\":2850.0,")) << "a choice of the page";
+  expect_refused({"export", "room.vtp", "-o", "b.html", "--white-balance", "warm"}, 2,
+                 "'as-lit', 'auto' or a temperature from 2000K to 40000K is needed, not 'warm'");
+}
+
 TEST_F(ExportCommand, RefusesWhatItCannotWrite) {
   expect_refused({"export", "room.vtp", "-o", "a.fbx"}, 2, ".glb");
   expect_refused({"export", "room.vtp"}, 2, "-o");

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/elements/element_caster.h"
 #include "raytrace/light_meter.h"
 #include "tests/viewer/in_browser.h"
 #include "tests/viewer/lit_sides.h"
@@ -218,6 +219,28 @@ driver.run(async (page, found) => {
   const std::vector<int> grey = found["2700"];
   EXPECT_LE(std::ranges::max(grey) - std::ranges::min(grey), 2);
   EXPECT_GT(found["as-lit"][0].get<int>(), found["as-lit"][2].get<int>() + 50) << "warm as lit";
+}
+
+/// Automatic white of a room of coloured walls is metered as for pictures. Pixels on edges, two or
+/// three in a hundred, may belong to either of two walls, whose colours differ by a factor
+/// below 10.
+TEST_P(InBrowser, ThePageMetersTheColourOfTheLight) {
+  constexpr const char* meter = R"(<script>
+driver.run(async (page, found) => { found.colour = page.light_colour; });
+</script>)";
+  const SolvedScene box = shaded_box();
+  const Scene scene = box_scene();
+  const Json found =
+      run(bake_model(box, scene), meter, {.white = {.kind = WhiteChoice::Kind::automatic}});
+  ASSERT_FALSE(found.is_null());
+  ASSERT_FALSE(found.contains("failed")) << found["failed"];
+  const ElementCaster caster(box.mesh);
+  const auto light =
+      meter_incident_light(caster, box.solution.irradiance(), {}, rgb_bands(), scene.cameras[0]);
+  ASSERT_TRUE(light.has_value());
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_NEAR(found["colour"][c].get<double>(), light->colour[c], 0.03 * light->colour[c]);
+  }
 }
 
 /// Every language has every text, and the page shows it; every control has a name.

@@ -59,7 +59,7 @@ class Measure {
     const {distance, parts} = distance_of(this.model, ...this.points), whole = document.createElement('b');
     whole.textContent = length_text(distance);
     panel.append(whole, ...['x', 'y', 'z'].map((axis, i) =>
-      `  Δ${axis} ${number_text(parts[i], {maximumFractionDigits: 3, minimumFractionDigits: 3})}`), ' m');
+      `\u2003Δ${axis} ${number_text(parts[i], {maximumFractionDigits: 3, minimumFractionDigits: 3})}`), ' m');
     Object.assign(panel.dataset, {distance, dx: parts[0], dy: parts[1], dz: parts[2]});
   }
 

@@ -44,8 +44,14 @@ function watch_devices() {
   };
   fingers.addEventListener('change', look);
   look();
-  window.addEventListener('pointerdown', (event) => classList.toggle('touch', event.pointerType === 'touch' || fingers.matches), true);
-  window.addEventListener('keydown', () => classList.add('keyboard'), true);
+  window.addEventListener('pointerdown', (event) => {
+    classList.toggle('touch', event.pointerType === 'touch' || fingers.matches);
+    classList.remove('tabbed');
+  }, true);
+  window.addEventListener('keydown', ({key}) => {
+    classList.add('keyboard');
+    if (key === 'Tab') classList.add('tabbed');  // the focus is sought, so the picture shows it too
+  }, true);
 }
 
 /** Whether a key is for the control that has the focus. */
