@@ -26,16 +26,20 @@ struct ExportArguments {
   double exposure_ev = 0.0;
   std::optional<LuxRange> range;
   WhiteChoice white{};
+  Sides sides = Sides::front;
   bool lightmap = false;
   std::string lightmap_pass = "interpolate";
   LightmapOptions light{};
 };
 
-/// A solution, its scene (empty without --scene) and the model baked from both.
+/// A solution, its scene (empty without --scene) and the models baked from both. A page draws no
+/// backs, so it has all lit sides.
 struct Exported {
   const Scene& scene;
   const SolvedScene& solved;
-  BakedModel model;
+  std::optional<BakedModel> model{}, page{};
+
+  const BakedModel& of(const std::string& kind) const { return kind == ".html" ? *page : *model; }
 };
 
 SolvedScene read_alone(const std::string& file, Console& console, Report& report) {
@@ -82,7 +86,7 @@ void write_lightmap(const std::filesystem::path& file, const Exported& exported,
                                                           : Pass::direct;
   options.run.progress = console.progress();
   const LightmapReport made =
-      write_lightmapped_gltf(file, exported.model, exported.solved, exported.scene, options);
+      write_lightmapped_gltf(file, *exported.model, exported.solved, exported.scene, options);
   for (const auto& written : made.files) report.add_file(written);
   report.add("lightmap", {{"atlases", made.atlases},
                           {"size", options.size},
@@ -95,7 +99,7 @@ void write_file(const std::filesystem::path& file, const Exported& exported,
                 const ExportArguments& arguments, const Feedback& feedback) {
   Report& report = feedback.report;
   const std::string kind = lower_extension(file);
-  const BakedModel& model = exported.model;
+  const BakedModel& model = exported.of(kind);
   const Stopwatch watch;
   if (kind == ".glb" && arguments.lightmap) {
     write_lightmap(file, exported, arguments, feedback);
@@ -125,9 +129,15 @@ int export_model(const ExportArguments& arguments, Console& console) {
                                  ? read_alone(arguments.solution, console, report)
                                  : read_solution_step(arguments.solution, scene, console, report);
   const Stopwatch watch;
-  const Exported exported{scene, solved,
-                          bake_model(solved, scene, arguments.exposure_ev, clean_up.names.get())};
-  const BakedModel& model = exported.model;
+  Exported exported{scene, solved};
+  for (const std::string& file : arguments.outputs) {
+    const bool is_page = lower_extension(file) == ".html";
+    std::optional<BakedModel>& model = is_page ? exported.page : exported.model;
+    if (model) continue;
+    model = bake_model(solved, scene, arguments.exposure_ev, clean_up.names.get(),
+                       is_page ? Sides::lit : arguments.sides);
+  }
+  const BakedModel& model = exported.of(lower_extension(arguments.outputs.front()));
   report.add("exported", {{"vertices", model.vertex_count()},
                           {"faces", model.face_count()},
                           {"parts", model.parts.size()}});
@@ -139,6 +149,19 @@ int export_model(const ExportArguments& arguments, Console& console) {
   }
   report.print();
   return exit_done;
+}
+
+void add_sides(CLI::App& command, Sides& sides) {
+  command
+      .add_option_function<std::string>(
+          "--sides",
+          [&sides](const std::string& name) {
+            sides = name == "both" ? Sides::both : Sides::front;
+          },
+          "of models, sides of thin surfaces: front (those seen from within rooms; default) or\n"
+          "both (also the outside of a daylit room)")
+      ->type_name("WHICH")
+      ->check(one_of("sides", {"front", "both"}));
 }
 
 void add_lightmap(CLI::App& command, ExportArguments& arguments) {
@@ -224,6 +247,7 @@ Action add_export(CLI::App& command) {
       ->description(
           "light that the page shows as white at first: as-lit (default), auto, or a temperature\n"
           "such as 2700K");
+  add_sides(command, arguments->sides);
   add_lightmap(command, *arguments);
   command.callback([arguments] { check(*arguments); });
   command.footer(

@@ -132,20 +132,22 @@ std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene) 
   return baked;
 }
 
+BandArray irradiance_with_all_on(const RadiositySolution& solution) {
+  if (solution.channels.empty()) return solution.irradiance();
+  BandArray light = BandArray::Zero(solution.direct_irradiance.rows(), solution.bands.count());
+  for (const LightChannel& channel : solution.channels) {
+    light += channel.direct_irradiance + channel.indirect_irradiance;
+  }
+  return light;
+}
+
 std::vector<ElementKind> kinds_with_all_on(const SolvedScene& solved,
                                            const std::vector<Material>& materials) {
   const RadiositySolution& s = solved.solution;
   if (s.channels.empty()) return element_kinds(solved, materials);
   SolvedScene all = unlit(solved);
-  const auto sum = [&](BandArray LightChannel::*quantity) {
-    BandArray light = s.channels.front().*quantity;
-    for (std::size_t c = 1; c < s.channels.size(); ++c) light += s.channels[c].*quantity;
-    return light;
-  };
-  all.solution.direct_irradiance = sum(&LightChannel::direct_irradiance);
-  all.solution.indirect_irradiance = sum(&LightChannel::indirect_irradiance);
   all.mesh.emission = s.full_emission;
-  return element_kinds(all, materials);
+  return element_kinds(all.mesh, irradiance_with_all_on(s), materials);
 }
 
 std::vector<BakedChannel> bake_channels(const SolvedScene& solved,

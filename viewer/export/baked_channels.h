@@ -22,6 +22,8 @@ std::vector<ElementKind> kinds_with_all_on(const SolvedScene& solved,
 /// Illuminance as lx of red, green and blue, whose sum is the illuminance: Y of each primary in the
 /// linear RGB of irradiance (rows x bands, W/m^2).
 RgbArray illuminance_shares(const BandArray& irradiance, const Bands& bands);
+/// E at the vertices, W/m^2, vertices x bands, with every channel on at scale 1.
+BandArray irradiance_with_all_on(const RadiositySolution& solution);
 
 /// Sky and sun of a scene; empty without a sky.
 std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene);

@@ -28,14 +28,6 @@ constexpr int start_width = 1024, start_height = 768;
 /// Largest side of a picture, texels: keeps files small enough to send.
 constexpr int longest_picture = 1024;
 
-/// Whether an element of two coincident sides is left out: an unlit one is, unless both are unlit
-/// and the element is the front.
-bool is_left_out(const PatchMesh& mesh, const std::vector<ElementKind>& kinds, int element) {
-  const int twin = mesh.twin[element];
-  if (twin < 0 || kinds[element] != ElementKind::unlit) return false;
-  return kinds[twin] != ElementKind::unlit || mesh.is_back[mesh.patch[element]] != 0;
-}
-
 std::string name_or_number(const std::string& name, const char* kind, int number) {
   return name.empty() ? fmt::format("{} {}", kind, number) : name;
 }
@@ -67,13 +59,12 @@ struct Side {
 };
 
 /// Elements of each side that are kept. Elements with a picture are in the order of texture maps.
-std::map<Side, std::vector<int>> sides_of(const PatchMesh& mesh,
-                                          const std::vector<ElementKind>& kinds,
+std::map<Side, std::vector<int>> sides_of(const PatchMesh& mesh, const std::vector<SideUse>& use,
                                           const DrawnPictures& drawn, const JoinedSurfaces* names) {
   std::map<Side, std::vector<int>> sides;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
-    if (is_left_out(mesh, kinds, e)) continue;
+    if (use[e] == SideUse::left_out) continue;
     const int surface =
         names ? names->surface_of(mesh, e, element_center(mesh, e).position) : mesh.surface[p];
     sides[{surface, mesh.is_back[p] != 0, drawn.of(mesh.facet[e])}].push_back(e);
@@ -130,8 +121,8 @@ class MaterialNumbers {
   std::map<int, int> number_;
 };
 
-void add_face(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
-              const BandArray& radiance, int element, VertexNumbers& number, BakedModel& model) {
+void add_face(const PatchMesh& mesh, const std::vector<SideUse>& use, const BandArray& radiance,
+              int element, VertexNumbers& number, BakedModel& model) {
   const int count = mesh.corner_count(element);
   const int first = first_corner(mesh, element, radiance);
   std::array<int, 4> face{-1, -1, -1, -1};
@@ -139,17 +130,17 @@ void add_face(const PatchMesh& mesh, const std::vector<ElementKind>& kinds,
   const int twin = mesh.twin[element];
   model.faces.push_back(face);
   model.element.push_back(element);
-  model.black_behind.push_back(twin >= 0 && is_left_out(mesh, kinds, twin) ? 1 : 0);
+  model.black_behind.push_back(twin >= 0 && use[twin] == SideUse::left_out ? 1 : 0);
 }
 
 /// Fills parts, materials and faces. Returns the mesh's vertex for each vertex of the model.
 std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
-                           const std::vector<ElementKind>& kinds, const BandArray& radiance,
+                           const std::vector<SideUse>& use, const BandArray& radiance,
                            const DrawnPictures& drawn, const JoinedSurfaces* names,
                            BakedModel& model) {
   VertexNumbers vertex(mesh.vertex_count());
   MaterialNumbers material(scene, model.materials);
-  for (const auto& [side, elements] : sides_of(mesh, kinds, drawn, names)) {
+  for (const auto& [side, elements] : sides_of(mesh, use, drawn, names)) {
     const auto s = static_cast<std::size_t>(side.surface);
     const std::string name = s < scene.surfaces.size() ? scene.surfaces[s].name : std::string();
     const int first_face = model.face_count(), first_vertex = vertex.count();
@@ -161,7 +152,7 @@ std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
       if (side.picture >= 0 && drawn.map_of(facet) != std::exchange(map, drawn.map_of(facet))) {
         vertex.begin_group();
       }
-      add_face(mesh, kinds, radiance, e, vertex, model);
+      add_face(mesh, use, radiance, e, vertex, model);
     }
     model.parts.push_back(
         {.name = name_or_number(name, "surface", side.surface),
@@ -227,6 +218,22 @@ void add_baked_pictures(const PatchMesh& mesh, const DrawnPictures& drawn, Baked
   }
 }
 
+/// Moves two shown sides of a place apart, each along its normals. A vertex that both a moved and
+/// another face have moves, so that no gap opens between the two.
+void move_apart(const PatchMesh& mesh, const std::vector<SideUse>& use, BakedModel& model) {
+  const double gap = half_gap(mesh);
+  std::vector<char> is_moved(model.position.size(), 0);
+  for (int f = 0; f < model.face_count(); ++f) {
+    if (use[model.element[static_cast<std::size_t>(f)]] != SideUse::moved) continue;
+    for (int c = 0; c < model.corner_count(f); ++c) {
+      is_moved[static_cast<std::size_t>(model.faces[static_cast<std::size_t>(f)][c])] = 1;
+    }
+  }
+  for (std::size_t v = 0; v < is_moved.size(); ++v) {
+    if (is_moved[v]) model.position[v] += gap * mesh.vertex_normal[model.mesh_vertex[v]];
+  }
+}
+
 void add_cameras(const SolvedScene& solved, const Scene& scene,
                  const std::vector<ElementKind>& kinds, const BandArray& radiance,
                  const Eigen::Vector3d& up_axis, double exposure_ev, BakedModel& model) {
@@ -281,17 +288,19 @@ Eigen::Matrix3d rotation_to_y_up(const Eigen::Vector3d& up_axis) {
 }  // namespace
 
 BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double exposure_ev,
-                      const JoinedSurfaces* names) {
+                      const JoinedSurfaces* names, Sides sides) {
   check_input(solved, scene);
   const std::vector<ElementKind> kinds = kinds_with_all_on(solved, scene.materials);
   const BandArray radiance = shown_radiance(solved, scene.materials);
   BakedModel model;
   model.title = scene.title;
   const DrawnPictures drawn(scene, longest_picture);
-  model.mesh_vertex = add_parts(solved.mesh, scene, kinds, radiance, drawn, names, model);
+  const std::vector<SideUse> use = choose_sides(solved, scene, kinds, sides);
+  model.mesh_vertex = add_parts(solved.mesh, scene, use, radiance, drawn, names, model);
   add_vertices(solved, radiance, model);
   add_bounds(solved, model);
   add_baked_pictures(solved.mesh, drawn, model);
+  move_apart(solved.mesh, use, model);
   model.channels = bake_channels(solved, scene.materials, model.mesh_vertex);
   model.sky = bake_sky(solved, scene);
   const Eigen::Vector3d up_axis = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));

@@ -10,6 +10,7 @@
 #include "radiosity/solve.h"
 #include "scene/scene.h"
 #include "viewer/export/drawn_pictures.h"
+#include "viewer/export/shown_sides.h"
 
 namespace lightwell {
 
@@ -75,7 +76,8 @@ struct BakedSky {
 /// - Vertices are the mesh's, shared only where light is continuous. Facets whose pictures have
 ///   different texture maps do not share vertices.
 /// - Of two coincident sides an unlit one is left out, so that no depth fighting occurs and a
-///   closed room can be seen into. A side counts as lit by a channel that is off.
+///   closed room can be seen into. A side counts as lit by a channel that is off. Sides chooses
+///   between two lit ones.
 struct BakedModel {
   std::string title{};
   std::vector<BakedPart> parts{};
@@ -104,7 +106,7 @@ struct BakedModel {
   /// Bound of the error of illuminance in each face, lx, odds of about 19 to 1 (see
   /// illuminance_bounds); empty if the solution has no error estimate.
   std::vector<float> lux_within{};
-  std::vector<std::uint8_t> black_behind{};  ///< 1: the face's other side was left out as unlit
+  std::vector<std::uint8_t> black_behind{};  ///< 1: the face's other side was left out
 
   std::optional<BakedSky> sky{};
   std::vector<BakedCamera> cameras{};  ///< the scene's, or one of find_start; never empty
@@ -131,10 +133,11 @@ struct BakedModel {
 /// - `exposure_ev`: stops added to the automatic exposure of every camera.
 /// - `names`, of this scene: polygons that join several surfaces; null: none. An element belongs to
 ///   the surface that contains the element's centre.
+/// - `sides`: which sides of thin surfaces the model has (see choose_sides).
 /// Throws InputError if the scene has surfaces, but fewer than the solution, and for bands other
 /// than RGB without wavelengths.
 BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double exposure_ev = 0.0,
-                      const JoinedSurfaces* names = nullptr);
+                      const JoinedSurfaces* names = nullptr, Sides sides = Sides::lit);
 
 /// Colours at the exposure of the first camera, 8-bit sRGB, 3 bytes a vertex (see display_colors).
 std::vector<std::uint8_t> srgb_colors(const BakedModel& model);
