@@ -25,7 +25,7 @@ struct ExportArguments {
   std::vector<std::string> outputs;
   double exposure_ev = 0.0;
   std::optional<LuxRange> range;
-  WhiteChoice white{};
+  WhitePoint white{};
   Sides sides = Sides::front;
   bool lightmap = false;
   std::string lightmap_pass = "interpolate";
@@ -243,10 +243,9 @@ Action add_export(CLI::App& command) {
       ->type_name("SCENE");
   add_exposure(command, arguments->exposure_ev);
   add_lux_range(command, arguments->range);
-  add_white_balance(command, arguments->white)
-      ->description(
-          "light that the page shows as white at first: as-lit (default), auto, or a temperature\n"
-          "such as 2700K");
+  add_white_balance(command, arguments->white,
+                    "light that the page shows as white at first: as-lit (default), auto, or a "
+                    "temperature such as 2700K");
   add_sides(command, arguments->sides);
   add_lightmap(command, *arguments);
   command.callback([arguments] { check(*arguments); });

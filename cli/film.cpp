@@ -50,15 +50,6 @@ bool holds(const std::vector<Layer>& layers, Layer layer) {
   return std::find(layers.begin(), layers.end(), layer) != layers.end();
 }
 
-Eigen::Array3f balance_for(const FilmArguments& film, const Picture& picture) {
-  using Kind = WhiteChoice::Kind;
-  if (film.white.kind == Kind::black_body) {
-    return white_balance(colour_of_black_body(film.white.kelvin));
-  }
-  const bool is_automatic = film.white.kind == Kind::automatic && picture.incident;
-  return is_automatic ? white_balance(picture.incident->colour) : Eigen::Array3f::Ones();
-}
-
 // Adds the layers named by `words` ("albedo,normal") to `film`.
 void add_layers(const std::string& words, FilmArguments& film) {
   std::vector<std::string> known = {"all"};
@@ -203,7 +194,10 @@ void FilmArguments::add_to(CLI::App& command, const std::string& group, HelpOn h
           "picture)")
       ->type_name("EV")
       ->group(more);
-  add_white_balance(command, white)->group(more);
+  add_white_balance(command, white,
+                    "light that shows white in the .png: as-lit (default), auto, or a temperature "
+                    "such as 2700K")
+      ->group(more);
 }
 
 void FilmArguments::add_false_colour_to(CLI::App& command, const std::string& group) {
@@ -270,8 +264,9 @@ std::vector<Layer> FilmArguments::rendered_layers(const Scene& scene) const {
 }
 
 ToneMapping FilmArguments::tones(const Picture& picture) const {
-  ToneMapping tones{
-      .exposure_ev = picture.exposure_ev, .ev100 = ev100, .balance = balance_for(*this, picture)};
+  ToneMapping tones{.exposure_ev = picture.exposure_ev,
+                    .ev100 = ev100,
+                    .balance = white_balance(white, picture.incident)};
   if (picture.incident) tones.metered_scale = picture.incident->exposure;
   for (const auto& [name, curve] : tone_curves) {
     if (tone_map == name) tones.curve = curve;
@@ -282,7 +277,7 @@ ToneMapping FilmArguments::tones(const Picture& picture) const {
 std::string FilmArguments::tones_text(double exposure_ev) const {
   return fmt::format("--tone-map {} --exposure {:g}{}", tone_map, exposure_ev,
                      ev100 ? fmt::format(" --ev100 {:g}", *ev100) : "") +
-         white_text(white);
+         white_balance_text(white);
 }
 
 void write_picture(const fs::path& file, const Picture& picture, const FilmArguments& film) {

@@ -25,7 +25,7 @@ struct FilmArguments {
   ExrOptions exr{};
   std::string tone_map = "auto";
   std::optional<double> ev100{};
-  WhiteChoice white{};
+  WhitePoint white{};
   std::optional<Layer> false_colour{};  ///< layer that PNG files show in false colours
   std::optional<LuxRange> range{};      ///< of the false colours; unset: of the picture's values
 

@@ -13,6 +13,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
+#include "cli/white_balance.h"
 #include "radiosity/solution/relight.h"
 #include "scene/errors.h"
 #ifdef LIGHTWELL_VIEWER
@@ -29,6 +30,7 @@ struct ViewArguments {
   std::optional<LuxRange> range;
   std::optional<std::pair<int, int>> size;
   double exposure_ev = 0.0;
+  WhitePoint white;
   ChannelSettings channels;
   ChannelArguments kept_apart;
   MeshArguments mesh;
@@ -70,6 +72,7 @@ Camera choose_view(const Scene& scene, const std::string& name, const fs::path& 
 ViewOptions view_options(const ViewArguments& arguments, const Scene& scene) {
   ViewOptions options{.cameras = scene.cameras,
                       .exposure_ev = arguments.exposure_ev,
+                      .white = arguments.white,
                       .materials = scene.materials,
                       .scene = &scene};
   options.mesh = arguments.overlay == "mesh";
@@ -261,6 +264,9 @@ void add_start(CLI::App& command, ViewArguments& arguments) {
       ->type_name("NAME");
   add_size(command, arguments.size);
   add_exposure(command, arguments.exposure_ev);
+  add_white_balance(command, arguments.white,
+                    "light that shows white, as in 'render': as-lit (default), auto, or a "
+                    "temperature such as 2700K (key F2)");
   command
       .add_option("--overlay", arguments.overlay,
                   "begin with the outlines of the elements: mesh (key M); or off screen with the "

@@ -9,9 +9,10 @@
 namespace lightwell {
 namespace {
 
-WhiteChoice parse_white(const std::string& words) {
-  using Kind = WhiteChoice::Kind;
-  if (words == "as-lit") return {.kind = Kind::as_lit};
+// The white point named by `words`: "as-lit", "auto", "2700K" or "2700".
+WhitePoint parse_white(const std::string& words) {
+  using Kind = WhitePoint::Kind;
+  if (words == "as-lit") return {};
   if (words == "auto") return {.kind = Kind::automatic};
   std::string_view number = words;
   if (number.ends_with('K') || number.ends_with('k')) number.remove_suffix(1);
@@ -27,22 +28,21 @@ WhiteChoice parse_white(const std::string& words) {
 
 }  // namespace
 
-CLI::Option* add_white_balance(CLI::App& command, WhiteChoice& white) {
+CLI::Option* add_white_balance(CLI::App& command, WhitePoint& white, const std::string& meaning) {
   return command
       .add_option_function<std::string>(
           "--white-balance", [&white](const std::string& words) { white = parse_white(words); },
-          "light that shows white in the picture: as-lit (default), auto, or a temperature such as "
-          "2700K")
+          meaning)
       ->type_name("WHITE");
 }
 
-std::string white_text(const WhiteChoice& white) {
+std::string white_balance_text(const WhitePoint& white) {
   switch (white.kind) {
-    case WhiteChoice::Kind::automatic:
+    case WhitePoint::Kind::automatic:
       return " --white-balance auto";
-    case WhiteChoice::Kind::black_body:
+    case WhitePoint::Kind::black_body:
       return fmt::format(" --white-balance {:g}K", white.kelvin);
-    case WhiteChoice::Kind::as_lit:
+    case WhitePoint::Kind::as_lit:
       break;
   }
   return "";

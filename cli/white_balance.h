@@ -7,10 +7,10 @@
 
 namespace lightwell {
 
-/// Adds --white-balance WHITE: "as-lit", "auto", "2700K" or "2700".
-CLI::Option* add_white_balance(CLI::App& command, WhiteChoice& white);
+/// Adds --white-balance, which sets `white`.
+CLI::Option* add_white_balance(CLI::App& command, WhitePoint& white, const std::string& meaning);
 
-/// The option that repeats the choice, after a space; empty for as-lit.
-std::string white_text(const WhiteChoice& white);
+/// The option that repeats `white` on a command line, after a space; empty for as lit.
+std::string white_balance_text(const WhitePoint& white);
 
 }  // namespace lightwell

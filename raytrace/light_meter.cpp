@@ -160,4 +160,12 @@ Eigen::Array3f white_balance(const Eigen::Array3f& colour) {
   return colour.max(1.0f / most).inverse();
 }
 
+Eigen::Array3f white_balance(const WhitePoint& white,
+                             const std::optional<IncidentLight>& incident) {
+  using Kind = WhitePoint::Kind;
+  if (white.kind == Kind::black_body) return white_balance(colour_of_black_body(white.kelvin));
+  if (white.kind == Kind::automatic && incident) return white_balance(incident->colour);
+  return Eigen::Array3f::Ones();
+}
+
 }  // namespace lightwell

@@ -52,15 +52,21 @@ inline constexpr double coldest_white = 2000.0, hottest_white = 40000.0;
 /// under a black body of coldest_white takes 49. Light with less blue leaves a picture.
 Eigen::Array3f white_balance(const Eigen::Array3f& colour);
 
-/// The light that a picture shows as grey.
-struct WhiteChoice {
+/// The light that pictures show as grey.
+struct WhitePoint {
   enum class Kind {
-    as_lit,      ///< the white of Rec. 709: colours stay as lit
+    as_lit,      ///< the white of the screen
     automatic,   ///< the light on what the camera sees
-    black_body,  ///< a black body of `kelvin`
+    black_body,  ///< of `kelvin`
   };
   Kind kind = Kind::as_lit;
   double kelvin = 6500.0;
+
+  bool operator==(const WhitePoint&) const = default;
 };
+
+/// Factors of linear RGB for a white point. `incident` is the light on what the camera sees; where
+/// it is not known, `automatic` is as lit.
+Eigen::Array3f white_balance(const WhitePoint& white, const std::optional<IncidentLight>& incident);
 
 }  // namespace lightwell

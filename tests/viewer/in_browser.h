@@ -163,7 +163,7 @@ enum class BrowserKind { chromium, firefox };
 
 struct PageOptions {
   bool with_webgl = true;
-  WhiteChoice white{};
+  WhitePoint white{};
   int width = 0, height = 0;  ///< of the screen, pixels; 0: the browser's window
 };
 

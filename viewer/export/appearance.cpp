@@ -92,13 +92,13 @@ int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance) 
 }
 
 std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
-                                         double scale) {
+                                         const Eigen::Array3f& scale) {
   const int count = static_cast<int>(radiance.rows());
   std::vector<std::uint8_t> bytes(std::size_t{3} * radiance.rows());
   parallel_for(count, vertex_grain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       const Spectrum L = radiance.row(v).transpose();
-      const Eigen::Array3f shown = display_rgb(linear_rgb(bands, L), scale);
+      const Eigen::Array3f shown = display_rgb(linear_rgb(bands, L) * scale, 1.0);
       for (int c = 0; c < 3; ++c) {
         bytes[std::size_t{3} * v + c] =
             static_cast<std::uint8_t>(255.0f * srgb_encode(shown[c]) + 0.5f);
@@ -108,13 +108,18 @@ std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands&
   return bytes;
 }
 
-std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& bands, double scale) {
+std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
+                                         double scale) {
+  return display_colors(radiance, bands, Eigen::Array3f::Constant(static_cast<float>(scale)));
+}
+
+std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& bands,
+                                      const Eigen::Array3f& scale) {
   const float floor = std::exp2(-light_code_depth);
   std::vector<std::uint8_t> codes(std::size_t{3} * radiance.rows());
   parallel_for(static_cast<int>(radiance.rows()), vertex_grain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
-      const Eigen::Array3f x =
-          linear_rgb(bands, radiance.row(v).transpose()) * static_cast<float>(scale);
+      const Eigen::Array3f x = linear_rgb(bands, radiance.row(v).transpose()) * scale;
       for (int c = 0; c < 3; ++c) {
         const float light = x[c] > 0.0f ? x[c] : 0.0f;  // NaN becomes black
         const float code = (std::log2(light + floor) + light_code_depth) / light_code_stops;
@@ -238,16 +243,22 @@ Image coarse_picture(const ElementCaster& caster, const std::vector<ElementKind>
   return coarse_picture(caster, clear_elements(kinds), radiance, camera, width, sky);
 }
 
+Metered meter_view(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                   const ShownLight& light, const Bands& bands, const Camera& camera,
+                   const Sky* sky) {
+  const auto metered =
+      meter_incident_light(caster, light.irradiance, clear_elements(kinds), bands, camera);
+  if (metered) return {metered->exposure, metered};
+  const BandArray& radiance = light.radiance;
+  const Image seen = coarse_picture(caster, kinds, radiance, camera, metering_width, sky);
+  if ((seen.radiance > 0.0f).any()) return {exposure_scale(seen, bands), {}};
+  return {exposure_scale({static_cast<int>(radiance.rows()), 1, radiance}, bands), {}};
+}
+
 double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                      const ShownLight& light, const Bands& bands, const Camera& camera,
                      const Sky* sky) {
-  const auto metered =
-      meter_incident_light(caster, light.irradiance, clear_elements(kinds), bands, camera);
-  if (metered) return metered->exposure;
-  const BandArray& radiance = light.radiance;
-  const Image seen = coarse_picture(caster, kinds, radiance, camera, metering_width, sky);
-  if ((seen.radiance > 0.0f).any()) return exposure_scale(seen, bands);
-  return exposure_scale({static_cast<int>(radiance.rows()), 1, radiance}, bands);
+  return meter_view(caster, kinds, light, bands, camera, sky).scale;
 }
 
 }  // namespace lightwell

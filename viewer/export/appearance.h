@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/solve.h"
 #include "raytrace/image.h"
+#include "raytrace/light_meter.h"
 #include "scene/sky.h"
 
 namespace lightwell {
@@ -43,7 +45,10 @@ Spectrum shown_reflectance(const PatchMesh& mesh, const std::vector<Material>& m
 int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance);
 
 /// Tone-mapped colours, 8-bit sRGB, 3 bytes a vertex: the second pass's automatic tone mapping with
-/// `scale` as the exposure (see exposure_scale).
+/// `scale` as the exposure (see exposure_scale), or as exposure times white balance, for each of
+/// linear red, green and blue.
+std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
+                                         const Eigen::Array3f& scale);
 std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands& bands,
                                          double scale);
 
@@ -54,7 +59,8 @@ std::vector<std::uint8_t> display_colors(const BandArray& radiance, const Bands&
 inline constexpr float light_code_stops = 14.0f, light_code_depth = 8.0f;
 
 /// Light codes (see light_code_stops) of linear RGB times `scale`, 3 bytes a vertex.
-std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& bands, double scale);
+std::vector<std::uint8_t> light_codes(const BandArray& radiance, const Bands& bands,
+                                      const Eigen::Array3f& scale);
 
 /// Quantity that false colours show.
 enum class Measure {
@@ -115,9 +121,19 @@ struct ShownLight {
   const BandArray& radiance;
 };
 
+/// The exposure of a camera's picture, and the light on what the camera sees; empty: there is none.
+struct Metered {
+  double scale = 1.0;
+  std::optional<IncidentLight> incident{};
+};
+
 /// The exposure of the second pass's picture from a camera: IncidentLight::exposure. Where no light
 /// falls on what the camera sees, the exposure_scale of a coarse picture; where the coarse picture
 /// is black, that of all vertices alike.
+Metered meter_view(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
+                   const ShownLight& light, const Bands& bands, const Camera& camera,
+                   const Sky* sky = nullptr);
+/// The exposure of meter_view().
 double metered_scale(const ElementCaster& caster, const std::vector<ElementKind>& kinds,
                      const ShownLight& light, const Bands& bands, const Camera& camera,
                      const Sky* sky = nullptr);

@@ -76,6 +76,6 @@ bool is_exported_library(const std::filesystem::path& mtl);
 /// page's own choice. docs/export.md describes the data.
 void write_walkthrough(const std::filesystem::path& path, const BakedModel& model,
                        const std::optional<LuxRange>& lux_range = {},
-                       const WhiteChoice& white = {});
+                       const WhitePoint& white = {});
 
 }  // namespace lightwell

@@ -81,7 +81,7 @@ std::string program() {
 }  // namespace
 
 void write_walkthrough(const std::filesystem::path& path, const BakedModel& model,
-                       const std::optional<LuxRange>& range, const WhiteChoice& white) {
+                       const std::optional<LuxRange>& range, const WhitePoint& white) {
   const PageData data = page_data(model, range.value_or(lux_range(model.illuminance)), white);
   Page page;
   page.put("title", escaped(title_of(model)));

@@ -210,8 +210,8 @@ Json false_colors_of(const BakedModel& model, const LuxRange& range) {
 }
 
 /// Choices of light that shows as grey: the first one, and the colours of black bodies.
-Json white_of(const WhiteChoice& white) {
-  using Kind = WhiteChoice::Kind;
+Json white_of(const WhitePoint& white) {
+  using Kind = WhitePoint::Kind;
   std::set<double> temperatures = {2700.0, 3000.0, 3500.0, 4000.0, 5000.0, 6500.0};
   if (white.kind == Kind::black_body) temperatures.insert(white.kelvin);
   Json bodies = Json::array();
@@ -226,7 +226,7 @@ Json white_of(const WhiteChoice& white) {
 
 }  // namespace
 
-PageData page_data(const BakedModel& model, const LuxRange& range, const WhiteChoice& white) {
+PageData page_data(const BakedModel& model, const LuxRange& range, const WhitePoint& white) {
   const Box box = turned_bounds(model);
   PageData page;
   page.about = {{"format", 1},

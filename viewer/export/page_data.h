@@ -18,7 +18,7 @@ struct PageData {
 
 /// Data of a model's page. `range`: scale of the false colours of illuminance, lx; `white`: light
 /// that shows as grey at first.
-PageData page_data(const BakedModel& model, const LuxRange& range, const WhiteChoice& white = {});
+PageData page_data(const BakedModel& model, const LuxRange& range, const WhitePoint& white = {});
 
 /// Base64 of RFC 4648, with padding.
 std::string base64(const std::string& bytes);

@@ -132,7 +132,7 @@ void SkyActor::set_sky(const Sky& sky) {
   grid_ = sky_grid(sky, azimuths);
 }
 
-void SkyActor::expose(const Bands& bands, double scale) {
+void SkyActor::expose(const Bands& bands, const Eigen::Array3f& scale) {
   const std::vector<std::uint8_t> bytes = display_colors(grid_.radiance, bands, scale);
   std::copy(bytes.begin(), bytes.end(), static_cast<std::uint8_t*>(texels_->GetScalarPointer()));
   texels_->Modified();

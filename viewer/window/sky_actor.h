@@ -25,7 +25,7 @@ class SkyActor {
   void set_sky(const Sky& sky);
   /// Colours dome and sun. `scale` is the factor from radiance to display values, as in
   /// display_colors().
-  void expose(const Bands& bands, double scale);
+  void expose(const Bands& bands, const Eigen::Array3f& scale);
   /// Puts the centre of the dome at the eye, with a radius in m.
   void place(const Eigen::Vector3d& eye, double radius);
   void show(bool shown);

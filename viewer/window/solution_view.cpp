@@ -171,7 +171,8 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   keep_at_edge(renderer_, legend_);
   renderer_->SetBackground(0.0, 0.0, 0.0);
   look_.camera = start_camera_;
-  look_.metered_scale = meter(start_camera_);
+  look_.white = options.white;
+  look_ = metered(look_, start_camera_);
   look_.exposure_ev = options.exposure_ev;
   look_.mesh = options.mesh;
   look_.unlit = !options.look_through && !options.from_outside;
@@ -193,14 +194,21 @@ vtkRenderer* SolutionView::renderer() const {
   return renderer_;
 }
 
-double SolutionView::meter(const Camera& camera) const {
-  return metered_scale(caster_, kinds_, {irradiance_, radiance_}, solved_->solution.bands, camera,
-                       sky());
+Eigen::Array3f display_scale(const Look& look) {
+  const double scale = look.metered_scale * std::exp2(look.exposure_ev);
+  return static_cast<float>(scale) * white_balance(look.white, look.incident);
+}
+
+Look SolutionView::metered(Look look, const Camera& camera) const {
+  const Metered found =
+      meter_view(caster_, kinds_, {irradiance_, radiance_}, solved_->solution.bands, camera, sky());
+  look.metered_scale = found.scale;
+  look.incident = found.incident;
+  return look;
 }
 
 void SolutionView::set_look(const Look& look) {
-  const bool recolor = look.metered_scale != look_.metered_scale ||
-                       look.exposure_ev != look_.exposure_ev ||
+  const bool recolor = (display_scale(look) != display_scale(look_)).any() ||
                        look.illuminance != look_.illuminance || look.measure != look_.measure ||
                        look.interpolation_error != look_.interpolation_error;
   look_ = look;
@@ -279,7 +287,7 @@ void SolutionView::apply_colors() {
   if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_), {});
   if (look_.illuminance) return actor_.set_colors(false_colors(measured(), measured_range()), {});
   const Bands& bands = solved_->solution.bands;
-  const double scale = look_.metered_scale * std::exp2(look_.exposure_ev);
+  const Eigen::Array3f scale = display_scale(look_);
   if (outside_) outside_->expose(bands, scale);
   std::vector<std::uint8_t> codes;
   if (picture_gain_.size() > 0) codes = light_codes(radiance_ * picture_gain_, bands, scale);

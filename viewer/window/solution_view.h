@@ -21,15 +21,20 @@ namespace lightwell {
 /// Parameters of a picture of a solution.
 struct Look {
   Camera camera{};
-  double metered_scale = 1.0;  ///< automatic exposure, from radiance to display values
-  double exposure_ev = 0.0;    ///< stops on top of metered_scale
-  bool mesh = false;           ///< outlines of the elements
-  bool unlit = true;           ///< draw surfaces without light in black; else leave them out
-  bool illuminance = false;    ///< false colours of `measure`, with a legend
+  double metered_scale = 1.0;               ///< automatic exposure, from radiance to display values
+  std::optional<IncidentLight> incident{};  ///< light on what the camera sees, by the same meter
+  WhitePoint white{};                       ///< light that shows as grey
+  double exposure_ev = 0.0;                 ///< stops on top of metered_scale
+  bool mesh = false;                        ///< outlines of the elements
+  bool unlit = true;         ///< draw surfaces without light in black; else leave them out
+  bool illuminance = false;  ///< false colours of `measure`, with a legend
   Measure measure = Measure::illuminance;  ///< quantity of the false colours
   bool interpolation_error = false;        ///< error_colors() instead of light or false colours
   bool isolux = false;                     ///< lines of equal illuminance
 };
+
+/// Factors from linear RGB to display values: exposure times white balance.
+Eigen::Array3f display_scale(const Look& look);
 
 /// A solution as a VTK renderer with its actors. Keeps a reference to the solution and its mesh.
 class SolutionView {
@@ -49,8 +54,9 @@ class SolutionView {
   void light_arrived();
   /// Sets the unshot light of each patch, lm/m^2, for Measure::unshot.
   void set_unshot(const Eigen::ArrayXf& unshot);
-  /// Returns the automatic exposure of a camera's picture (see metered_scale()).
-  double meter(const Camera& camera) const;
+  /// Returns `look` with the automatic exposure, and the incident light, of a camera's picture (see
+  /// meter_view()).
+  Look metered(Look look, const Camera& camera) const;
 
   const ElementCaster& caster() const { return caster_; }
   const std::vector<ElementKind>& kinds() const { return kinds_; }

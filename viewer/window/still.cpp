@@ -67,7 +67,7 @@ struct Still::Kept {
 };
 
 struct Still::Job {
-  Job(std::shared_ptr<Kept> with, const Camera& camera, double with_scale)
+  Job(std::shared_ptr<Kept> with, const Camera& camera, const Eigen::Array3f& with_scale)
       : kept(std::move(with)), scale(with_scale), thread([this, camera] { run(camera); }) {}
   ~Job() {
     cancelled = true;
@@ -104,7 +104,7 @@ struct Still::Job {
   }
 
   std::shared_ptr<Kept> kept;
-  double scale;
+  Eigen::Array3f scale;
   Image image{};
   std::string failure{};
   std::mutex mutex{};
@@ -131,7 +131,7 @@ void Still::add_to(vtkRenderer* renderer) const {
 }
 
 void Still::begin(const Scene& scene, const SolvedScene& solved, const Camera& camera,
-                  double scale) {
+                  const Eigen::Array3f& scale) {
   discard();
   camera_ = camera;
   picture_.assign(std::size_t{3} * camera.width * camera.height, 0);

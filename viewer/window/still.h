@@ -30,10 +30,11 @@ class Still {
 
   /// To be called before the text is added, which is then drawn over the picture.
   void add_to(vtkRenderer* renderer) const;
-  /// Begins to render the camera's picture, of the camera's size, with `scale` as the factor from
-  /// radiance to display values. Copies the parts of the solution that rendering needs, again only
-  /// when the light has changed. Keeps a reference to the scene.
-  void begin(const Scene& scene, const SolvedScene& solved, const Camera& camera, double scale);
+  /// Begins to render the camera's picture, of the camera's size, with `scale` as the factors from
+  /// linear RGB to display values. Copies the parts of the solution that rendering needs, again
+  /// only when the light has changed. Keeps a reference to the scene.
+  void begin(const Scene& scene, const SolvedScene& solved, const Camera& camera,
+             const Eigen::Array3f& scale);
   /// Stops the rendering and hides the picture.
   void discard();
   /// Takes over the strips rendered since the last call. True if the picture or the phase changed.

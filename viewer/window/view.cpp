@@ -131,8 +131,7 @@ std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const V
       path.empty() ? turntable(view.start_camera(), center, view.up_axis(), film.frames)
                    : frames_along(path, film.frames);
   AnnotatedPictures pictures(view, options);
-  Look look = view.look();
-  look.metered_scale = view.meter(cameras.front());
+  Look look = view.metered(view.look(), cameras.front());
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     report(progress, "draw", static_cast<double>(i) / static_cast<double>(cameras.size()));
     look.camera =
@@ -180,12 +179,13 @@ int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::sp
     unshot.push_back(light.unshot);
     show_light(light, live.ambient, stages.emplace_back(dark));
   }
-  const double exposure = SolutionView(stages.back(), options).look().metered_scale;
+  const Look last = SolutionView(stages.back(), options).look();
   std::vector<std::uint8_t> picture(std::size_t{3} * strip.width * strip.height);
   for (std::size_t k = 0; k < stages.size(); ++k) {
     SolutionView view(stages[k], options);
     Look look = view.look();
-    look.metered_scale = exposure;
+    look.metered_scale = last.metered_scale;
+    look.incident = last.incident;
     view.set_look(look);
     view.set_unshot(unshot[k]);
     const auto drawn = AnnotatedPictures(view, options).draw();

@@ -33,6 +33,7 @@ struct ViewOptions {
   std::vector<Camera> cameras{};   ///< bookmarks on the keys 1..9
   int width = 1024, height = 768;  ///< pixels
   double exposure_ev = 0.0;        ///< stops on top of the automatic exposure
+  WhitePoint white{};              ///< light that shows as grey
   /// The scene's materials, which distinguish mirrors and glass from black surfaces; a solution
   /// alone has only diffuse light. May be empty.
   std::vector<Material> materials{};

@@ -39,6 +39,7 @@ std::span<const WalkWindow::Key> WalkWindow::keys() {
       Key{"+ -", "exposure, 1/3 stop", {"plus", "equal", "kp_add"}, &W::brighter},
       Key{"", "", {"minus", "kp_subtract"}, &W::darker},
       Key{"0", "expose for this view", {"0"}, &W::expose_for_view},
+      Key{"F2", "colours as lit, white by the light", {"f2"}, &W::switch_white},
       Key{"V", "false colours of illuminance", {"v"}, &W::switch_false_colours},
       Key{"U", "luminance, unshot light", {"u"}, &W::switch_measure},
       Key{"I", "isolux lines", {"i"}, &W::switch_isolux},

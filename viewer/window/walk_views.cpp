@@ -137,8 +137,7 @@ void WalkWindow::switch_still() {
     return say("the light is still arriving; Enter ends that, then R can trace the picture");
   }
   const Look& look = view_->look();
-  still_.begin(*options_.scene, solved(), look.camera,
-               look.metered_scale * std::exp2(look.exposure_ev));
+  still_.begin(*options_.scene, solved(), look.camera, display_scale(look));
   changed_ = true;
 }
 

@@ -38,6 +38,18 @@ std::unique_ptr<SolvedScene> begin(const LiveSolve& live, SolvedScene dark) {
   return begun;
 }
 
+std::string white_text(const WhitePoint& white) {
+  switch (white.kind) {
+    case WhitePoint::Kind::as_lit:
+      return "colours as lit";
+    case WhitePoint::Kind::automatic:
+      return "white by the light in view";
+    case WhitePoint::Kind::black_body:
+      break;
+  }
+  return fmt::format("white by {:g} K", white.kelvin);
+}
+
 }  // namespace
 
 double walking_speed(double scene_diagonal) {
@@ -187,9 +199,7 @@ void WalkWindow::go_to(const Camera& camera) {
   physics_.stand_still();
   pivot_.reset();
   playing_ = false;
-  Look look = current_look();
-  look.metered_scale = view_->meter(camera);
-  change(look);
+  change(view_->metered(current_look(), camera));
 }
 
 void WalkWindow::go_to_start() {
@@ -214,17 +224,14 @@ void WalkWindow::expose(double stops) {
 }
 
 void WalkWindow::expose_for_view() {
-  Look look = current_look();
-  look.metered_scale = view_->meter(walk_.camera());
+  Look look = view_->metered(current_look(), walk_.camera());
   look.exposure_ev = options_.exposure_ev;
   change(look);
 }
 
 void WalkWindow::meter_unless_exposed() {
-  Look look = current_look();
-  if (look.exposure_ev != options_.exposure_ev) return;
-  look.metered_scale = view_->meter(look.camera);
-  change(look);
+  const Look look = current_look();
+  if (look.exposure_ev == options_.exposure_ev) change(view_->metered(look, look.camera));
 }
 
 void WalkWindow::switch_false_colours() {
@@ -252,6 +259,18 @@ void WalkWindow::switch_measure() {
   }
   look.interpolation_error = false;
   change(look);
+}
+
+// A temperature that the window began with takes the place of the automatic white.
+void WalkWindow::switch_white() {
+  using Kind = WhitePoint::Kind;
+  Look look = view_->metered(current_look(), walk_.camera());
+  const bool is_as_lit = look.white.kind == Kind::as_lit;
+  const WhitePoint given =
+      options_.white.kind == Kind::as_lit ? WhitePoint{.kind = Kind::automatic} : options_.white;
+  look.white = is_as_lit ? given : WhitePoint{};
+  change(look);
+  say(white_text(look.white));
 }
 
 void WalkWindow::switch_mesh() {

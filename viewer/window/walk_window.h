@@ -101,6 +101,7 @@ class WalkWindow {
   void meter_unless_exposed();
   void switch_false_colours();
   void switch_measure();
+  void switch_white();
   void switch_mesh();
   void switch_unlit();
   void switch_isolux();

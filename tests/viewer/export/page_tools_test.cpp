@@ -197,7 +197,7 @@ driver.run(async (page, found) => {
 </script>)";
   const WarmBox box;
   const BakedModel model = bake_model(box.solved, box.scene);
-  const WhiteChoice first{.kind = WhiteChoice::Kind::black_body, .kelvin = 2850.0};
+  const WhitePoint first{.kind = WhitePoint::Kind::black_body, .kelvin = 2850.0};
   const Json found = run(model, choose, {.white = first});
   ASSERT_FALSE(found.is_null());
   ASSERT_FALSE(found.contains("failed")) << found["failed"];
@@ -231,7 +231,7 @@ driver.run(async (page, found) => { found.colour = page.light_colour; });
   const SolvedScene box = shaded_box();
   const Scene scene = box_scene();
   const Json found =
-      run(bake_model(box, scene), meter, {.white = {.kind = WhiteChoice::Kind::automatic}});
+      run(bake_model(box, scene), meter, {.white = {.kind = WhitePoint::Kind::automatic}});
   ASSERT_FALSE(found.is_null());
   ASSERT_FALSE(found.contains("failed")) << found["failed"];
   const ElementCaster caster(box.mesh);
