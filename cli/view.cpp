@@ -31,6 +31,7 @@ struct ViewArguments {
   std::optional<std::pair<int, int>> size;
   double exposure_ev = 0.0;
   WhitePoint white;
+  double text_scale = 0.0;
   ChannelSettings channels;
   ChannelArguments kept_apart;
   MeshArguments mesh;
@@ -80,6 +81,8 @@ ViewOptions view_options(const ViewArguments& arguments, const Scene& scene) {
   options.look_through = arguments.look_through;
   options.from_outside = arguments.from_outside;
   options.illuminance = !arguments.false_colour.empty() && arguments.false_colour != "error";
+  options.lux_classes = arguments.false_colour == "classes";
+  options.text_scale = arguments.text_scale;
   options.measure = arguments.false_colour == "luminance" ? Measure::luminance
                     : arguments.false_colour == "unshot"  ? Measure::unshot
                                                           : Measure::illuminance;
@@ -281,11 +284,16 @@ void add_start(CLI::App& command, ViewArguments& arguments) {
       command
           .add_option(
               "--false-colour,--false-color", arguments.false_colour,
-              "begin in false colours: lux (key V), luminance (U), unshot (light still to be "
-              "shot, U) or error (estimated interpolation error)")
+              "begin in false colours: lux (key V), classes (100 ... 750 lx, F7), luminance (U), "
+              "unshot (light still to come, U) or error (estimated interpolation error)")
           ->type_name("WHAT")
-          ->check(one_of("quantity", {"lux", "luminance", "unshot", "error"}));
+          ->check(one_of("quantity", {"lux", "classes", "luminance", "unshot", "error"}));
   add_lux_range(command, arguments.range)->needs(false_colour);
+  command
+      .add_option("--text-scale", arguments.text_scale,
+                  "size of text, such as 2 (default: by the resolution of the screen)")
+      ->type_name("FACTOR")
+      ->check(positive());
   command
       .add_option("--isolux", arguments.isolux,
                   "begin with isolux lines at these illuminances, such as 100,300,500 (key I)")

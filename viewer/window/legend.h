@@ -20,4 +20,11 @@ struct LegendPicture {
 LegendPicture with_legend(const std::vector<float>& values, int width, int height,
                           const LuxRange& range, const std::string& unit);
 
+/// Returns the box of a scale alone: title, bar, ticks and their numbers, in letters of `font`
+/// pixels and about `height` pixels high, more if the numbers need more. Throws as with_legend().
+LegendPicture draw_legend(const LuxRange& range, const std::string& unit, int font, int height);
+
+/// As draw_legend(), of the classes of illuminance (see lux_classes).
+LegendPicture draw_class_legend(int font, int height);
+
 }  // namespace lightwell

@@ -11,7 +11,7 @@
 namespace lightwell {
 namespace {
 
-constexpr float most = 100.0f, least = 0.01f;  ///< factors of a channel that is on
+constexpr float most_light = 100.0f, least_light = 0.01f;  ///< factors of a channel that is on
 
 struct Preset {
   const char* name;
@@ -55,9 +55,11 @@ void LightBoard::choose(int step) {
 void LightBoard::dim(int steps) {
   if (!is_chosen()) return;
   Dimmer& dimmer = dimmers_[static_cast<std::size_t>(chosen_)];
-  const float now = dimmer.factor > 0.0f ? dimmer.factor : (steps > 0 ? 0.5f * least : 0.0f);
+  const float now = dimmer.factor > 0.0f ? dimmer.factor : (steps > 0 ? 0.5f * least_light : 0.0f);
   const float wanted = now * std::exp2(static_cast<float>(steps) / 3.0f);
-  dimmer.factor = wanted < 0.99f * least && steps < 0 ? 0.0f : std::clamp(wanted, least, most);
+  dimmer.factor = wanted < 0.99f * least_light && steps < 0
+                      ? 0.0f
+                      : std::clamp(wanted, least_light, most_light);
   // Rounding of third stops does not miss full light.
   if (std::abs(dimmer.factor - 1.0f) < 1e-3f) dimmer.factor = 1.0f;
   if (dimmer.factor > 0.0f) dimmer.before = dimmer.factor;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -28,6 +29,13 @@ constexpr std::chrono::milliseconds between_lights{50};
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// Time left after `seconds` for a share of the work; below 0: too little is done to tell.
+double seconds_left(double seconds, double share) {
+  constexpr double least_seconds = 0.5, least_share = 0.02;
+  if (seconds < least_seconds || share < least_share) return -1.0;
+  return seconds * (1.0 - share) / share;
 }
 
 SolveOptions for_a_window(SolveOptions options, const Scene& scene) {
@@ -105,8 +113,8 @@ struct LiveSolve::Impl {
     return solved;
   }
 
-  void run();
-  void shoot_until_stopped();
+  void run(const Progress& watch);
+  void shoot_until_stopped(const Progress& watch);
   int wait_for_leave();
   void publish(bool always);
 
@@ -157,14 +165,16 @@ void LiveSolve::Impl::publish(bool always) {
   shown.shots = progressive.shots();
   shown.unshot_share = unshot;
   shown.seconds = shooting_seconds;
+  shown.seconds_left = seconds_left(shooting_seconds, progressive.done());
   if (!is_due) return;
   fresh = std::move(copy);
   last_published = now;
 }
 
-void LiveSolve::Impl::shoot_until_stopped() {
+void LiveSolve::Impl::shoot_until_stopped(const Progress& watch) {
   publish(true);
   while (const int most = wait_for_leave()) {
+    if (watch) watch("shoot", progressive.done());
     const Clock::time_point start = Clock::now();
     const int until = options.progressive->max_shots;
     const bool shot = step(most == 1 ? std::min(progressive.shots() + 1, until) : until);
@@ -179,9 +189,9 @@ void LiveSolve::Impl::shoot_until_stopped() {
   }
 }
 
-void LiveSolve::Impl::run() {
+void LiveSolve::Impl::run(const Progress& watch) {
   try {
-    shoot_until_stopped();
+    shoot_until_stopped(watch);
     if (ending) return;
     publish(true);
     {
@@ -190,8 +200,12 @@ void LiveSolve::Impl::run() {
       shown.converged = progressive.has_converged();
     }
     const Clock::time_point start = Clock::now();
+    Clock::time_point step_start = start;
     SolvedScene solved = finish([&](std::string_view phase, double share) {
+      if (watch) watch(phase, share);
       const std::lock_guard lock(mutex);
+      if (shown.step != phase) step_start = Clock::now();
+      shown.seconds_left = seconds_left(seconds_since(step_start), share);
       shown.step = phase;
       shown.step_share = share;
       shown.seconds = shooting_seconds + seconds_since(start);
@@ -223,21 +237,53 @@ void show_light(const LiveLight& light, bool with_ambient, SolvedScene& shown) {
   relight(shown, effective_scales(s));
 }
 
+std::string plain_words(std::string_view step) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 11> words = {{
+      {"mesh", "cutting surfaces into patches"},
+      {"lamps", "light of lamps"},
+      {"daylight", "daylight"},
+      {"openings", "light through openings"},
+      {"solve", "light between surfaces"},
+      {"parts", "finding rooms"},
+      {"gather", "light at every point"},
+      {"refine", "finer patches where light changes"},
+      {"balance", "light between rooms"},
+      {"caustics", "light by way of mirrors and glass"},
+      {"photons", "light by way of mirrors and glass"},
+  }};
+  const auto* const found =
+      std::ranges::find(words, step, [](const auto& pair) { return pair.first; });
+  return found == words.end() ? std::string(step) : found->second;
+}
+
+std::string time_left(double seconds) {
+  constexpr double least = 2.0, minute = 60.0;
+  if (seconds < least) return "";
+  if (seconds < 2.0 * minute) return fmt::format("about {:.0f} s left", seconds);
+  return fmt::format("about {:.0f} min left", seconds / minute);
+}
+
 std::string text_of(const LiveState& state) {
-  const std::string meter = fmt::format("{} shots, {:.3g} % unshot, {:.1f} s", state.shots,
-                                        100.0 * state.unshot_share, state.seconds);
+  const std::string left = time_left(state.seconds_left);
+  const std::string meter =
+      fmt::format("{:.3g} % still to come, step {}, {:.1f} s{}{}", 100.0 * state.unshot_share,
+                  state.shots, state.seconds, left.empty() ? "" : ", ", left);
   const char* const lacks =
       state.lacks_specular ? " (light by way of mirrors and glass comes with the solution)" : "";
   switch (state.phase) {
     case LivePhase::shooting:
-      return meter + lacks;
+      return "light spreading: " + meter + lacks;
     case LivePhase::paused:
       return "paused: " + meter + lacks;
     case LivePhase::gathering:
-      return fmt::format("{}, {} {:.0f} %", meter, state.step.empty() ? "gather" : state.step,
-                         100.0 * state.step_share);
+      return fmt::format("finishing: {} {:.0f} %, {:.1f} s{}{}",
+                         plain_words(state.step.empty() ? "gather" : state.step),
+                         100.0 * state.step_share, state.seconds, left.empty() ? "" : ", ", left);
     case LivePhase::done:
-      return (state.converged ? "solved: " : "solved so far: ") + meter;
+      return state.converged
+                 ? fmt::format("solved in {:.1f} s", state.seconds)
+                 : fmt::format("solved so far: {:.3g} % of the light left out, {:.1f} s",
+                               100.0 * state.unshot_share, state.seconds);
     case LivePhase::failed:
       break;
   }
@@ -297,8 +343,8 @@ SolvedScene LiveSolve::finish() {
   return impl_->finish(impl_->options.run.progress);
 }
 
-void LiveSolve::start() {
-  impl_->thread = std::thread([this] { impl_->run(); });
+void LiveSolve::start(const Progress& watch) {
+  impl_->thread = std::thread([this, watch] { impl_->run(watch); });
 }
 
 void LiveSolve::set_paused(bool paused) {

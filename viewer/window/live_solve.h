@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "radiosity/solve.h"
 
@@ -36,7 +37,10 @@ struct LiveState {
   double seconds = 0.0;     ///< of work, without pauses
   std::string step{};       ///< step of the gathering
   double step_share = 0.0;  ///< share of the step that is done, [0,1]
-  bool converged = false;   ///< shooting reached the tolerance
+  /// Estimated time to the end of the shooting, or of the step of the gathering, s; below 0: not
+  /// known.
+  double seconds_left = -1.0;
+  bool converged = false;  ///< shooting reached the tolerance
   /// The scene has mirrors or glass; light that they pass on appears only in the solution.
   bool lacks_specular = false;
   std::string failure{};  ///< the reason, if the phase is failed
@@ -47,8 +51,15 @@ struct LiveState {
 /// channels by their effective scales.
 void show_light(const LiveLight& light, bool with_ambient, SolvedScene& shown);
 
-/// A line for the convergence meter: shots, unshot power in percent of the emitted power, seconds.
+/// A line in plain words: light still to come (unshot power) in percent of the emitted power, steps
+/// (shots), seconds, and about how many are left.
 std::string text_of(const LiveState& state);
+
+/// A step of a solve, as progress reports name it, in plain words.
+std::string plain_words(std::string_view step);
+
+/// "about 40 s left"; empty below 2 s, and where the time is not known.
+std::string time_left(double seconds);
 
 /// Progressive refinement that can be watched. Patches shoot, vertices receive after every shot,
 /// and at the end a solution is gathered as solve_scene() does. Two ways to run:
@@ -82,7 +93,9 @@ class LiveSolve {
   SolvedScene finish();
 
   /// Begins a thread that shoots until the tolerance or max_shots is reached, and then gathers.
-  void start();
+  /// `watch`, for tests, is called in the thread before each step of shooting ("shoot") and with
+  /// the gathering's progress; its result is ignored.
+  void start(const Progress& watch = {});
   void set_paused(bool paused);
   /// Shoots one patch, then pauses.
   void step_once();

@@ -1,23 +1,28 @@
 #include "viewer/window/overlay.h"
 
 #include <vtkRenderer.h>
+#include <vtkStdString.h>
 #include <vtkTextActor.h>
 #include <vtkTextProperty.h>
+#include <vtkTextRenderer.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <sstream>
 
 namespace lightwell {
 namespace {
 
-constexpr int status_size = 13, panel_size = 13, help_size = 14, least_size = 7;
+constexpr double status_size = 13.0, panel_size = 13.0, help_size = 14.0;  // at a scale of 1
+constexpr int least_size = 7;
 /// Width of a letter and height of a line in VTK's built-in Courier, as shares of the font size.
 constexpr double letter_width = 0.62, line_height = 1.25;
 
-vtkSmartPointer<vtkTextActor> make_overlay_text(int size, bool framed) {
+vtkSmartPointer<vtkTextActor> make_overlay_text(double size, bool framed) {
   auto text = vtkSmartPointer<vtkTextActor>::New();
   vtkTextProperty* property = text->GetTextProperty();
-  property->SetFontSize(size);
+  property->SetFontSize(std::max(least_size, static_cast<int>(std::lround(size))));
   property->SetColor(0.95, 0.95, 0.95);
   property->SetBackgroundColor(0.05, 0.05, 0.05);
   property->SetBackgroundOpacity(framed ? 0.8 : 0.55);
@@ -42,13 +47,66 @@ void show(vtkTextActor* actor, const std::string& text) {
   actor->SetInput(padded.c_str());
 }
 
+/// Width of a line as VTK draws it, pixels.
+double drawn_width(vtkTextProperty* property, const std::string& line) {
+  constexpr int dots_per_inch = 72;  // a point is a pixel
+  std::array<int, 4> box{};
+  vtkTextRenderer* const renderer = vtkTextRenderer::GetInstance();
+  const bool is_measured =
+      renderer && renderer->GetBoundingBox(property, vtkStdString(line), box.data(), dots_per_inch);
+  if (is_measured) return box[1] - box[0] + 1;
+  return letter_width * property->GetFontSize() * static_cast<double>(line.size());
+}
+
+/// Letters of Courier, of at most `wanted` pixels, in which a text fits a window.
+int fitting_size(const std::string& text, double wanted, int width, int height) {
+  std::size_t columns = 1, rows = 0;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line); ++rows) {
+    columns = std::max(columns, line.size());
+  }
+  const double by_width = 0.96 * width / (letter_width * static_cast<double>(columns + 2));
+  const double by_height = 0.96 * height / (line_height * static_cast<double>(rows + 1));
+  const int largest = std::max(least_size, static_cast<int>(std::lround(wanted)));
+  return std::clamp(static_cast<int>(std::min(by_width, by_height)), least_size, largest);
+}
+
 }  // namespace
 
-Overlay::Overlay()
-    : status_(make_overlay_text(status_size, false)),
-      panel_(make_overlay_text(panel_size, true)),
-      cursor_(make_overlay_text(panel_size, true)),
-      help_(make_overlay_text(help_size, true)) {
+std::string wrapped(const std::string& text, double most,
+                    const std::function<double(const std::string&)>& width_of) {
+  std::string result, line;
+  const auto end_line = [&] {
+    while (!line.empty() && line.back() == ' ') line.pop_back();
+    if (!line.empty()) result += (result.empty() ? "" : "\n") + line;
+    line.clear();
+  };
+  for (std::size_t begin = 0; begin < text.size();) {
+    std::size_t end = text.find(' ', begin);
+    end = end == std::string::npos ? text.size() : text.find_first_not_of(' ', end);
+    end = std::min(end, text.size());
+    std::string word = text.substr(begin, end - begin);
+    begin = end;
+    if (width_of(line + word) > most) end_line();
+    while (word.size() > 1 && width_of(word) > most) {
+      std::size_t fits = 1;
+      while (fits < word.size() && width_of(word.substr(0, fits + 1)) <= most) ++fits;
+      line = word.substr(0, fits);
+      end_line();
+      word.erase(0, fits);
+    }
+    line += word;
+  }
+  end_line();
+  return result;
+}
+
+Overlay::Overlay(double scale)
+    : scale_(scale),
+      status_(make_overlay_text(scale * status_size, false)),
+      panel_(make_overlay_text(scale * panel_size, true)),
+      cursor_(make_overlay_text(scale * panel_size, true)),
+      help_(make_overlay_text(scale * help_size, true)) {
   place(status_, 0.01, 0.015, false);
   place(panel_, 0.01, 0.985, true);
   place(help_, 0.02, 0.98, true);
@@ -65,11 +123,17 @@ void Overlay::add_to(vtkRenderer* renderer) const {
   }
 }
 
-void Overlay::set_status(const std::string& text) {
-  show(status_, text);
+void Overlay::set_status(const std::string& text, int width) {
+  constexpr double share = 0.96;  // of the width; margins are 1 % each, and a space each
+  vtkTextProperty* const property = status_->GetTextProperty();
+  const double space = 2.0 * drawn_width(property, "n");
+  show(status_, wrapped(text, share * width - space, [property](const std::string& line) {
+         return drawn_width(property, line);
+       }));
 }
 
-void Overlay::set_panel(const std::string& text) {
+void Overlay::set_panel(const std::string& text, int width, int height) {
+  panel_->GetTextProperty()->SetFontSize(fitting_size(text, scale_ * panel_size, width, height));
   show(panel_, text);
 }
 
@@ -85,14 +149,7 @@ void Overlay::set_cursor(const std::string& text, int x, int y, int width, int h
 }
 
 void Overlay::set_help(const std::string& text, int width, int height) {
-  std::size_t columns = 1, rows = 0;
-  std::istringstream lines(text);
-  for (std::string line; std::getline(lines, line); ++rows)
-    columns = std::max(columns, line.size());
-  const double by_width = 0.96 * width / (letter_width * static_cast<double>(columns + 2));
-  const double by_height = 0.96 * height / (line_height * static_cast<double>(rows + 1));
-  help_->GetTextProperty()->SetFontSize(
-      std::clamp(static_cast<int>(std::min(by_width, by_height)), least_size, help_size));
+  help_->GetTextProperty()->SetFontSize(fitting_size(text, scale_ * help_size, width, height));
   show(help_, text);
   if (!text.empty()) panel_->VisibilityOff();
 }

@@ -17,7 +17,11 @@
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
+
+#include "viewer/window/lux_classes.h"
 
 namespace lightwell {
 namespace {
@@ -40,14 +44,47 @@ vtkSmartPointer<vtkActor> make_part_actor(vtkPolyData* data, bool is_glass) {
   return actor;
 }
 
+/// Illuminance in 24 bits over the three bytes of a colour, which graphics hardware interpolates
+/// each by itself: a sum of interpolated bytes is the interpolated sum. A step is 0.008 lx; the
+/// largest value is above that of the sun.
+constexpr float largest_lux = 131072.0f, last_code = 16777215.0f;
+
+std::array<std::uint8_t, 3> lux_code(float lux) {
+  const float share = std::clamp(lux / largest_lux, 0.0f, 1.0f);
+  const auto code = static_cast<std::uint32_t>(std::lround(double{share} * double{last_code}));
+  return {static_cast<std::uint8_t>(code >> 16), static_cast<std::uint8_t>(code >> 8),
+          static_cast<std::uint8_t>(code)};
+}
+
+std::string class_program() {
+  const auto color = [](std::size_t reached) {
+    const Eigen::Array3f c = class_color(reached);
+    return fmt::format("vec3({:.6f}, {:.6f}, {:.6f})", c[0], c[1], c[2]);
+  };
+  std::string program = fmt::format(
+      "  float lux = dot(gl_FragData[0].rgb, vec3(65536.0, 256.0, 1.0)) * {:.9g};\n"
+      "  vec3 of_class = {};\n",
+      255.0f * largest_lux / last_code, color(0));
+  for (std::size_t i = 0; i < lux_classes.size(); ++i) {
+    program += fmt::format("  if (lux >= {:.1f}) of_class = {};\n", lux_classes[i], color(i + 1));
+  }
+  return program + "  gl_FragData[0].rgb = of_class;\n";
+}
+
 /// Moves unlit faces back in depth, by the change of their depth over 4 pixels. Where a lit wall
 /// stands on a floor that is black underneath, dots of black would show along the edge otherwise.
 /// Dots were seen at 1 pixel, none from 2 on.
-void draw_behind(vtkActor* actor) {
-  actor->GetShaderProperty()->AddFragmentShaderReplacement(
-      "//VTK::Light::Impl", true,
-      "//VTK::Light::Impl\n  gl_FragDepth = gl_FragCoord.z + 4.0 * fwidth(gl_FragCoord.z);\n",
-      false);
+constexpr const char* behind_program =
+    "  gl_FragDepth = gl_FragCoord.z + 4.0 * fwidth(gl_FragCoord.z);\n";
+
+void set_program(vtkActor* actor, bool is_behind, bool shows_classes) {
+  vtkShaderProperty* const shaders = actor->GetShaderProperty();
+  shaders->ClearAllFragmentShaderReplacements();
+  if (!is_behind && !shows_classes) return;
+  const std::string program = std::string("//VTK::Light::Impl\n") +
+                              (shows_classes ? class_program() : "") +
+                              (is_behind ? behind_program : "");
+  shaders->AddFragmentShaderReplacement("//VTK::Light::Impl", true, program, false);
 }
 
 /// Edges of the spheres' elements, along the exact sphere.
@@ -125,7 +162,7 @@ SolutionActor::SolutionActor(const PatchMesh& mesh, const FineSpheres& spheres,
       data->SetPoints(points);
       data->GetPointData()->SetScalars(colors_);
       parts_.push_back({kind, is_fine, data, make_part_actor(data, kind == ElementKind::glass)});
-      if (kind == ElementKind::unlit) draw_behind(parts_.back().actor);
+      set_program(parts_.back().actor, kind == ElementKind::unlit, false);
     }
   }
   outlines_ = make_outlines(points, mesh.vertex_count(), spheres);
@@ -228,6 +265,7 @@ void SolutionActor::add_to(vtkRenderer* renderer) const {
 
 void SolutionActor::set_colors(const std::vector<std::uint8_t>& plain,
                                const std::vector<std::uint8_t>& codes) {
+  show_classes(false);
   unsigned char* next = std::copy(plain.begin(), plain.end(), colors_->GetPointer(0));
   for (const FineSpheres::Point& point : spheres_.points) {
     Eigen::Array3f color = Eigen::Array3f::Constant(0.5f);  // rounds to the nearest byte
@@ -249,6 +287,47 @@ void SolutionActor::set_colors(const std::vector<std::uint8_t>& plain,
     pictured.colors->Modified();
     pictured.part.data->Modified();
     show_picture(pictured, !codes.empty());
+  }
+}
+
+void SolutionActor::set_classes(const std::vector<float>& lux) {
+  unsigned char* next = colors_->GetPointer(0);
+  const auto append = [&next](float value) {
+    const auto code = lux_code(value);
+    next = std::copy(code.begin(), code.end(), next);
+  };
+  for (const float value : lux) append(value);
+  for (const FineSpheres::Point& point : spheres_.points) {
+    float value = 0.0f;
+    for (int c = 0; c < 4; ++c) {
+      if (point.vertex[c] < 0) continue;
+      value += point.weight[c] * lux[static_cast<std::size_t>(point.vertex[c])];
+    }
+    append(value);
+  }
+  colors_->Modified();
+  for (const Part& part : parts_) part.data->Modified();
+  for (const PicturedPart& pictured : pictured_) {
+    unsigned char* out = pictured.colors->GetPointer(0);
+    for (const int v : pictured.mesh_vertex) {
+      const auto code = lux_code(lux[static_cast<std::size_t>(v)]);
+      out = std::copy(code.begin(), code.end(), out);
+    }
+    pictured.colors->Modified();
+    pictured.part.data->Modified();
+    show_picture(pictured, false);
+  }
+  show_classes(true);
+}
+
+void SolutionActor::show_classes(bool shown) {
+  if (shown == shows_classes_) return;
+  shows_classes_ = shown;
+  for (const Part& part : parts_) {
+    set_program(part.actor, part.kind == ElementKind::unlit, shown);
+  }
+  for (const PicturedPart& pictured : pictured_) {
+    if (!pictured.part.actor->GetTexture()) set_program(pictured.part.actor, false, shown);
   }
 }
 

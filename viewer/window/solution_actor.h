@@ -40,6 +40,9 @@ class SolutionActor {
   /// Sets vertex colours, 3 bytes a vertex. `plain`: sRGB for elements without a texture. `codes`:
   /// light_codes() of a white texel for elements with a texture; empty: textures are not shown.
   void set_colors(const std::vector<std::uint8_t>& plain, const std::vector<std::uint8_t>& codes);
+  /// Shows instead the class of each point by its illuminance, interpolated from `lux` at vertices
+  /// (see lux_classes), so that borders between classes are sharp.
+  void set_classes(const std::vector<float>& lux);
   /// Shows or hides the outlines of elements.
   void show_mesh(bool shown);
   /// Draws surfaces without light in black, or leaves them out.
@@ -64,6 +67,8 @@ class SolutionActor {
   vtkSmartPointer<vtkCellArray> polygons_of(const PatchMesh& mesh, const Part& part,
                                             const std::vector<ElementKind>& kinds,
                                             const BandArray& radiance) const;
+  /// Adds or removes the program that turns coded illuminance into colours of classes.
+  void show_classes(bool shown);
   static void show_picture(const PicturedPart& pictured, bool shown);
   void add_pictures(const PatchMesh& mesh, const DrawnPictures& drawn);
 
@@ -72,6 +77,7 @@ class SolutionActor {
   vtkSmartPointer<vtkActor> outlines_;  ///< edges of the spheres' elements
   vtkSmartPointer<vtkUnsignedCharArray> colors_;
   std::vector<PicturedPart> pictured_;
+  bool shows_classes_ = false;
   std::vector<char> has_picture_;  ///< by element; empty: no textures
 };
 

@@ -1,15 +1,9 @@
 #include "viewer/window/solution_view.h"
 
-#include <vtkCallbackCommand.h>
 #include <vtkCamera.h>
-#include <vtkDoubleArray.h>
-#include <vtkLookupTable.h>
 #include <vtkNew.h>
-#include <vtkProperty2D.h>
 #include <vtkRenderWindow.h>
 #include <vtkRenderer.h>
-#include <vtkScalarBarActor.h>
-#include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
 
 #include <algorithm>
@@ -44,60 +38,6 @@ Eigen::Vector2d sample_offset(int sample) {
   int turned = 0;  // the sample's four bits in reverse order
   for (int bit = 0; bit < 4; ++bit) turned |= ((sample >> bit) & 1) << (3 - bit);
   return (Eigen::Vector2d(sample, turned).array() + 0.5) / samples_of_pixel - 0.5;
-}
-
-void set_range(vtkScalarBarActor* legend, const LuxRange& range) {
-  constexpr int entries = 256;
-  vtkNew<vtkLookupTable> table;
-  table->SetNumberOfTableValues(entries);
-  if (!range.is_even()) table->SetScaleToLog10();
-  table->SetTableRange(range.low, range.high);
-  for (int i = 0; i < entries; ++i) {
-    const Eigen::Array3f c = false_color(static_cast<float>(i) / (entries - 1));
-    table->SetTableValue(i, c[0], c[1], c[2]);
-  }
-  legend->SetLookupTable(table);
-  vtkNew<vtkDoubleArray> labels;
-  for (const double value : scale_steps(range)) labels->InsertNextValue(value);
-  legend->SetCustomLabels(labels);
-}
-
-vtkSmartPointer<vtkScalarBarActor> make_legend() {
-  auto legend = vtkSmartPointer<vtkScalarBarActor>::New();
-  legend->UseCustomLabelsOn();
-  legend->SetLabelFormat("%.6g");
-  legend->DrawBackgroundOn();
-  legend->GetBackgroundProperty()->SetColor(0.05, 0.05, 0.05);
-  legend->GetBackgroundProperty()->SetOpacity(0.6);
-  legend->UnconstrainedFontSizeOn();
-  legend->SetMaximumWidthInPixels(80);
-  legend->GetPositionCoordinate()->SetCoordinateSystemToNormalizedViewport();
-  legend->SetHeight(0.5);
-  legend->SetVerticalTitleSeparation(10);  // pixels; the highest label is level with the bar's top
-  for (vtkTextProperty* text : {legend->GetTitleTextProperty(), legend->GetLabelTextProperty()}) {
-    text->SetFontSize(14);
-    text->ItalicOff();
-    text->BoldOff();
-    text->ShadowOn();
-  }
-  legend->VisibilityOff();
-  return legend;
-}
-
-/// Keeps the legend 92 pixels wide at the right edge, since its text does not shrink with the
-/// picture; in a picture below 256 pixels, 36 % of the width.
-void keep_at_edge(vtkRenderer* renderer, vtkScalarBarActor* legend) {
-  vtkNew<vtkCallbackCommand> before_drawing;
-  before_drawing->SetClientData(legend);
-  before_drawing->SetCallback([](vtkObject* caller, unsigned long, void* data, void*) {
-    constexpr double pixels = 92.0, from_edge = 6.0, most = 0.36;
-    const int width = std::max(1, static_cast<vtkRenderer*>(caller)->GetSize()[0]);
-    auto* const kept = static_cast<vtkScalarBarActor*>(data);
-    const double share = std::min(most, pixels / width);
-    kept->SetWidth(share);
-    kept->GetPositionCoordinate()->SetValue(1.0 - share - from_edge / width, 0.25);
-  });
-  renderer->AddObserver(vtkCommand::StartEvent, before_drawing);
 }
 
 /// Linear light of each sRGB byte: the inverse of srgb_encode.
@@ -142,15 +82,13 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       radiance_(shown_radiance(solved, options.materials)),
       drawn_(pictures_of(options)),
       lux_(vertex_illuminance(solved.solution)),
-      lux_range_(given_measure_ == Measure::illuminance && given_range_ ? *given_range_
-                                                                        : lux_range(lux_)),
       bounds_(mesh_bounds(solved.mesh)),
       up_axis_(guess_up_axis(options.cameras, bounds_)),
       spheres_(fine_spheres(solved.mesh)),
       actor_(solved.mesh, spheres_, kinds_, radiance_, drawn_),
       sky_(scene_ ? effective_sky(*scene_, solved.mesh) : std::nullopt),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
-      legend_(make_legend()),
+      legend_(text_scale_of(options)),
       isolux_levels_(options.isolux) {
   if (options.camera) {
     start_camera_ = *options.camera;
@@ -167,8 +105,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   actor_.add_to(renderer_);
   if (sky_) outside_.emplace(*sky_).add_to(renderer_);
   isolux_.add_to(renderer_);
-  renderer_->AddViewProp(legend_);
-  keep_at_edge(renderer_, legend_);
+  legend_.add_to(renderer_);
   renderer_->SetBackground(0.0, 0.0, 0.0);
   look_.camera = start_camera_;
   look_.white = options.white;
@@ -178,8 +115,13 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   look_.unlit = !options.look_through && !options.from_outside;
   look_.illuminance = options.illuminance;
   look_.measure = options.measure;
+  look_.scaling = options.lux_classes ? Scaling::classes : Scaling::given;
   look_.interpolation_error = options.interpolation_error;
   look_.isolux = !options.isolux.empty();
+  lux_range_ = given_measure_ == Measure::illuminance && given_range_
+                   ? *given_range_
+                   : fitted(Measure::illuminance);
+  if (look_.measure != Measure::illuminance) fit_other();
   actor_.show_mesh(look_.mesh);
   actor_.show_unlit(look_.unlit);
   apply_legend();
@@ -210,8 +152,12 @@ Look SolutionView::metered(Look look, const Camera& camera) const {
 void SolutionView::set_look(const Look& look) {
   const bool recolor = (display_scale(look) != display_scale(look_)).any() ||
                        look.illuminance != look_.illuminance || look.measure != look_.measure ||
+                       look.scaling != look_.scaling ||
                        look.interpolation_error != look_.interpolation_error;
   look_ = look;
+  if (look.measure != Measure::illuminance && (!other_range_ || look.measure != other_measure_)) {
+    fit_other();
+  }
   actor_.show_mesh(look.mesh);
   actor_.show_unlit(look.unlit);
   apply_legend();
@@ -274,7 +220,7 @@ void SolutionView::light_arrived() {
   light_changed();
   actor_.set_shapes(solved_->mesh, kinds_, radiance_);
   if (given_range_ && given_measure_ == Measure::illuminance) return;
-  lux_range_ = lux_range(lux_);
+  lux_range_ = fitted(Measure::illuminance);
   apply_legend();
   if (look_.illuminance) apply_colors();
   isolux_is_stale_ = isolux_levels_.empty();
@@ -285,7 +231,10 @@ void SolutionView::apply_colors() {
   // The sky has neither irradiance nor interpolation error.
   if (outside_) outside_->show(!look_.interpolation_error && !look_.illuminance);
   if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_), {});
-  if (look_.illuminance) return actor_.set_colors(false_colors(measured(), measured_range()), {});
+  if (shows_classes()) return actor_.set_classes(lux_);
+  if (look_.illuminance) {
+    return actor_.set_colors(false_colors(measured(look_.measure), measured_range()), {});
+  }
   const Bands& bands = solved_->solution.bands;
   const Eigen::Array3f scale = display_scale(look_);
   if (outside_) outside_->expose(bands, scale);
@@ -294,17 +243,56 @@ void SolutionView::apply_colors() {
   actor_.set_colors(display_colors(radiance_, bands, scale), codes);
 }
 
-std::vector<float> SolutionView::measured() const {
-  if (look_.measure == Measure::luminance) {
-    return luminous_rows(radiance_, solved_->solution.bands);
-  }
-  if (look_.measure == Measure::illuminance) return lux_;
+std::vector<float> SolutionView::measured(Measure measure) const {
+  if (measure == Measure::luminance) return luminous_rows(radiance_, solved_->solution.bands);
+  if (measure == Measure::illuminance) return lux_;
   return unshot_.empty() ? std::vector<float>(lux_.size(), 0.0f) : unshot_;
 }
 
+bool SolutionView::shows_classes() const {
+  return look_.illuminance && !look_.interpolation_error && look_.measure == Measure::illuminance &&
+         look_.scaling == Scaling::classes;
+}
+
+LuxRange SolutionView::fitted(Measure measure) const {
+  const std::vector<float> values = measured(measure);
+  const BandArray column =
+      Eigen::Map<const Eigen::ArrayXf>(values.data(), static_cast<Eigen::Index>(values.size()));
+  const Image seen = coarse_picture(caster_, kinds_, column, look_.camera, metering_width);
+  const std::vector<float> in_view(seen.radiance.data(),
+                                   seen.radiance.data() + seen.radiance.size());
+  const bool is_lit = std::ranges::any_of(in_view, [](float value) { return value > 0.0f; });
+  return lux_range(is_lit ? in_view : values);
+}
+
+void SolutionView::fit_other() {
+  const bool is_given = given_range_ && look_.measure == given_measure_;
+  other_measure_ = look_.measure;
+  other_range_ = is_given ? *given_range_ : fitted(look_.measure);
+}
+
+void SolutionView::fit_range() {
+  if (look_.measure == given_measure_) given_range_.reset();
+  if (look_.measure == Measure::illuminance) {
+    lux_range_ = fitted(Measure::illuminance);
+    isolux_is_stale_ = isolux_levels_.empty();
+  } else {
+    fit_other();
+  }
+  apply_legend();
+  if (look_.illuminance) apply_colors();
+  apply_isolux();
+}
+
 LuxRange SolutionView::measured_range() const {
-  if (given_range_ && look_.measure == given_measure_) return *given_range_;
-  return look_.measure == Measure::illuminance ? lux_range_ : lux_range(measured());
+  const bool is_lux = look_.measure == Measure::illuminance || !other_range_;
+  LuxRange range = is_lux ? lux_range_ : *other_range_;
+  constexpr double three_decades = 1e-3;
+  if (look_.scaling == Scaling::linear) range.low = 0.0;
+  if (look_.scaling == Scaling::logarithmic && range.is_even()) {
+    range.low = three_decades * range.high;
+  }
+  return range;
 }
 
 void SolutionView::set_unshot(const Eigen::ArrayXf& unshot) {
@@ -320,23 +308,23 @@ void SolutionView::set_unshot(const Eigen::ArrayXf& unshot) {
   }
   for (std::size_t v = 0; v < unshot_.size(); ++v) unshot_[v] /= std::max(1.0f, patches[v]);
   if (look_.illuminance && look_.measure == Measure::unshot) {
+    fit_other();
     apply_legend();
     apply_colors();
   }
 }
 
 void SolutionView::apply_legend() {
-  legend_->SetVisibility(look_.illuminance || look_.interpolation_error);
   if (look_.interpolation_error) {
-    legend_->SetTitle("%");
-    return set_range(legend_, {.low = 0.1, .high = 10.0});  // range of error_colors()
+    return legend_.set({{.range = {.low = 0.1, .high = 10.0}, .unit = "%"}});  // of error_colors()
   }
-  if (!look_.illuminance) return;
+  if (!look_.illuminance) return legend_.set({});
   const char* const unit = look_.measure == Measure::illuminance ? "lx"
-                           : look_.measure == Measure::luminance ? "cd/m2"
-                                                                 : "lm/m2";
-  legend_->SetTitle(has_relative_units_ ? "relative" : unit);
-  set_range(legend_, measured_range());
+                           : look_.measure == Measure::luminance ? "cd/m\u00b2"
+                                                                 : "lm/m\u00b2";
+  legend_.set({{.range = measured_range(),
+                .unit = has_relative_units_ ? "relative" : unit,
+                .classes = shows_classes()}});
 }
 
 void SolutionView::apply_camera() {

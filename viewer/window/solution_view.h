@@ -9,14 +9,22 @@
 #include "viewer/export/appearance.h"
 #include "viewer/export/start_view.h"
 #include "viewer/window/isolux.h"
+#include "viewer/window/legend_actor.h"
 #include "viewer/window/sky_actor.h"
 #include "viewer/window/solution_actor.h"
 #include "viewer/window/view.h"
 
 class vtkRenderer;
-class vtkScalarBarActor;
 
 namespace lightwell {
+
+/// How numbers become false colours.
+enum class Scaling : std::uint8_t {
+  given,  ///< linear if the range begins at 0, else logarithmic
+  linear,
+  logarithmic,
+  classes,  ///< of illuminance: bands between the illuminances of lux_classes
+};
 
 /// Parameters of a picture of a solution.
 struct Look {
@@ -29,8 +37,9 @@ struct Look {
   bool unlit = true;         ///< draw surfaces without light in black; else leave them out
   bool illuminance = false;  ///< false colours of `measure`, with a legend
   Measure measure = Measure::illuminance;  ///< quantity of the false colours
-  bool interpolation_error = false;        ///< error_colors() instead of light or false colours
-  bool isolux = false;                     ///< lines of equal illuminance
+  Scaling scaling = Scaling::given;
+  bool interpolation_error = false;  ///< error_colors() instead of light or false colours
+  bool isolux = false;               ///< lines of equal illuminance
 };
 
 /// Factors from linear RGB to display values: exposure times white balance.
@@ -44,6 +53,13 @@ class SolutionView {
 
   const Look& look() const { return look_; }
   void set_look(const Look& look);
+  /// Fits the scale of the false colours shown to what the camera sees, also in place of a range of
+  /// the options.
+  void fit_range();
+  /// The scale of the false colours shown, in the unit of look().measure.
+  LuxRange measured_range() const;
+  /// True if false colours show the classes of illuminance.
+  bool shows_classes() const;
   /// Updates the picture after a change of the solution's light. The scale of false colours stays.
   void light_changed();
   /// Shows the light of `other` instead, a solution of the same mesh that must outlive the view.
@@ -75,9 +91,11 @@ class SolutionView {
   void apply_colors();
   void apply_legend();
   void apply_isolux();
-  /// Values of the false colours at vertices, in the unit of look().measure, and their range.
-  std::vector<float> measured() const;
-  LuxRange measured_range() const;
+  /// Values of a quantity at vertices, in its unit, and the range of those in view.
+  std::vector<float> measured(Measure measure) const;
+  LuxRange fitted(Measure measure) const;
+  /// Fits the range of look().measure, which is not illuminance.
+  void fit_other();
 
   /// The sky outside, scaled as in the solution; null: black.
   const Sky* sky() const { return sky_ ? &*sky_ : nullptr; }
@@ -96,7 +114,9 @@ class SolutionView {
   DrawnPictures drawn_;
   BandArray picture_gain_;  ///< see picture_gains(); empty without textures
   std::vector<float> lux_;
-  LuxRange lux_range_;  ///< range of illuminance
+  LuxRange lux_range_{};                   ///< range of illuminance
+  std::optional<LuxRange> other_range_{};  ///< range of other_measure_
+  Measure other_measure_ = Measure::luminance;
   Bounds bounds_;
   Eigen::Vector3d up_axis_;
   Camera start_camera_;
@@ -106,7 +126,7 @@ class SolutionView {
   std::optional<Sky> sky_;
   std::optional<SkyActor> outside_;
   vtkSmartPointer<vtkRenderer> renderer_;
-  vtkSmartPointer<vtkScalarBarActor> legend_;
+  LegendActor legend_;
   std::vector<double> isolux_levels_;  ///< levels of the options; empty: see isolux_levels()
   bool isolux_is_stale_ = true;
   IsoluxLines isolux_;

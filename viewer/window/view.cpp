@@ -16,15 +16,35 @@
 #include "viewer/window/marks.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/pointer_tools.h"
+#include "viewer/window/preparation.h"
 #include "viewer/window/solution_view.h"
+#include "viewer/window/waiting_window.h"
 #include "viewer/window/walk_window.h"
 #include "viewer/window/x_display.h"
 
 namespace lightwell {
 
+namespace {
+
+/// The options with a size of text for the screen.
+ViewOptions for_the_screen(ViewOptions options) {
+  if (!(options.text_scale > 0.0)) options.text_scale = screen_text_scale();
+  return options;
+}
+
+/// The options with a size of text for pictures: pictures higher than 800 pixels are shown on
+/// screens of more dots, or smaller.
+ViewOptions for_pictures(ViewOptions options) {
+  constexpr double height = 800.0;
+  if (!(options.text_scale > 0.0)) options.text_scale = std::max(1.0, options.height / height);
+  return options;
+}
+
+}  // namespace
+
 void show_window(const SolvedScene& solved, const ViewOptions& options) {
   const DisplayConnection display;
-  WalkWindow(solved, options).run();
+  WalkWindow(solved, for_the_screen(options)).run();
 }
 
 namespace {
@@ -54,7 +74,7 @@ class AnnotatedPictures {
  public:
   /// Keeps references to the view and the options.
   AnnotatedPictures(SolutionView& view, const ViewOptions& options)
-      : view_(view), options_(options) {
+      : view_(view), options_(options), overlay_(text_scale_of(options)) {
     overlay_.add_to(view.renderer());
     marks_.add_to(view.renderer());
   }
@@ -78,7 +98,7 @@ class AnnotatedPictures {
       for (const Eigen::Vector2d& place : *asked.measured) click(place);
     }
     marks_.set(pointer.marks());
-    overlay_.set_panel(pointer.panel(view_));
+    overlay_.set_panel(pointer.panel(view_), width, height);
     if (asked.pointer) {
       const double x = asked.pointer->x(), y = asked.pointer->y();
       require_within(options_, *asked.pointer);
@@ -101,18 +121,20 @@ class AnnotatedPictures {
 
 }  // namespace
 
-void write_snapshot(const SolvedScene& solved, const ViewOptions& options,
+void write_snapshot(const SolvedScene& solved, const ViewOptions& asked,
                     const std::filesystem::path& png) {
-  require_size(options);
+  require_size(asked);
+  const ViewOptions options = for_pictures(asked);
   const DisplayConnection display;
   SolutionView view(solved, options);
   write_png(png, options.width, options.height, AnnotatedPictures(view, options).draw());
 }
 
-std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& options,
+std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& asked,
                                               const FilmOptions& film, const std::string& pattern,
                                               const Progress& progress) {
-  require_size(options);
+  require_size(asked);
+  const ViewOptions options = for_pictures(asked);
   std::vector<std::filesystem::path> files;
   for (int i = 0; i < film.frames; ++i) files.push_back(frame_name(pattern, i));
   CameraPath path;
@@ -152,16 +174,26 @@ SolvedScene without_light(const LiveSolve& solve, const LiveViewOptions& live) {
 
 }  // namespace
 
-void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& options) {
+void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& asked) {
   const DisplayConnection display;
-  LiveSolve solve(scene, live.solve, live.provenance);
-  WalkWindow window(solve, without_light(solve, live), options);
-  solve.start();
+  const ViewOptions options = for_the_screen(asked);
+  const std::string file = std::filesystem::path(live.provenance.scene_file).filename().string();
+  WaitingWindow waiting(window_title(file), options.width, options.height, text_scale_of(options));
+  Preparation preparation(scene, live);
+  const bool is_ready = waiting.run([&]() -> std::optional<std::string> {
+    if (preparation.is_done()) return std::nullopt;
+    return preparation.status();
+  });
+  if (!is_ready) return;
+  PreparedSolve prepared = preparation.take();
+  WalkWindow window(*prepared.solve, std::move(prepared.dark), options, &waiting.opened());
+  prepared.solve->start();
   window.run();
 }
 
 int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::span<const int> shots,
-                        const ViewOptions& options, const std::filesystem::path& png) {
+                        const ViewOptions& asked, const std::filesystem::path& png) {
+  const ViewOptions options = for_pictures(asked);
   ViewOptions strip = options;
   strip.width = options.width * static_cast<int>(shots.size());
   require_size(options);

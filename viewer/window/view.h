@@ -34,6 +34,9 @@ struct ViewOptions {
   int width = 1024, height = 768;  ///< pixels
   double exposure_ev = 0.0;        ///< stops on top of the automatic exposure
   WhitePoint white{};              ///< light that shows as grey
+  /// Size of text, as a multiple of 13 pixels; 0: by the resolution of the screen, and in pictures
+  /// off screen by their height.
+  double text_scale = 0.0;
   /// The scene's materials, which distinguish mirrors and glass from black surfaces; a solution
   /// alone has only diffuse light. May be empty.
   std::vector<Material> materials{};
@@ -44,7 +47,9 @@ struct ViewOptions {
   bool mesh = false;                      ///< begin with outlines of elements
   bool illuminance = false;               ///< begin in false colours of `measure`
   Measure measure = Measure::illuminance;
-  std::optional<LuxRange> lux_range{};  ///< range of `measure`; empty: chosen from the solution
+  bool lux_classes =
+      false;  ///< false colours of illuminance show the classes of lighting standards
+  std::optional<LuxRange> lux_range{};  ///< range of `measure`; empty: of what the first view shows
   /// Begin with the interpolation error estimated by refinement, in the false colours of
   /// error_colors(). The solution must have the error.
   bool interpolation_error = false;
@@ -63,6 +68,11 @@ struct ViewOptions {
   bool from_outside = false;  ///< begin outside, looking through, with all of the scene in view
   Annotations annotations{};  ///< for pictures off screen
 };
+
+/// ViewOptions::text_scale where it is known, else 1.
+inline double text_scale_of(const ViewOptions& options) {
+  return options.text_scale > 0.0 ? options.text_scale : 1.0;
+}
 
 /// Opens a window with the smooth-shaded solution and walk controls (the key H lists the controls);
 /// returns when the user closes the window. The automatic exposure is that of the second pass's

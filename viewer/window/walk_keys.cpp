@@ -39,9 +39,12 @@ std::span<const WalkWindow::Key> WalkWindow::keys() {
       Key{"+ -", "exposure, 1/3 stop", {"plus", "equal", "kp_add"}, &W::brighter},
       Key{"", "", {"minus", "kp_subtract"}, &W::darker},
       Key{"0", "expose for this view", {"0"}, &W::expose_for_view},
-      Key{"F2", "colours as lit, white by the light", {"f2"}, &W::switch_white},
+      Key{"F2", "white by the light, as lit", {"f2"}, &W::switch_white},
       Key{"V", "false colours of illuminance", {"v"}, &W::switch_false_colours},
-      Key{"U", "luminance, unshot light", {"u"}, &W::switch_measure},
+      Key{"U", "luminance; light to come", {"u"}, &W::switch_measure},
+      Key{"F5", "fit their scale to the view", {"f5"}, &W::fit_range},
+      Key{"F6", "linear, logarithmic scale", {"f6"}, &W::switch_scaling},
+      Key{"F7", "100 ... 750 lx of standards", {"f7"}, &W::switch_classes},
       Key{"I", "isolux lines", {"i"}, &W::switch_isolux},
       Key{"M", "mesh", {"m"}, &W::switch_mesh},
       Key{"X", "look through unlit surfaces", {"x"}, &W::switch_unlit},
@@ -59,9 +62,9 @@ std::span<const WalkWindow::Key> WalkWindow::keys() {
       Key{"K", "its colour", {"k"}, &W::next_colour},
       Key{"Ctrl+S", "save the solution as shown", {"ctrl+s"}, &W::save_solution},
       Key{"Z", "pause solving, go on", {"z"}, &W::switch_pause},
-      Key{"N", "one shot", {"n"}, &W::shoot_once},
-      Key{"B", "ambient term of unshot light", {"b"}, &W::switch_ambient},
-      Key{"Enter", "good enough: gather, save", {"return", "kp_enter"}, &W::stop_shooting},
+      Key{"N", "one step of solving", {"n"}, &W::shoot_once},
+      Key{"B", "guess of the light to come", {"b"}, &W::switch_ambient},
+      Key{"Enter", "good enough: finish, save", {"return", "kp_enter"}, &W::stop_shooting},
       Key{"H  ?", "this list", {"h", "question"}, &W::switch_help},
   };
   return table;
@@ -80,6 +83,8 @@ std::string walk_help() {
   }
   return text +
          "\n"
+         "Light still to come: what lamps and surfaces have not yet sent on while the scene is\n"
+         "solved. Key B adds a guess of it, spread evenly over the room.\n"
          "Mirrors are drawn as if matte, glass as a veil: what they show depends on the eye,\n"
          "and is left to the ray-traced picture.";
 }

@@ -127,10 +127,10 @@ void WalkWindow::shoot_once() {
 
 void WalkWindow::switch_ambient() {
   if (!live_ || live_state_.phase > LivePhase::gathering) {
-    return say("no light is left unshot");
+    return say("all light has arrived");
   }
   ambient_ = !ambient_;
-  say(ambient_ ? "with the ambient term" : "without the ambient term");
+  say(ambient_ ? "with a guess of the light to come" : "without a guess of the light to come");
   show_arriving_light();
 }
 

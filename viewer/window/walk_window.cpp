@@ -38,6 +38,14 @@ std::unique_ptr<SolvedScene> begin(const LiveSolve& live, SolvedScene dark) {
   return begun;
 }
 
+}  // namespace
+
+std::string window_title(const std::string& scene) {
+  return scene.empty() ? "Lightwell" : "Lightwell - " + scene;
+}
+
+namespace {
+
 std::string white_text(const WhitePoint& white) {
   switch (white.kind) {
     case WhitePoint::Kind::as_lit:
@@ -61,14 +69,15 @@ double walking_speed(double scene_diagonal) {
 WalkWindow::WalkWindow(const SolvedScene& solved, const ViewOptions& options)
     : WalkWindow(&solved, nullptr, nullptr, options) {}
 
-WalkWindow::WalkWindow(LiveSolve& live, SolvedScene dark, const ViewOptions& options)
-    : WalkWindow(nullptr, begin(live, std::move(dark)), &live, options) {
+WalkWindow::WalkWindow(LiveSolve& live, SolvedScene begun, const ViewOptions& options,
+                       const OpenWindow* opened)
+    : WalkWindow(nullptr, begin(live, std::move(begun)), &live, options, opened) {
   arrived_ = live.light();
   show_arriving_light();
 }
 
 WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> own, LiveSolve* live,
-                       const ViewOptions& options)
+                       const ViewOptions& options, const OpenWindow* opened)
     : options_(options),
       is_opened_(options.from_outside && !options.look_through),
       own_(std::move(own)),
@@ -79,8 +88,9 @@ WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> ow
       walking_(options.walk),
       lights_(view_->solved().solution),
       pointer_(options.scene, options.names),
-      window_(vtkSmartPointer<vtkRenderWindow>::New()),
-      interactor_(vtkSmartPointer<vtkRenderWindowInteractor>::New()) {
+      overlay_(text_scale_of(options)),
+      window_(opened ? opened->window : vtkSmartPointer<vtkRenderWindow>::New()),
+      interactor_(opened ? opened->interactor : vtkSmartPointer<vtkRenderWindowInteractor>::New()) {
   still_.add_to(view_->renderer());
   overlay_.add_to(view_->renderer());
   marks_.add_to(view_->renderer());
@@ -95,8 +105,8 @@ WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> ow
 
   const std::string scene =
       std::filesystem::path(solved().solution.provenance.scene_file).filename().string();
-  window_->SetWindowName(scene.empty() ? "Lightwell" : ("Lightwell - " + scene).c_str());
-  window_->SetSize(std::max(1, options_.width), std::max(1, options_.height));
+  window_->SetWindowName(window_title(scene).c_str());
+  if (!opened) window_->SetSize(std::max(1, options_.width), std::max(1, options_.height));
   window_->SetMultiSamples(4);
   window_->AddRenderer(view_->renderer());
   interactor_->SetRenderWindow(window_);
@@ -125,6 +135,7 @@ void WalkWindow::run() {
   report_held_keys_once(window_->GetGenericDisplayId());
   interactor_->CreateRepeatingTimer(frame_milliseconds);
   interactor_->Start();
+  window_->Finalize();  // whatever still runs ends out of sight
 }
 
 void WalkWindow::close() {
@@ -171,7 +182,12 @@ void WalkWindow::pointer_left() {
 void WalkWindow::tick(double seconds) {
   const bool walked = advance(std::min(seconds, longest_step));
   const auto [width, height] = size();
-  if (walked || width != drawn_width_ || height != drawn_height_) change(current_look());
+  const bool is_resized = width != drawn_width_ || height != drawn_height_;
+  if (walked || is_resized) change(current_look());
+  if (is_resized) {
+    overlay_.set_help(help_ ? walk_help() : "", width, height);
+    update_pointer();
+  }
   watch();
   advance_still();
   if (!message_.empty()) {
@@ -273,6 +289,32 @@ void WalkWindow::switch_white() {
   say(white_text(look.white));
 }
 
+void WalkWindow::fit_range() {
+  if (!view_->look().illuminance) return say("false colours are off; V or U shows them");
+  still_.discard();
+  view_->fit_range();
+  say("scale fitted to this view");
+}
+
+void WalkWindow::switch_scaling() {
+  Look look = current_look();
+  if (!look.illuminance) return say("false colours are off; V or U shows them");
+  const bool is_even = look.scaling != Scaling::classes && view_->measured_range().is_even();
+  look.scaling = is_even ? Scaling::logarithmic : Scaling::linear;
+  change(look);
+  say(is_even ? "logarithmic scale" : "linear scale");
+}
+
+void WalkWindow::switch_classes() {
+  Look look = current_look();
+  const bool is_shown = view_->shows_classes();
+  look.illuminance = true;
+  look.measure = Measure::illuminance;
+  look.interpolation_error = false;
+  look.scaling = is_shown ? Scaling::given : Scaling::classes;
+  change(look);
+}
+
 void WalkWindow::switch_mesh() {
   Look look = current_look();
   look.mesh = !look.mesh;
@@ -320,7 +362,7 @@ void WalkWindow::update_pointer() {
   pointer_.leave();
   if (pointer_x_ >= 0) pointer_.hover(*view_, pointer_x_ + 0.5, pointer_y_ + 0.5);
   overlay_.set_cursor(pointer_.beside_pointer(*view_), pointer_x_, pointer_y_, width, height);
-  overlay_.set_panel(help_ ? "" : pointer_.panel(*view_));
+  overlay_.set_panel(help_ ? "" : pointer_.panel(*view_), width, height);
   marks_.set(pointer_.marks());
   changed_ = true;
 }
@@ -344,8 +386,9 @@ void WalkWindow::update_text() {
   const Look& look = view_->look();
   const char* const measured = look.measure == Measure::illuminance ? "illuminance"
                                : look.measure == Measure::luminance ? "luminance"
-                                                                    : "unshot light";
+                                                                    : "light still to come";
   status_ = look.illuminance ? measured : fmt::format("{:+.1f} EV", look.exposure_ev);
+  if (view_->shows_classes()) status_ += " in classes of lighting standards";
   if (walking_) status_ += "   on foot";
   if (pivot_) status_ += "   orbiting";
   if (recording_) status_ += fmt::format("   recording {:.1f} s", path_seconds_);
@@ -356,7 +399,7 @@ void WalkWindow::update_text() {
   if (live_) status_ += "   " + text_of(live_state_);
   if (lights_.has_channels()) status_ += "   " + lights_.text();
   if (!message_.empty()) status_ += "   " + message_;
-  overlay_.set_status(status_);
+  overlay_.set_status(status_, size().first);
 }
 
 void WalkWindow::replace_view(const SolvedScene& solved) {

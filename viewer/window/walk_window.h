@@ -18,6 +18,7 @@
 #include "viewer/window/pointer_tools.h"
 #include "viewer/window/solution_view.h"
 #include "viewer/window/still.h"
+#include "viewer/window/waiting_window.h"
 #include "viewer/window/walk_body.h"
 #include "viewer/window/walk_state.h"
 
@@ -31,6 +32,9 @@ namespace lightwell {
 /// a blur.
 double walking_speed(double scene_diagonal);
 
+/// The title of a window that shows a scene file; empty: of no name.
+std::string window_title(const std::string& scene);
+
 /// Returns the list of keys that the window shows, in two columns.
 std::string walk_help();
 
@@ -38,9 +42,11 @@ std::string walk_help();
 class WalkWindow {
  public:
   WalkWindow(const SolvedScene& solved, const ViewOptions& options);
-  /// Shows light during progressive refinement, then the solution. `dark` is live.dark(), possibly
+  /// Shows light during progressive refinement, then the solution. `begun` is live.dark(), possibly
   /// with dimmed channels. The caller calls live.start(). Keeps a reference to `live`.
-  WalkWindow(LiveSolve& live, SolvedScene dark, const ViewOptions& options);
+  /// `opened` is a window that is on the screen already; null: a new one.
+  WalkWindow(LiveSolve& live, SolvedScene begun, const ViewOptions& options,
+             const OpenWindow* opened = nullptr);
   ~WalkWindow();
   WalkWindow(const WalkWindow&) = delete;
   WalkWindow& operator=(const WalkWindow&) = delete;
@@ -84,7 +90,7 @@ class WalkWindow {
   friend std::string walk_help();
 
   WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> own, LiveSolve* live,
-             const ViewOptions& options);
+             const ViewOptions& options, const OpenWindow* opened = nullptr);
   WalkKeys held_keys() const;
   void press_digit(int digit);
   void keep_bookmark(int digit);
@@ -102,6 +108,9 @@ class WalkWindow {
   void switch_false_colours();
   void switch_measure();
   void switch_white();
+  void fit_range();
+  void switch_scaling();
+  void switch_classes();
   void switch_mesh();
   void switch_unlit();
   void switch_isolux();

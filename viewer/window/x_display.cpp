@@ -5,6 +5,7 @@
 #include <vtkRenderWindow.h>
 #include <vtkSmartPointer.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <stdexcept>
@@ -24,6 +25,11 @@ constexpr std::chrono::milliseconds between_tries{50};
       "'xvfb-run -a lightwell view --offscreen OUT.png ...' (Debian packages xvfb, xauth and "
       "libgl1-mesa-dri)",
       what));
+}
+
+double scale_at(double dots_per_inch) {
+  constexpr double plain = 96.0, most = 4.0;
+  return std::clamp(dots_per_inch / plain, 1.0, most);
 }
 
 }  // namespace
@@ -56,9 +62,39 @@ struct DisplayConnection::Impl {
                display, "GLX", &opcode, &event, &error) != 0;
   }
 
+  double text_scale() const {
+    const auto* const resources = function<const char*(void*)>("XResourceManagerString")(display);
+    if (const auto scale = text_scale_in(resources ? resources : "")) return *scale;
+    constexpr double inch = 25.4;  // mm
+    const int pixels = function<int(void*, int)>("XDisplayWidth")(display, 0);
+    const int mm = function<int(void*, int)>("XDisplayWidthMM")(display, 0);
+    return mm > 0 ? scale_at(inch * pixels / mm) : 1.0;
+  }
+
   void* library = nullptr;
   void* display = nullptr;
 };
+
+std::optional<double> text_scale_in(std::string_view resources) {
+  constexpr std::string_view name = "Xft.dpi:";
+  for (std::size_t at = 0; at < resources.size();) {
+    const std::size_t end = std::min(resources.find('\n', at), resources.size());
+    std::string_view line = resources.substr(at, end - at);
+    at = end + 1;
+    if (!line.starts_with(name)) continue;
+    const double dpi = std::strtod(std::string(line.substr(name.size())).c_str(), nullptr);
+    if (dpi > 0.0) return scale_at(dpi);
+  }
+  return std::nullopt;
+}
+
+double screen_text_scale() {
+  DisplayConnection::Impl x;
+  const char* const name = std::getenv("DISPLAY");
+  if (!x.library || !name) return 1.0;
+  x.open(name);
+  return x.display ? x.text_scale() : 1.0;
+}
 
 DisplayConnection::DisplayConnection() : impl_(std::make_unique<Impl>()) {
   // The class of a new window object shows VTK's back end; no display is opened by its constructor.

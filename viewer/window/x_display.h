@@ -1,6 +1,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string_view>
 
 namespace lightwell {
 
@@ -18,8 +20,9 @@ class DisplayConnection {
   DisplayConnection(const DisplayConnection&) = delete;
   DisplayConnection& operator=(const DisplayConnection&) = delete;
 
- private:
   struct Impl;
+
+ private:
   std::unique_ptr<Impl> impl_;
 };
 
@@ -27,5 +30,13 @@ class DisplayConnection {
 /// series of releases and presses. `display` is an X Display or null. No effect if X does not offer
 /// this mode.
 void report_held_keys_once(void* display);
+
+/// Size of text for the screen that the environment's DISPLAY names, as a multiple of that at 96
+/// dots per inch, from 1 to 4: by the resource Xft.dpi, which desktops set, else by the screen's
+/// size in millimetres. 1 if neither is known.
+double screen_text_scale();
+
+/// The same of a list of X resources, lines such as "Xft.dpi: 192"; empty: the list has no Xft.dpi.
+std::optional<double> text_scale_in(std::string_view resources);
 
 }  // namespace lightwell

@@ -91,5 +91,25 @@ TEST_F(Legend, SmallPictureIsPutBesideAScaleThatIsWhole) {
   EXPECT_GT(lit, ticks + 20);
 }
 
+/// Ticks and numbers, the brightest pixels, end a pixel or more before each edge of the box.
+TEST_F(Legend, TicksAndNumbersAreInsideTheBox) {
+  for (const int font : {6, 14, 28}) {
+    for (const LegendPicture& box : {draw_legend({.low = 1, .high = 100000}, "lx", font, 300),
+                                     draw_legend({.low = 0, .high = 20}, "cd/m\u00b2", font, 100),
+                                     draw_class_legend(font, 200)}) {
+      int lit = 0;
+      for (int y = 0; y < box.height; ++y) {
+        for (int x = 0; x < box.width; ++x) {
+          const std::uint8_t* rgb = pixel(box, x, y);
+          if (std::min({rgb[0], rgb[1], rgb[2]}) < 128) continue;
+          ++lit;
+          EXPECT_TRUE(x > 0 && y > 0 && x < box.width - 1 && y < box.height - 1) << x << ' ' << y;
+        }
+      }
+      EXPECT_GT(lit, 20);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lightwell::legend_test

@@ -256,13 +256,13 @@ TEST(LiveWindow, ShowsPausesAndSaves) {
   tap("n");
   EXPECT_TRUE(comes_true([&] {
     window.tick(0.01);
-    return window.status().find("1 shots") != std::string::npos;
+    return window.status().find("step 1,") != std::string::npos;
   })) << window.status();
   EXPECT_TRUE(comes_true([&] {
     window.tick(0.01);
     return window.solved().solution.direct_irradiance.maxCoeff() > 0.0f;
   }));
-  EXPECT_NE(window.status().find("% unshot"), std::string::npos) << window.status();
+  EXPECT_NE(window.status().find("% still to come"), std::string::npos) << window.status();
   window.press("Control_L");
   tap("s");
   window.release("Control_L");

@@ -18,6 +18,7 @@
 #include "tests/viewer/pictured_wall.h"
 #include "tests/viewer/solved_box.h"
 #include "viewer/export/start_view.h"
+#include "viewer/window/lux_classes.h"
 #include "viewer/window/solution_view.h"
 #include "viewer/window/walk_window.h"
 #include "viewer/window/x_display.h"
@@ -321,6 +322,64 @@ TEST(Snapshot, MeasuresLuminanceAndUnshotLight) {
   view.set_unshot(Eigen::ArrayXf::Constant(5, 10.0f));
   const Picture picture{200, 150, draw_offscreen(view, 200, 150)};
   expect_pixel(picture.at(100, 75), quarter_up_the_scale(), "a quarter of 40 lm/m2");
+}
+
+/// Illuminance rises from 0 at the left to 1000 lx at the right of a square; each pixel has the
+/// class of its own illuminance, so the borders are at the tenths where the illuminance is that of
+/// a class.
+TEST(Snapshot, ClassesHaveSharpBorders) {
+  const Eigen::Array3f none = Eigen::Array3f::Zero();
+  const Eigen::Array3f most = Eigen::Array3f::Constant(1000.0f / 683.0f);
+  SolvedQuads quads;
+  quads.add({{{2, 0, 0}, {0, 0, 0}, {0, 2, 0}, {2, 2, 0}}}, {none, most, most, none});
+  const SolvedScene wall = quads.solved();
+  Camera camera = box_camera();
+  camera.position = {1, 1, -2};
+  ViewOptions options = options_for(camera);
+  options.illuminance = options.lux_classes = true;
+  options.width = 600;
+  const SolutionView view(wall, options);
+  const Picture picture{600, 150, draw_offscreen(view, 600, 150)};
+  // Seen from 2 m, 600 pixels are 4 tan 20 deg = 1.456 m; x = 1 is in the middle, and -x on the
+  // right.
+  const double metres = 4.0 * std::tan(20.0 * std::numbers::pi / 180.0) / 600.0;
+  int classes = 0;
+  for (int x = 5; x < 480; ++x) {
+    const double lux =
+        500.0 * (1.0 + std::abs((x + 0.5 - 300.0) * metres) * (x + 0.5 < 300.0 ? -1.0 : 1.0));
+    std::size_t reached = 0;
+    bool is_border = false;
+    for (const double limit : lux_classes) {
+      reached += lux >= limit;
+      is_border |= std::abs(lux - limit) < 500.0 * metres;  // a pixel that holds the border
+    }
+    if (is_border) continue;
+    const Eigen::Array3f c = 255.0f * class_color(reached);
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(picture.at(x, 75)[k], c[k], 2) << x << ' ' << lux;
+    classes |= 1 << reached;
+  }
+  EXPECT_EQ(classes, 0b11110) << "200, 300, 500 and 750 lx are crossed";
+}
+
+/// The scale is that of what the first camera sees, until it is fitted to another view.
+TEST(Snapshot, TheScaleIsThatOfTheView) {
+  SolvedQuads quads;
+  quads.add({{{0, 0, 0}, {0, 2, 0}, {2, 2, 0}, {2, 0, 0}}}, grey);
+  quads.add({{{7, 0, -9}, {9, 0, -9}, {9, 2, -9}, {7, 2, -9}}}, (100.0f * grey).eval());
+  const SolvedScene walls = quads.solved();
+  Camera camera = box_camera();
+  camera.position = {1, 1, -2};
+  ViewOptions options = options_for(camera);
+  options.illuminance = true;
+  SolutionView view(walls, options);
+  EXPECT_EQ(view.measured_range().high, 1000.0) << "683 lx";
+  Look look = view.look();
+  look.camera.position = {8, 1, -5};
+  look.camera.direction = {0, 0, -1};
+  view.set_look(look);
+  EXPECT_EQ(view.measured_range().high, 1000.0);
+  view.fit_range();
+  EXPECT_EQ(view.measured_range().high, 100000.0) << "68300 lx";
 }
 
 /// A given range holds for its own quantity; another quantity has an automatic scale.

@@ -142,6 +142,38 @@ TEST_F(WalkWindowTest, FalseColoursShowLuminanceOrIlluminance) {
   EXPECT_FALSE(window_.look().illuminance);
 }
 
+TEST_F(WalkWindowTest, KeysChooseTheScaleOfFalseColours) {
+  tap("F6");
+  EXPECT_NE(window_.message().find("false colours are off"), std::string::npos);
+  tap("v");
+  tap("F6");
+  EXPECT_EQ(window_.look().scaling, Scaling::linear);
+  tap("F6");
+  EXPECT_EQ(window_.look().scaling, Scaling::logarithmic);
+  tap("F7");
+  EXPECT_EQ(window_.look().scaling, Scaling::classes);
+  EXPECT_NE(window_.status().find("classes"), std::string::npos) << window_.status();
+  tap("F7");
+  EXPECT_EQ(window_.look().scaling, Scaling::given);
+  tap("F5");
+  EXPECT_NE(window_.message().find("fitted"), std::string::npos) << window_.message();
+}
+
+TEST_F(WalkWindowTest, AKeySwitchesTheWhite) {
+  tap("F2");
+  EXPECT_EQ(window_.look().white.kind, WhitePoint::Kind::automatic);
+  tap("F2");
+  EXPECT_EQ(window_.look().white.kind, WhitePoint::Kind::as_lit);
+  ViewOptions warm = options();
+  warm.white = {.kind = WhitePoint::Kind::black_body, .kelvin = 2700.0};
+  WalkWindow window(box_, warm);
+  for (const bool is_warm : {false, true}) {
+    window.press("F2");
+    window.release("F2");
+    EXPECT_EQ(window.look().white, is_warm ? warm.white : WhitePoint{});
+  }
+}
+
 TEST_F(WalkWindowTest, SwitchesSwitchOncePerPress) {
   for (const char* key : {"m", "v", "x"}) {
     send(vtkCommand::KeyPressEvent, key);
