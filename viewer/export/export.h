@@ -75,7 +75,6 @@ bool is_exported_library(const std::filesystem::path& mtl);
 /// default: lux_range() of the model's illuminance. `white`: light that shows as grey until the
 /// page's own choice. docs/export.md describes the data.
 void write_walkthrough(const std::filesystem::path& path, const BakedModel& model,
-                       const std::optional<LuxRange>& lux_range = {},
-                       const WhitePoint& white = {});
+                       const std::optional<LuxRange>& lux_range = {}, const WhitePoint& white = {});
 
 }  // namespace lightwell
