@@ -370,6 +370,10 @@ void add_live(CLI::App& command, ViewArguments& arguments) {
           "light channels that keys dim: per-luminaire (default for up to 8), NAME=PATTERN of "
           "emitters, which may be repeated, or off");
   arguments.mesh.add_to(command, live);
+  // Left out of --help, which has to fit a screen.
+  for (const char* const rare : {"--max-element-size", "--elements-per-patch-edge"}) {
+    command.get_option(rare)->group("");
+  }
 }
 
 }  // namespace

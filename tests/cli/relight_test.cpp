@@ -230,10 +230,10 @@ TEST_F(RelightCommand, MistakesAreExplained) {
       {"TwoChannels", solve_it + Words{"--channels", "a=desk*", "--channels", "b=*lamp"}, 3,
        "in two channels"},
       {"NoPattern", solve_it + Words{"--channels", "desk"}, 2,
-       "'desk' is not off, per-luminaire or NAME=PATTERN"},
+       "'desk' is not kinds, per-luminaire, off or NAME=PATTERN"},
       {"NoSuchChoice", solve_it + Words{"--channels", "per-lamp"}, 2, "per-luminaire"},
       {"BothWays", solve_it + Words{"--channels", "per-luminaire", "--channels", "desk=desk*"}, 2,
-       "only one kind"}};
+       "only one of them"}};
   for (const Mistake& mistake : mistakes) {
     const Ended ended = run(mistake.arguments);
     EXPECT_EQ(ended.code, mistake.code) << mistake << ": " << ended.err;
