@@ -21,11 +21,14 @@ namespace lightwell {
 /// Keeps references to caster and direct_light.
 class VertexLight {
  public:
-  /// Precondition: shots have the columns of `direct_light`.
-  VertexLight(const ElementCaster& caster, const DirectLight& direct_light);
+  /// Precondition: shots have the columns of `direct_light`. Reports "lamps" where there are free
+  /// sources. Throws Interrupted when progress says stop.
+  VertexLight(const ElementCaster& caster, const DirectLight& direct_light,
+              const Progress& progress = {});
 
-  /// Adds the irradiance that the shots bring to every vertex.
-  void receive(std::span<const ProgressiveRadiosity::Shot> shots);
+  /// Adds the irradiance that the shots bring to every vertex. Reports "shots". Throws Interrupted
+  /// when progress says stop; irradiance() then has part of the shots.
+  void receive(std::span<const ProgressiveRadiosity::Shot> shots, const Progress& progress = {});
 
   /// Irradiance so far: vertices x columns, W/m^2.
   const BandArray& irradiance() const { return irradiance_; }

@@ -56,18 +56,38 @@ struct LiveSolve::Impl {
         options(for_a_window(asked, of)),
         provenance(from),
         mesh(build_patches(of, options.mesh, options.run.progress)),
-        caster(mesh),
-        direct_light(of, mesh, options.channels),
+        caster(announced("lamps")),
+        direct_light(of, announced("lamps"), options.channels),
         paths(of, caster, options.form_factors.max_specular_depth),
-        progressive(of, mesh, cast_shots(caster, paths, options.progressive->most_rays),
+        progressive(of, announced("daylight"),
+                    interruptible(cast_shots(caster, paths, options.progressive->most_rays)),
                     *options.progressive, options.channels,
                     cast_free_light(of, caster, paths, direct_light, options.free_rays,
                                     options.run.progress)),
         begun(progressive.solution()),
-        vertex_light(caster, direct_light) {
+        vertex_light(caster, direct_light, options.run.progress) {
     shown.lacks_specular = std::ranges::any_of(of.surfaces, [&](const Surface& surface) {
       return of.materials[surface.material].is_specular();
     });
+  }
+
+  // The mesh, after a report that a phase of the construction begins.
+  const PatchMesh& announced(std::string_view phase) const {
+    report(options.run.progress, phase, 0.0);
+    return mesh;
+  }
+
+  // `rows` in slices, between which the thread of start() can end.
+  ShotRows interruptible(ShotRows rows) const {
+    return [this, rows = std::move(rows)](std::span<const RowRequest> requests,
+                                          std::span<EstimatedRow> result) {
+      constexpr std::size_t at_once = 16;
+      for (std::size_t first = 0; first < requests.size(); first += at_once) {
+        if (ending) throw Interrupted();
+        const std::size_t count = std::min(at_once, requests.size() - first);
+        rows(requests.subspan(first, count), result.subspan(first, count));
+      }
+    };
   }
 
   // Makes one shot, or one round up to a total of `shots`. False, with nothing
@@ -76,7 +96,13 @@ struct LiveSolve::Impl {
     const int done = progressive.shots();
     const int most = done < single_shots ? 1 : shots - done;
     if (most < 1 || !progressive.step(most)) return false;
-    vertex_light.receive(progressive.last_shots());
+    step_start = Clock::now();
+    vertex_light.receive(progressive.last_shots(), [this](std::string_view, double share) {
+      const std::lock_guard lock(mutex);
+      shown.step_share = share;
+      shown.seconds = shooting_seconds + seconds_since(step_start);
+      return !ending;
+    });
     return true;
   }
 
@@ -129,6 +155,7 @@ struct LiveSolve::Impl {
   RadiositySolution begun;  ///< before the first shot
   VertexLight vertex_light;
   double shooting_seconds = 0.0;
+  Clock::time_point step_start{};  ///< of the present shots, or step of the gathering
 
   // State shared with the thread of start().
   mutable std::mutex mutex{};
@@ -163,6 +190,7 @@ void LiveSolve::Impl::publish(bool always) {
   if (is_due) copy = light();
   const std::lock_guard lock(mutex);
   shown.shots = progressive.shots();
+  shown.step_share = 0.0;
   shown.unshot_share = unshot;
   shown.seconds = shooting_seconds;
   shown.seconds_left = seconds_left(shooting_seconds, progressive.done());
@@ -200,7 +228,7 @@ void LiveSolve::Impl::run(const Progress& watch) {
       shown.converged = progressive.has_converged();
     }
     const Clock::time_point start = Clock::now();
-    Clock::time_point step_start = start;
+    step_start = start;
     SolvedScene solved = finish([&](std::string_view phase, double share) {
       if (watch) watch(phase, share);
       const std::lock_guard lock(mutex);
@@ -265,9 +293,13 @@ std::string time_left(double seconds) {
 
 std::string text_of(const LiveState& state) {
   const std::string left = time_left(state.seconds_left);
+  const std::string step =
+      state.step_share > 0.0
+          ? fmt::format("step {} at {:.0f} %", state.shots + 1, 100.0 * state.step_share)
+          : fmt::format("step {}", state.shots);
   const std::string meter =
-      fmt::format("{:.3g} % still to come, step {}, {:.1f} s{}{}", 100.0 * state.unshot_share,
-                  state.shots, state.seconds, left.empty() ? "" : ", ", left);
+      fmt::format("{:.3g} % still to come, {}, {:.1f} s{}{}", 100.0 * state.unshot_share, step,
+                  state.seconds, left.empty() ? "" : ", ", left);
   const char* const lacks =
       state.lacks_specular ? " (light by way of mirrors and glass comes with the solution)" : "";
   switch (state.phase) {

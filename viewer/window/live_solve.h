@@ -36,7 +36,7 @@ struct LiveState {
   double unshot_share = 1.0;
   double seconds = 0.0;     ///< of work, without pauses
   std::string step{};       ///< step of the gathering
-  double step_share = 0.0;  ///< share of the step that is done, [0,1]
+  double step_share = 0.0;  ///< share of the step, or of a shot, that is done, [0,1]
   /// Estimated time to the end of the shooting, or of the step of the gathering, s; below 0: not
   /// known.
   double seconds_left = -1.0;
@@ -73,7 +73,8 @@ class LiveSolve {
   /// Cuts the scene into patches. `options.run.journal` is ignored; the thread of start() ignores
   /// `options.run.progress` too. Throws InputError where nothing emits light.
   LiveSolve(const Scene& scene, const SolveOptions& options, const Provenance& provenance);
-  /// Ends the thread: after the current step of shooting, or within a second while gathering.
+  /// Ends the thread: after the present sixteen rows of form factors or thousand vertices of a
+  /// shot, and at the next report while gathering.
   ~LiveSolve();
   LiveSolve(const LiveSolve&) = delete;
   LiveSolve& operator=(const LiveSolve&) = delete;

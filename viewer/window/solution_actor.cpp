@@ -62,13 +62,13 @@ std::string class_program() {
     return fmt::format("vec3({:.6f}, {:.6f}, {:.6f})", c[0], c[1], c[2]);
   };
   std::string program = fmt::format(
-      "  float lux = dot(gl_FragData[0].rgb, vec3(65536.0, 256.0, 1.0)) * {:.9g};\n"
+      "  float lux = dot(ambientColor + diffuseColor, vec3(65536.0, 256.0, 1.0)) * {:.9g};\n"
       "  vec3 of_class = {};\n",
       255.0f * largest_lux / last_code, color(0));
   for (std::size_t i = 0; i < lux_classes.size(); ++i) {
     program += fmt::format("  if (lux >= {:.1f}) of_class = {};\n", lux_classes[i], color(i + 1));
   }
-  return program + "  gl_FragData[0].rgb = of_class;\n";
+  return program + "  ambientColor = vec3(0.0);\n  diffuseColor = of_class;\n";
 }
 
 /// Moves unlit faces back in depth, by the change of their depth over 4 pixels. Where a lit wall
@@ -80,11 +80,12 @@ constexpr const char* behind_program =
 void set_program(vtkActor* actor, bool is_behind, bool shows_classes) {
   vtkShaderProperty* const shaders = actor->GetShaderProperty();
   shaders->ClearAllFragmentShaderReplacements();
-  if (!is_behind && !shows_classes) return;
-  const std::string program = std::string("//VTK::Light::Impl\n") +
-                              (shows_classes ? class_program() : "") +
-                              (is_behind ? behind_program : "");
-  shaders->AddFragmentShaderReplacement("//VTK::Light::Impl", true, program, false);
+  const auto append = [shaders](const std::string& place, const std::string& program) {
+    shaders->AddFragmentShaderReplacement(place, true, place + "\n" + program, false);
+  };
+  // Outlines of elements are drawn over the colours of classes.
+  if (shows_classes) append("//VTK::Color::Impl", class_program());
+  if (is_behind) append("//VTK::Light::Impl", behind_program);
 }
 
 /// Edges of the spheres' elements, along the exact sphere.

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "radiosity/solution/vtk_messages.h"
+#include "viewer/window/x_display.h"
 
 namespace lightwell {
 namespace {
@@ -73,7 +74,9 @@ bool WaitingWindow::run(const std::function<std::optional<std::string>()>& statu
   }
   interactor->RemoveObserver(events);
   opened_.window->RemoveRenderer(renderer_);
-  if (waiting.is_closed) opened_.window->Finalize();
+  if (waiting.is_closed) {
+    hide_window(opened_.window->GetGenericDisplayId(), opened_.window->GetGenericWindowId());
+  }
   return !waiting.is_closed;
 }
 

@@ -135,7 +135,8 @@ void WalkWindow::run() {
   report_held_keys_once(window_->GetGenericDisplayId());
   interactor_->CreateRepeatingTimer(frame_milliseconds);
   interactor_->Start();
-  window_->Finalize();  // whatever still runs ends out of sight
+  // Whatever still runs ends out of sight.
+  hide_window(window_->GetGenericDisplayId(), window_->GetGenericWindowId());
 }
 
 void WalkWindow::close() {

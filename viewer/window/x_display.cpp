@@ -111,6 +111,20 @@ DisplayConnection::DisplayConnection() : impl_(std::make_unique<Impl>()) {
 
 DisplayConnection::~DisplayConnection() = default;
 
+void hide_window(void* display, void* window) {
+  void* library = dlopen("libX11.so.6", RTLD_LAZY);
+  if (!library) return;
+  using Unmap = int (*)(void*, unsigned long);
+  using Sync = int (*)(void*, int);
+  const auto unmap = reinterpret_cast<Unmap>(dlsym(library, "XUnmapWindow"));
+  const auto sync = reinterpret_cast<Sync>(dlsym(library, "XSync"));
+  if (unmap && sync && display && window) {
+    unmap(display, reinterpret_cast<unsigned long>(window));
+    sync(display, 0);
+  }
+  dlclose(library);
+}
+
 void report_held_keys_once(void* display) {
   void* library = dlopen("libX11.so.6", RTLD_LAZY);
   if (!library) return;

@@ -31,6 +31,9 @@ class DisplayConnection {
 /// this mode.
 void report_held_keys_once(void* display);
 
+/// Takes a window of X off the screen at once. `display` is an X Display or null.
+void hide_window(void* display, void* window);
+
 /// Size of text for the screen that the environment's DISPLAY names, as a multiple of that at 96
 /// dots per inch, from 1 to 4: by the resource Xft.dpi, which desktops set, else by the screen's
 /// size in millimetres. 1 if neither is known.

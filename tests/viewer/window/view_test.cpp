@@ -332,6 +332,7 @@ TEST(Snapshot, ClassesHaveSharpBorders) {
   const Eigen::Array3f most = Eigen::Array3f::Constant(1000.0f / 683.0f);
   SolvedQuads quads;
   quads.add({{{2, 0, 0}, {0, 0, 0}, {0, 2, 0}, {2, 2, 0}}}, {none, most, most, none});
+  quads.add({{{0, 0, 0}, {-2, 0, 0}, {-2, 2, 0}, {0, 2, 0}}}, most);
   const SolvedScene wall = quads.solved();
   Camera camera = box_camera();
   camera.position = {1, 1, -2};
@@ -359,6 +360,17 @@ TEST(Snapshot, ClassesHaveSharpBorders) {
     classes |= 1 << reached;
   }
   EXPECT_EQ(classes, 0b11110) << "200, 300, 500 and 750 lx are crossed";
+
+  // The outline between both squares, of the highest class, is dark grey and a pixel wide.
+  options.mesh = true;
+  camera.position.x() = 0;
+  options.camera = camera;
+  const Picture outlined = draw(wall, options);
+  int darkest = 255;
+  for (int x = 297; x < 303; ++x) {
+    darkest = std::min(darkest, outlined.at(x, 75)[0]);
+  }
+  EXPECT_LT(darkest, 160) << "the highest class has 255 of red";
 }
 
 /// The scale is that of what the first camera sees, until it is fitted to another view.
