@@ -122,7 +122,8 @@ bool has_few_luminaires(const Scene& scene) {
 }
 
 bool is_by_default(const ChannelArguments& channels) {
-  return !channels.is_off && !channels.per_luminaire && channels.patterns.empty();
+  return !channels.is_off && !channels.by_kind && !channels.per_luminaire &&
+         channels.patterns.empty();
 }
 
 // Shows the scene while progressive refinement solves it.
