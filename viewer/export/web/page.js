@@ -401,6 +401,7 @@ class Page {
     this.walker.place();
     this.canvas.style.touchAction = 'none';
     this.picture.camera = mode === 'plan' ? this.plan.camera : this.camera;
+    this.picture.show_sky(mode !== 'plan');
     if (mode === 'orbit') {
       // Around what is looked at, if that is near enough to be part of the room.
       const hit = this.hit_at({x: 0, y: 0}), size = new Library.Vector3(...this.model.about.size);

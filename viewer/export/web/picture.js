@@ -56,11 +56,12 @@ uniform bool is_there;     // it has been decoded
 
 ${display_functions}
 
-// Distance to the nearest isolux line, in pixels. Where the illuminance is even there is none.
+// Distance to the nearest isolux line, in pixels. There is none where the illuminance is even, nor where it is so steep
+// that lines would run together, as on elements of a few pixels.
 float pixels_to_line(float E, float slope) {
   float nearest = 1e9;
   for (int i = 0; i < level_count; ++i) nearest = min(nearest, abs(E - levels[i]));
-  return slope > 1e-5 * E ? nearest / slope : 1e9;
+  return slope > 1e-5 * E && slope < 0.15 * E ? nearest / slope : 1e9;
 }
 
 void main() {
@@ -263,6 +264,11 @@ class Picture {
 
   /** `gains`: factors of the white balance. */
   set_scale(scale, gains) { this.uniforms.scale.value = gains.map((gain) => scale * gain); }
+
+  /** Behind a plan there is no sky. */
+  show_sky(on) {
+    if (this.sky) this.sky.mesh.visible = on;
+  }
 
   /** Tells the graphics card that the model has been mixed anew. */
   light_changed() {
