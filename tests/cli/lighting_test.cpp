@@ -272,7 +272,7 @@ TEST_F(DaylightReport, ThePageIsComplete) {
   report(daylit_room(true, true), {}, {"--observer", "eye", "-o", "a.html", "-o", "a.csv"});
   const std::string page = content_of(folder / "a.html");
   for (const char* piece :
-       {"Room &lt;1&gt; &amp; &quot;2&quot;", "<dt>Client</dt><dd>A &amp; B</dd>", "2026-11-26",
+       {"Room &lt;1> &amp; &quot;2&quot;", "<dt>Client</dt><dd>A &amp; B</dd>", "2026-11-26",
         "data:image/png;base64,", "View 'eye'", "class=\"wall\"", "class=\"pane\"",
         "class=\"edge\"", "class=\"luminaire\"", "class=\"eye\"", "class=\"iso\"", "x, m", "y, m",
         "1 : 40 on A4 paper", "class=\"north\"", "<b>electric light</b>", "<b>daylight</b>"}) {
