@@ -30,14 +30,22 @@ namespace {
 
 // Area of the emitting sides, m^2: both sides if the material emits from both.
 double emitting_area(const Scene& scene, const Surface& surface) {
-  double area = 0.0;
-  if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-    area = 4.0 * std::numbers::pi * sphere->radius * sphere->radius;
-  } else {
-    const auto& mesh = std::get<PolygonMesh>(surface.shape);
-    for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
-  }
+  const double area = surface_area(surface);
   return scene.materials[surface.material].emits_both_sides ? 2.0 * area : area;
+}
+
+// Every surface: its name, material, number of facets (1 for a sphere) and area of one side, m^2.
+Json surfaces_json(const Scene& scene) {
+  Json surfaces = Json::array();
+  for (const Surface& surface : scene.surfaces) {
+    const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
+    surfaces.push_back(
+        {{"name", surface.name},
+         {"material", scene.materials[static_cast<std::size_t>(surface.material)].name},
+         {"facets", mesh ? mesh->facets.size() : 1},
+         {"area", surface_area(surface)}});
+  }
+  return surfaces;
 }
 
 Json emitters_json(const Scene& scene) {
@@ -306,7 +314,7 @@ Json picture_json(const Image& image) {
           {"largest", image.radiance.maxCoeff()}};
 }
 
-Json describe(const std::string& file, const CommonOptions& options) {
+Json describe(const std::string& file, bool with_surfaces, const CommonOptions& options) {
   const std::string extension = lower_extension(file);
   if (extension == ".vtp") return solution_json(read_solution(file));
   if (extension == ".exr") return picture_json(read_exr(file));
@@ -317,7 +325,9 @@ Json describe(const std::string& file, const CommonOptions& options) {
   }();
   refuse_losses(scene, options);
   std::ranges::copy(scene_hints(scene), std::back_inserter(scene.notes));
-  return scene_json(scene);
+  Json facts = scene_json(scene);
+  if (with_surfaces) facts["surface_list"] = surfaces_json(scene);
+  return facts;
 }
 
 // Prints each value on a line; in a list of objects and in the notes each item has a line.
@@ -358,7 +368,7 @@ void print_for_people(const Json& facts) {
 Action add_info(CLI::App& command) {
   struct Arguments {
     std::string file{};
-    bool ugr = false;
+    bool ugr = false, surfaces = false;
   };
   const auto arguments = std::make_shared<Arguments>();
   command.description(
@@ -367,6 +377,8 @@ Action add_info(CLI::App& command) {
   command.add_option("file", arguments->file, "the file")->required()->type_name("FILE");
   command.add_flag("--ugr", arguments->ugr,
                    "UGR table of a luminaire in the 19 standard rooms (CIE 117, CIE 190)");
+  command.add_flag("--surfaces", arguments->surfaces,
+                   "also each surface of a scene: name, material, facets, area");
   command.footer("Example: lightwell info cornell/cornell.toml");
   return [arguments](Console& console) {
     const std::string& file = arguments->file;
@@ -375,7 +387,7 @@ Action add_info(CLI::App& command) {
           "{}: '--ugr' is for luminaires (.ies, .ldt); 'lightwell report' has the UGR of a room",
           file));
     }
-    Json facts = describe(file, console.options());
+    Json facts = describe(file, arguments->surfaces, console.options());
     if (!arguments->ugr) {
       console.options().json ? print_json(facts) : print_for_people(facts);
       return int{exit_done};

@@ -72,8 +72,9 @@ int find_surface(const Scene& scene, const std::string& name) {
     if (scene.surfaces[i].name == name) return static_cast<int>(i);
     names.push_back(scene.surfaces[i].name);
   }
-  throw InputError(fmt::format("{}: there is no surface '{}'{}; 'lightwell info' lists them",
-                               scene.file.string(), name, did_you_mean(name, names)));
+  throw InputError(
+      fmt::format("{}: there is no surface '{}'.{} 'lightwell info {} --surfaces' lists all.",
+                  scene.file.string(), name, did_you_mean(name, names), scene.file.string()));
 }
 
 // One row per name of emitters and lamps. Installed power is that of the scene and its photometric

@@ -199,9 +199,11 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
         hits, [](const ElementHit& hit) { return hit.facet >= 0 && hit.from_back; });
   };
   const auto is_buried = [&](const Probe& point) {
-    const std::array<Eigen::Vector3d, 5> places = {
-        point.position, point.position + aside * grid.u, point.position - aside * grid.u,
-        point.position + aside * grid.v, point.position - aside * grid.v};
+    // Rays from within a surface would meet the surface itself.
+    const Eigen::Vector3d above = point.position + aside * point.normal;
+    const std::array<Eigen::Vector3d, 5> places = {above, above + aside * grid.u,
+                                                   above - aside * grid.u, above + aside * grid.v,
+                                                   above - aside * grid.v};
     return std::ranges::any_of(
         places, [&](const Eigen::Vector3d& place) { return is_inside(place, point.normal); });
   };

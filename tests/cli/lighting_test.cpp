@@ -317,6 +317,19 @@ TEST_F(ReportCommand, RefusesWhatItCannotMeasure) {
 
 class InfoCommand : public CommandTest {};
 
+TEST_F(InfoCommand, ListsTheSurfacesThatReportsName) {
+  folder.write("room.toml", small_room());
+  const Json list = run_json({"info", "room.toml", "--surfaces"})["surface_list"];
+  ASSERT_EQ(list.size(), 2u);
+  EXPECT_EQ(list[0]["name"], "room");
+  EXPECT_EQ(list[0]["facets"], 6);
+  // 2 (4 x 3 + 4 x 2.5 + 3 x 2.5) m2, a sum of six products of doubles.
+  EXPECT_NEAR(list[0]["area"].get<double>(), 59.0, 1e-13);
+  EXPECT_EQ(list[1]["material"], "panel");
+  EXPECT_TRUE(says(run({"info", "room.toml", "--surfaces"}).out, "room, material white, facets 6"));
+  EXPECT_FALSE(run_json({"info", "room.toml"}).contains("surface_list"));
+}
+
 TEST_F(InfoCommand, PrintsAndHandsOverTheUgrTable) {
   const std::string file = std::string(LIGHTWELL_TEST_DATA) + "/luminaires/ugr/sample_03.ldt";
   const Json ugr = run_json({"info", file, "--ugr"})["ugr"];

@@ -107,6 +107,21 @@ TEST(LuxGrid, LeavesOutWhatIsInsideOfBodies) {
   EXPECT_EQ(without_buried_points(lit.caster, above).points.size(), 64u);
 }
 
+/// A chest without a bottom stands on the floor that is measured.
+TEST(LuxGrid, LeavesOutWhatABodyStandsOn) {
+  const TracedScene lit(SceneBuilder()
+                            .box({}, {0, 0, 0}, {4, 4, 3}, true)
+                            .polygon({}, {{1, 1, 0.8}, {2, 1, 0.8}, {2, 2, 0.8}, {1, 2, 0.8}})
+                            .polygon({}, {{1, 1, 0}, {2, 1, 0}, {2, 1, 0.8}, {1, 1, 0.8}})
+                            .polygon({}, {{2, 1, 0}, {2, 2, 0}, {2, 2, 0.8}, {2, 1, 0.8}})
+                            .polygon({}, {{2, 2, 0}, {1, 2, 0}, {1, 2, 0.8}, {2, 2, 0.8}})
+                            .polygon({}, {{1, 2, 0}, {1, 1, 0}, {1, 1, 0.8}, {1, 2, 0.8}})
+                            .build());
+  const LuxGrid grid = lux_grid(lit.scene, 0, up, {.spacing = 0.5});
+  ASSERT_EQ(grid.points.size(), 64u);
+  EXPECT_EQ(without_buried_points(lit.caster, grid).points.size(), 60u);
+}
+
 /// Points every metre, of which two lie on the sides of a chest, one to its left and one to its
 /// right, and one inside.
 TEST(LuxGrid, LeavesOutWhatIsOnTheFacesOfBodies) {
