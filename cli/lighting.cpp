@@ -164,7 +164,7 @@ std::vector<LuxGrid> grids(const LightingArguments& arguments, const Scene& scen
 // The picture of the named camera, of the first one by default, with light from the solution alone.
 // Empty for a scene without cameras.
 std::optional<ReportPicture> picture_of(const LightingArguments& arguments, const Scene& scene,
-                                        const SolvedScene& solved) {
+                                        const SolvedScene& solved, const Progress& progress) {
   if (arguments.picture == no_picture || scene.cameras.empty()) return {};
   Camera camera =
       arguments.picture.empty() ? scene.cameras.front() : choose_camera(scene, arguments.picture);
@@ -172,7 +172,8 @@ std::optional<ReportPicture> picture_of(const LightingArguments& arguments, cons
   camera.height = std::max(1, static_cast<int>(std::lround(width * camera.height / camera.width)));
   camera.width = static_cast<int>(width);
   SceneRenderer renderer(scene, solved.mesh, solved.solution);
-  const Image image = renderer.render(camera, {.pass = Pass::interpolate, .photons = 0});
+  const Image image = renderer.render(
+      camera, {.pass = Pass::interpolate, .photons = 0, .run = {.progress = progress}});
   ToneMapping tone;
   if (const auto light = renderer.incident_light(camera)) tone.metered_scale = light->exposure;
   return ReportPicture{
@@ -252,7 +253,9 @@ int report_lighting(const LightingArguments& arguments, Console& console) {
     what.grids.push_back(without_buried_points(caster, std::move(grid)));
   }
   measure(scene, solved, what, made);
-  if (needs_picture(arguments)) made.picture = picture_of(arguments, scene, solved);
+  if (needs_picture(arguments)) {
+    made.picture = picture_of(arguments, scene, solved, console.progress());
+  }
   console.finish_phase();
   report.add_phase("measure", watch.seconds());
   const Json figures = figures_json(made);
@@ -310,7 +313,7 @@ Action add_report(CLI::App& command) {
       ->check(positive());
   command
       .add_option("--maintenance", arguments->maintenance_factor,
-                  "maintenance factor of all illuminances, above 0 up to 1 (default 1)")
+                  "maintenance factor of electric light, above 0 up to 1 (default 1)")
       ->type_name("FACTOR")
       ->check(CLI::Range(1e-6, 1.0).description(""));  // no ":FLOAT in ..." in --help
   command

@@ -137,7 +137,9 @@ int view_live(const ViewArguments& arguments, const Scene& scene, const ViewOpti
   }
   SolveArguments solving;
   solving.channels = arguments.kept_apart;
-  if (is_by_default(solving.channels)) solving.channels.per_luminaire = has_few_luminaires(scene);
+  if (is_by_default(solving.channels)) {
+    (has_few_luminaires(scene) ? solving.channels.per_luminaire : solving.channels.is_off) = true;
+  }
   solving.mesh = arguments.mesh;
   solving.solver = "progressive";
   LiveViewOptions live;
@@ -368,8 +370,8 @@ void add_live(CLI::App& command, ViewArguments& arguments) {
   arguments.kept_apart.add_to(command, live);
   command.get_option("--channels")
       ->description(
-          "light channels that keys dim: per-luminaire (default for up to 8), NAME=PATTERN of "
-          "emitters, which may be repeated, or off");
+          "light channels that keys dim: per-luminaire (default for up to 8), kinds (sky, sun and "
+          "electric light), off, or NAME=PATTERN of emitters, which may be repeated");
   arguments.mesh.add_to(command, live);
   // Left out of --help, which has to fit a screen.
   for (const char* const rare : {"--max-element-size", "--elements-per-patch-edge"}) {

@@ -33,7 +33,7 @@ bool is_even_over(const PatchMesh& mesh, const BandArray& E, int element) {
     least = c == 0 ? here : std::min(least, here);
     most = std::max(most, here);
   }
-  return most - least <= DomeOnMesh::even * most;
+  return most > 0.0f && most - least <= DomeOnMesh::even * most;
 }
 
 }  // namespace
@@ -45,8 +45,10 @@ DomeOnMesh dome_on_mesh(const PatchMesh& mesh, const DirectLight& direct_light,
   if (dome.irradiance.size() == 0) return {};
   dome.fine.resize(static_cast<std::size_t>(mesh.element_count()));
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const bool is_fine = solution.interpolation_error[e] <= DomeOnMesh::small_error ||
-                         is_even_over(mesh, dome.irradiance, e);
+    const float error = solution.interpolation_error[e];
+    const bool is_fine =
+        error <= DomeOnMesh::small_error ||
+        (error <= DomeOnMesh::most_error && is_even_over(mesh, dome.irradiance, e));
     dome.fine[static_cast<std::size_t>(e)] = is_fine ? 1 : 0;
   }
   return dome;

@@ -14,12 +14,14 @@ namespace lightwell {
 struct DomeOnMesh {
   BandArray irradiance{};  ///< at vertices, W/m^2; empty: not known apart from other light
   /// Per element, 1 where interpolation is as good as shadow rays: where the estimated error of
-  /// interpolated light is at most `small_error`, or the dome's light hardly differs between the
-  /// corners, so that the error is one of other light.
+  /// interpolated light is at most `small_error`. Up to `most_error` where the dome's light reaches
+  /// the corners and hardly differs between them, since the error is then mostly one of other
+  /// light. The estimates are those of the light as solved, also where lamps have been dimmed
+  /// since.
   std::vector<char> fine{};
 
   /// Relative RMS error, about the noise of the shadow rays of a pixel.
-  static constexpr float small_error = 0.02f;
+  static constexpr float small_error = 0.02f, most_error = 0.1f;
   /// Greatest difference between corners, as a share of the brightest, that counts as even. Over an
   /// element of that difference, light that is not linear but a parabola is off by an eighth of it.
   static constexpr float even = 0.15f;

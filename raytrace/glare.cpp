@@ -123,15 +123,12 @@ void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, doubl
               GlareSum& sum) {
   const double candela = luminous(scene.bands, light);
   if (!(candela > 0.0)) return;
-  // A flat opening seen edge on has no area, but a real one has a rim.
-  constexpr double rim = 0.05;
-  const double least = rim * luminous_area(lamp.opening, 0.0, Eigen::Vector3d::UnitZ());
+  const double least = rim_of_opening * luminous_area(lamp.opening, 0.0, Eigen::Vector3d::UnitZ());
   constexpr int places = opening_grid * opening_grid;
   for (int i = 0; i < places; ++i) {
     const Eigen::Vector3d point = opening_point(lamp, (i % opening_grid + 0.5) / opening_grid,
                                                 (i / opening_grid + 0.5) / opening_grid);
-    constexpr double before = 0.999;  // the holder around a lamp does not hide the lamp
-    if (!sum.counts(point) || sum.first_hit(point, before).facet >= 0) continue;
+    if (!sum.counts(point) || sum.first_hit(point, way_before_opening).facet >= 0) continue;
     const Eigen::Vector3d from = sum.position() - point;
     const double d = from.norm();
     const double I = candela * relative_intensity(lamp, from / d);

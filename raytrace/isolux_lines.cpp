@@ -113,6 +113,8 @@ std::vector<Isoline> isolux_lines(const LuxGrid& grid, const Eigen::ArrayXd& lux
 
 std::vector<double> isolux_values(double least, double greatest, int most) {
   std::vector<double> values;
+  constexpr double even = 0.01;  // light that differs by less has no lines worth a label
+  if (!(greatest - least > even * greatest)) return values;
   const auto add = [&](double value) {
     if (value > least && value < greatest) values.push_back(value);
   };
@@ -120,7 +122,7 @@ std::vector<double> isolux_values(double least, double greatest, int most) {
     for (const double step : {1.0, 1.5, 2.0, 3.0, 5.0, 7.5}) add(step * decade);
   }
   constexpr int fewest = 3;
-  if (static_cast<int>(values.size()) < fewest && greatest > least) {
+  if (static_cast<int>(values.size()) < fewest) {
     values.clear();
     constexpr double wanted = 5.0;
     const double coarse = (greatest - least) / wanted;

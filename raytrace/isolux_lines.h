@@ -22,7 +22,8 @@ std::vector<Isoline> isolux_lines(const LuxGrid& grid, const Eigen::ArrayXd& lux
 
 /// Values for the lines of a plan between `least` and `greatest`, at most `most` of them: from the
 /// scale of EN 12464-1 (20, 30, 50, 75, 100, 150, 200, 300, 500, 750, 1000, ... lx), or round even
-/// steps where fewer than three of the scale lie between the two.
+/// steps where fewer than three of the scale lie between the two. Empty if the two differ by less
+/// than 1 %.
 std::vector<double> isolux_values(double least, double greatest, int most = 8);
 
 }  // namespace lightwell

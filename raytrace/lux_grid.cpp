@@ -119,6 +119,18 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
     grid.u = along.normalized();
   }
   grid.v = plane.normal.cross(grid.u);
+  // Plans of walls stand upright.
+  constexpr double level = 0.1;  // sine of the slope of a plane that counts as level
+  if (std::max(std::abs(grid.u.dot(up)), std::abs(grid.v.dot(up))) > level) {
+    if (std::abs(grid.u.dot(up)) > std::abs(grid.v.dot(up))) {
+      grid.u = std::exchange(grid.v, Eigen::Vector3d(grid.u));
+      grid.u = -grid.u;
+    }
+    if (grid.v.dot(up) < 0.0) {
+      grid.u = -grid.u;
+      grid.v = -grid.v;
+    }
+  }
   FlatOutline outline;
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high = -low;
@@ -238,7 +250,13 @@ double relative_bound(const LuxField& field) {
 }  // namespace
 
 LuxField sum_of(const LuxField& a, const LuxField& b) {
-  LuxField sum{.lux = a.lux + b.lux, .lux_within = a.lux_within + b.lux_within};
+  // No bound is known where there is no light; then the bound is that of the other part.
+  const auto bound = [](const LuxField& part) {
+    return (part.lux == 0.0).select(0.0, part.lux_within).eval();
+  };
+  LuxField sum{.lux = a.lux + b.lux, .lux_within = bound(a) + bound(b)};
+  sum.lux_within =
+      (sum.lux == 0.0).select(std::numeric_limits<double>::quiet_NaN(), sum.lux_within);
   summarise(sum);
   if (!(sum.mean > 0.0)) return sum;
   sum.point_within = relative_bound(sum);

@@ -34,7 +34,7 @@ struct LuxGrid {
 
 /// Returns the grid over a surface: over the largest set of its facets that lie in one plane. Of
 /// two sets equal in area, the one that faces more towards `up` is taken. The axis u follows the
-/// longest edge of the outline.
+/// longest edge of the outline; of a plane that is not level, v points upwards and u is level.
 ///
 /// The spacing follows from the longer side, or from the shorter side if their ratio exceeds 2:1
 /// (EN 12464-1). Throws InputError if:

@@ -207,7 +207,7 @@ BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const Ga
       .besides = of_read_error * read_errors(lit, solution, radiosity, points, at_probes.rays)};
   SureIrradiance sure = sure_gather(lit, radiosity, points, at_probes, goal);
   bounds->lux_within = (sure.lux_within.square() + caustics.lux_within.square()).sqrt();
-  bounds->read_within = goal.besides;
+  bounds->read_within = (goal.besides.square() + caustics.lux_within.square()).sqrt();
   bounds->missed = sure.missed;
   return std::move(sure.irradiance);
 }

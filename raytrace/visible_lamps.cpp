@@ -5,14 +5,14 @@
 #include <numbers>
 #include <variant>
 
+#include "raytrace/glare.h"
 #include "scene/lamp.h"
 
 namespace lightwell {
 namespace {
 
 double area_of(const LampOpening& opening) {
-  const double box = opening.along_c0 * opening.along_c90;
-  return opening.is_round ? 0.25 * std::numbers::pi * box : box;
+  return luminous_area(opening, 0.0, Eigen::Vector3d::UnitZ());
 }
 
 // Adds the opening of a lamp as one group: a quad, or a fan of triangles for an ellipse.
@@ -66,6 +66,7 @@ VisibleLamps::VisibleLamps(const Scene& scene, const DirectLight& direct_light)
 
 std::optional<VisibleLamps::Seen> VisibleLamps::first(const Ray& ray, double end) const {
   if (!caster_) return {};
+  end /= way_before_opening;
   Ray rest{.origin = ray.origin, .direction = ray.direction, .t_max = end};
   // A ray passes an opening that sends no light its way; few openings stand one behind another.
   constexpr int most_passed = 8;
@@ -77,10 +78,10 @@ std::optional<VisibleLamps::Seen> VisibleLamps::first(const Ray& ray, double end
     const Lamp& lamp = scene_.lamps[static_cast<std::size_t>(number)];
     const double share = relative_intensity(lamp, -ray.direction);
     if (share > 0.0) {
-      // Luminous sides, which the flat opening stands for, keep their luminance near the plane.
-      constexpr double grazing = 0.1;  // cosine of 84 degrees
-      const double cosine = std::max(grazing, std::abs(ray.direction.dot(lamp.axes.col(2))));
-      const auto per_area = static_cast<float>(share / (cosine * area_of(lamp.opening)));
+      const Eigen::Vector3d way = lamp.axes.transpose() * -ray.direction;
+      const double area =
+          std::max(luminous_area(lamp.opening, 0.0, way), rim_of_opening * area_of(lamp.opening));
+      const auto per_area = static_cast<float>(share / area);
       return Seen{number, intensity_[static_cast<std::size_t>(number)] * per_area};
     }
     rest.origin += hit.t * rest.direction;

@@ -26,7 +26,9 @@ class VisibleLamps {
     int lamp = 0;         ///< index into Scene::lamps
     Spectrum radiance{};  ///< towards the ray's origin, W/(m^2 sr)
   };
-  /// The first opening along a ray before `end`, m. The ray's direction has unit length.
+  /// The first opening along a ray before `end`, m, the distance of the first surface: an opening
+  /// in the plane of that surface is seen (see way_before_opening). The ray's direction has unit
+  /// length.
   std::optional<Seen> first(const Ray& ray, double end) const;
 
  private:

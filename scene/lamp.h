@@ -39,9 +39,8 @@ struct LampOpening {
   bool is_point() const { return !(along_c0 > 0.0 || along_c90 > 0.0); }
 };
 
-/// A light source that is no surface: rays of light do not meet a lamp. Pictures show its opening.
-/// The
-/// intensity in a direction is `intensity` times relative_intensity().
+/// A light source that is no surface: rays of light do not meet a lamp. Pictures show the opening
+/// of a lamp. The intensity in a direction is `intensity` times relative_intensity().
 struct Lamp {
   std::string name{};
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, the middle of the opening

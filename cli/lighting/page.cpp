@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <iterator>
+#include <set>
 #include <utility>
 
 #include "cli/lighting/plan_svg.h"
@@ -72,6 +73,12 @@ std::string small_within(const LuxField& field, double lux) {
   (field.lux - lux).abs().minCoeff(&at);
   const double within = field.lux_within[at];
   return std::isfinite(within) ? fmt::format(" <small>± {}</small>", lux_text(within)) : "";
+}
+
+// The bound of the mean; none without light, where nothing is known.
+std::string mean_within(const LuxField& field) {
+  if (!(field.mean > 0.0)) return {};
+  return fmt::format(" <small>± {}</small>", lux_text(field.mean_within * field.mean));
 }
 
 void add_heading(const LightingReport& report, std::string& page) {
@@ -153,12 +160,11 @@ void add_table(const LightingReport& report, std::string& page) {
         escaped(surface.grid.name), surface.grid.points.size());
     for (const auto& [name, field] : fields_of(report, surface)) {
       fmt::format_to(out,
-                     "<tr class=\"kind\"><td>{}</td><td>{} <small>± {}</small></td><td>{}{}</td>"
+                     "<tr class=\"kind\"><td>{}</td><td>{}{}</td><td>{}{}</td>"
                      "<td>{}{}</td><td>{:.2f}</td><td></td></tr>\n",
-                     name, lux_text(field.mean), lux_text(field.mean_within * field.mean),
-                     lux_text(field.least), small_within(field, field.least),
-                     lux_text(field.greatest), small_within(field, field.greatest),
-                     field.uniformity);
+                     name, lux_text(field.mean), mean_within(field), lux_text(field.least),
+                     small_within(field, field.least), lux_text(field.greatest),
+                     small_within(field, field.greatest), field.uniformity);
     }
     page += "</tbody>";
   }
@@ -279,12 +285,13 @@ void add_plans(const LightingReport& report, const std::optional<LuxRange>& rang
     if (grid.options.margin > 0.0) {
       fmt::format_to(out, "Without a margin of {:g} m. ", grid.options.margin);
     }
-    fmt::format_to(out,
-                   "{:.2f} m × {:.2f} m, a point every {:.2f} m × {:.2f} m. Walls are cut {:.2f} m "
-                   "above the {}; lines of equal illuminance in lx.</p>\n",
-                   grid.columns * grid.step_u, grid.rows * grid.step_v, grid.step_u, grid.step_v,
-                   surface.lines.cut_height + grid.options.height,
-                   grid.options.height > 0.0 ? "surface below" : "surface");
+    fmt::format_to(
+        out,
+        "{:.2f} m × {:.2f} m, a point every {:.2f} m × {:.2f} m. Walls are cut {:.2f} m off "
+        "the {}; lines of equal illuminance in lx.</p>\n",
+        grid.columns * grid.step_u, grid.rows * grid.step_v, grid.step_u, grid.step_v,
+        surface.lines.cut_height + grid.options.height,
+        grid.options.height > 0.0 ? "surface below" : "surface");
     for (const auto& [name, field] : fields_of(report, surface)) {
       const bool is_sum = report.content == LightContent::apart && &field == &surface.field;
       if (is_sum) continue;
@@ -350,7 +357,8 @@ void add_observers(const LightingReport& report, std::string& page) {
   }
   page += "</table>\n";
   for (const Observer& observer : report.observers) add_sources(observer, page);
-  for (const std::string& lamp : report.observers.front().glare.left_out) {
+  const std::vector<std::string>& lamps = report.observers.front().glare.left_out;
+  for (const std::string& lamp : std::set<std::string>(lamps.begin(), lamps.end())) {
     fmt::format_to(out,
                    "<p>'{}' is a point without luminous area, for which there is no UGR.</p>\n",
                    escaped(lamp));

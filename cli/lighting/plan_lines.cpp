@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -208,61 +209,99 @@ void add_seen(const ElementCaster& caster, const PlanFrame& frame, const std::ve
   }
 }
 
-std::vector<Vector2d> opening_outline(const PlanFrame& frame, const Lamp& lamp) {
+// An ellipse around `middle`, or a rectangle, of half sizes a and b along two directions.
+std::vector<Vector2d> outline_of(const PlanFrame& frame, const Vector3d& middle, const Vector3d& a,
+                                 const Vector3d& b, bool is_round) {
+  const auto at = [&](double x, double y) { return frame.flat(middle + x * a + y * b); };
+  if (!is_round) return {at(1, 1), at(-1, 1), at(-1, -1), at(1, -1)};
   constexpr int sides = 32;
-  constexpr double of_a_point = 0.12;  // m, size of the sign of a lamp without an opening
-  const bool is_point = lamp.opening.is_point();
-  const double a = 0.5 * (is_point ? of_a_point : lamp.opening.along_c0);
-  const double b = 0.5 * (is_point ? of_a_point : lamp.opening.along_c90);
-  const auto at = [&](double x, double y) {
-    return frame.flat(lamp.position + x * lamp.axes.col(0) + y * lamp.axes.col(1));
-  };
-  if (!is_point && !lamp.opening.is_round) return {at(a, b), at(-a, b), at(-a, -b), at(a, -b)};
   std::vector<Vector2d> outline;
   for (int i = 0; i < sides; ++i) {
     const double turn = 2.0 * std::numbers::pi * i / sides;
-    outline.push_back(at(a * std::cos(turn), b * std::sin(turn)));
+    outline.push_back(at(std::cos(turn), std::sin(turn)));
   }
   return outline;
 }
 
-// Luminaires between the grid and a little above what is over it: not those of the next storey.
-void add_luminaires(const Scene& scene, const PlanFrame& frame, double free_height,
-                    PlanLines& plan) {
-  constexpr double ceiling_void = 0.3;  // m
-  constexpr std::size_t most = 5000;
-  const auto is_over = [&](const Vector3d& p) {
-    const double height = frame.height(p);
-    return height > 0.0 && height < free_height + ceiling_void && is_in(plan, frame.flat(p));
-  };
-  for (const Lamp& lamp : scene.lamps) {
-    if (!is_over(lamp.position) || plan.luminaires.size() >= most) continue;
-    plan.luminaires.push_back({opening_outline(frame, lamp), frame.flat(lamp.position)});
-  }
-  for_each_facet(scene, [&](const PolygonMesh& mesh, const Facet& facet, const Material& material) {
-    if (!material.is_emitter() || plan.luminaires.size() >= most) return;
-    Vector3d middle = Vector3d::Zero();
-    PlanLuminaire luminaire;
-    for (const int v : facet.boundary) {
-      const Vector3d& p = mesh.vertices[static_cast<std::size_t>(v)];
-      middle += p / static_cast<double>(facet.boundary.size());
-      luminaire.outline.push_back(frame.flat(p));
-    }
-    luminaire.middle = frame.flat(middle);
-    if (is_over(middle)) plan.luminaires.push_back(std::move(luminaire));
-  });
+PlanLuminaire luminaire_of(const PlanFrame& frame, const Lamp& lamp) {
+  constexpr double of_a_point = 0.12;  // m, size of the sign of a lamp without an opening
+  const bool is_point = lamp.opening.is_point();
+  const Vector3d a = 0.5 * (is_point ? of_a_point : lamp.opening.along_c0) * lamp.axes.col(0);
+  const Vector3d b = 0.5 * (is_point ? of_a_point : lamp.opening.along_c90) * lamp.axes.col(1);
+  return {{outline_of(frame, lamp.position, a, b, is_point || lamp.opening.is_round)},
+          frame.flat(lamp.position)};
 }
 
-void add_eyes(std::span<const Camera> eyes, const PlanFrame& frame, PlanLines& plan) {
+// One luminaire for all facets of a surface that emits.
+PlanLuminaire luminaire_of(const PlanFrame& frame, const PolygonMesh& mesh, Vector3d& middle) {
+  PlanLuminaire luminaire;
+  double area = 0.0;
+  middle.setZero();
+  for (const Facet& facet : mesh.facets) {
+    std::vector<Vector2d>& outline = luminaire.outlines.emplace_back();
+    Vector3d mean = Vector3d::Zero();
+    for (const int v : facet.boundary) {
+      const Vector3d& p = mesh.vertices[static_cast<std::size_t>(v)];
+      mean += p / static_cast<double>(facet.boundary.size());
+      outline.push_back(frame.flat(p));
+    }
+    const double here = facet_area(mesh, facet);
+    middle += here * mean;
+    area += here;
+  }
+  if (area > 0.0) middle /= area;
+  luminaire.middle = frame.flat(middle);
+  return luminaire;
+}
+
+// Luminaires and eyes between the grid and a little above what is over it: not those of another
+// storey.
+class OverTheGrid {
+ public:
+  OverTheGrid(const PlanFrame& frame, double free_height) : frame_(frame), top_(free_height) {}
+
+  bool holds(const PlanLines& plan, const Vector3d& p, double below) const {
+    constexpr double ceiling_void = 0.3;  // m
+    const double height = frame_.height(p);
+    return height > -below && height < top_ + ceiling_void && is_in(plan, frame_.flat(p));
+  }
+
+ private:
+  const PlanFrame& frame_;
+  double top_;
+};
+
+void add_luminaires(const Scene& scene, const PlanFrame& frame, const OverTheGrid& over,
+                    PlanLines& plan) {
+  for (const Lamp& lamp : scene.lamps) {
+    if (over.holds(plan, lamp.position, 0.0)) plan.luminaires.push_back(luminaire_of(frame, lamp));
+  }
+  for (const Surface& surface : scene.surfaces) {
+    if (!scene.materials[static_cast<std::size_t>(surface.material)].is_emitter()) continue;
+    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+      if (!over.holds(plan, sphere->center, 0.0)) continue;
+      const double r = sphere->radius;
+      plan.luminaires.push_back(
+          {{outline_of(frame, sphere->center, r * frame.grid.u, r * frame.grid.v, true)},
+           frame.flat(sphere->center)});
+      continue;
+    }
+    Vector3d middle;
+    PlanLuminaire luminaire = luminaire_of(frame, std::get<PolygonMesh>(surface.shape), middle);
+    if (over.holds(plan, middle, 0.0)) plan.luminaires.push_back(std::move(luminaire));
+  }
+}
+
+void add_eyes(std::span<const Camera> eyes, const PlanFrame& frame, const OverTheGrid& over,
+              PlanLines& plan) {
   int number = 0;
   for (const Camera& eye : eyes) {
     ++number;
-    const Vector2d position = frame.flat(eye.position);
-    if (!is_in(plan, position)) continue;
+    if (!over.holds(plan, eye.position, frame.grid.options.height)) continue;
     Vector2d direction(eye.direction.dot(frame.grid.u), eye.direction.dot(frame.grid.v));
     constexpr double upright = 0.1;
     direction = direction.norm() > upright ? Vector2d(direction.normalized()) : Vector2d::Zero();
-    plan.eyes.push_back({position, direction, number});
+    plan.eyes.push_back({frame.flat(eye.position), direction, number});
   }
 }
 
@@ -281,8 +320,9 @@ PlanLines plan_lines(const Scene& scene, const ElementCaster& caster, const LuxG
   });
   cut_spheres(scene, frame, plan);
   add_seen(caster, frame, edges_below(scene, frame, plan), plan);
-  add_luminaires(scene, frame, above, plan);
-  add_eyes(eyes, frame, plan);
+  const OverTheGrid over(frame, above);
+  add_luminaires(scene, frame, over, plan);
+  add_eyes(eyes, frame, over, plan);
   return plan;
 }
 

@@ -17,7 +17,8 @@ struct PlanSegment {
 
 /// A luminaire in a plan.
 struct PlanLuminaire {
-  std::vector<Eigen::Vector2d> outline{};  ///< of the opening, or of an emitting facet
+  /// Of the opening of a lamp, or of each facet of an emitting surface.
+  std::vector<std::vector<Eigen::Vector2d>> outlines{};
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
 };
 

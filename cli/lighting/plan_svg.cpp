@@ -134,12 +134,13 @@ void add_luminaires(const PlanLines& lines, const Paper& paper, std::string& svg
   const auto out = std::back_inserter(svg);
   for (const PlanLuminaire& luminaire : lines.luminaires) {
     const Vector2d at = paper.at(luminaire.middle);
+    std::string outlines;
+    for (const auto& outline : luminaire.outlines) outlines += path_of(outline, true, paper);
     constexpr double arm = 1.0;  // mm
     fmt::format_to(out,
                    "<path class=\"luminaire\" d=\"{}\"/><path class=\"cross\" "
                    "d=\"M{:.2f} {:.2f}h{:.2f}M{:.2f} {:.2f}v{:.2f}\"/>\n",
-                   path_of(luminaire.outline, true, paper), at.x() - arm, at.y(), 2.0 * arm, at.x(),
-                   at.y() - arm, 2.0 * arm);
+                   outlines, at.x() - arm, at.y(), 2.0 * arm, at.x(), at.y() - arm, 2.0 * arm);
   }
 }
 

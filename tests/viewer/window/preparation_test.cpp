@@ -150,7 +150,7 @@ TEST(LiveThread, EndsInEachPhaseAfterItsPresentStep) {
     seen.ask();
     // The destructor sets its request before it waits; the hook goes on once it has.
     std::thread release([&] {
-      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
       may_go_on = true;
     });
     live.reset();

@@ -239,12 +239,10 @@ class Page {
     return this.due = true;
   }
 
-  /** From the plan: the eye stands over that point, and looks level. */
+  /** From the plan: the eye stands on the plan's floor at that point, not on a table, and looks level. */
   stand_at(point) {
     const {camera, walker} = this, yaw = new Library.Euler().setFromQuaternion(camera.quaternion, 'YXZ').y;
-    const from = new Library.Vector3(point.x, this.plan.camera.position.y, point.z);
-    const floor = walker.first_hit(from, new Library.Vector3(0, -1, 0), Infinity)?.point.y ?? 0;
-    camera.position.set(point.x, floor + walker.normal_eye_height, point.z);
+    camera.position.set(point.x, this.plan.floor + walker.normal_eye_height, point.z);
     camera.quaternion.setFromEuler(new Library.Euler(0, yaw, 0, 'YXZ'));
     return this.set_mode('walk');
   }

@@ -26,8 +26,9 @@ class Plan {
     const [wide, high, deep] = this.size, cut_share = 0.9, margin = 1.12, aspect = width / height;
     const y_of = (way, otherwise) => this.first_hit(eye, new Library.Vector3(0, way, 0))?.point.y ?? otherwise;
     const floor = y_of(-1, 0), ceiling = y_of(1, high);
+    this.floor = floor;
     this.camera.aspect = aspect;
-    this.camera.span = margin * Math.max(deep * height / (height - top), wide / aspect) || 1;
+    this.camera.span = margin * Math.max(deep * height / Math.max(0.3 * height, height - top), wide / aspect) || 1;
     const lower = top / 2 * this.metres_per_pixel(height);
     this.camera.position.set(wide / 2, floor + cut_share * (ceiling - floor), deep / 2 - lower);
     this.camera.near = 0;
