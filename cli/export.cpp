@@ -206,7 +206,15 @@ void add_lightmap(CLI::App& command, ExportArguments& arguments) {
       ->needs(lightmap);
 }
 
-void check(const ExportArguments& arguments) {
+void check(const CLI::App& command, const ExportArguments& arguments) {
+  const auto is_page = [](const std::string& file) { return lower_extension(file) == ".html"; };
+  if (command.count("--sides") > 0 && std::ranges::all_of(arguments.outputs, is_page)) {
+    throw CLI::ValidationError(
+        "--sides", "is for models, and a page draws no backs; add '-o FILE.glb', or remove it");
+  }
+  if (command.count("--white-balance") > 0 && std::ranges::none_of(arguments.outputs, is_page)) {
+    throw CLI::ValidationError("--white-balance", "is for pages; add '-o FILE.html', or remove it");
+  }
   if (!arguments.lightmap) return;
   const bool has_glb = std::ranges::any_of(
       arguments.outputs, [](const std::string& file) { return lower_extension(file) == ".glb"; });
@@ -248,7 +256,7 @@ Action add_export(CLI::App& command) {
                     "temperature such as 2700K");
   add_sides(command, arguments->sides);
   add_lightmap(command, *arguments);
-  command.callback([arguments] { check(*arguments); });
+  command.callback([arguments, &command] { check(command, *arguments); });
   command.footer(
       "Example: lightwell export cornell.vtp --scene cornell/cornell.toml -o cornell.html");
   return [arguments](Console& console) { return export_model(*arguments, console); };

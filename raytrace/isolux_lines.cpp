@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "raytrace/round_step.h"
+
 namespace lightwell {
 namespace {
 
@@ -125,12 +127,7 @@ std::vector<double> isolux_values(double least, double greatest, int most) {
   if (static_cast<int>(values.size()) < fewest) {
     values.clear();
     constexpr double wanted = 5.0;
-    const double coarse = (greatest - least) / wanted;
-    const double power = std::pow(10.0, std::floor(std::log10(coarse)));
-    double step = 10.0 * power;
-    for (const double s : {5.0, 2.0, 1.0}) {
-      if (s * power >= coarse) step = s * power;
-    }
+    const double step = round_step((greatest - least) / wanted);
     for (double k = std::ceil(least / step); k * step < greatest; k += 1.0) add(k * step);
   }
   // The highest values have the most to say about a working plane.

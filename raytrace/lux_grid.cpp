@@ -249,6 +249,12 @@ double relative_bound(const LuxField& field) {
 
 }  // namespace
 
+double bound_at(const LuxField& field, double lux) {
+  Eigen::Index at = 0;
+  (field.lux - lux).abs().minCoeff(&at);
+  return field.lux_within[at];
+}
+
 LuxField sum_of(const LuxField& a, const LuxField& b) {
   // No bound is known where there is no light; then the bound is that of the other part.
   const auto bound = [](const LuxField& part) {

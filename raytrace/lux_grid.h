@@ -63,6 +63,10 @@ struct LuxField {
   double point_within = 0.0, mean_within = 0.0;
 };
 
+/// Bound of the error of the point whose illuminance is nearest to `lux`, lx; NaN where nothing is
+/// known. The field has at least one point.
+double bound_at(const LuxField& field, double lux);
+
 /// The sum of two kinds of light at the same points. Bounds add up: the errors of two gathers along
 /// the same directions are not independent.
 LuxField sum_of(const LuxField& a, const LuxField& b);

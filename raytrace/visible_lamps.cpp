@@ -17,26 +17,35 @@ double area_of(const LampOpening& opening) {
 
 // Adds the opening of a lamp as one group: a quad, or a fan of triangles for an ellipse.
 void add_opening(const Lamp& lamp, int group, CastGeometry& geometry) {
-  const auto vertex = [&](double x, double y) {
-    geometry.vertices.push_back(lamp.position + 0.5 * lamp.opening.along_c0 * x * lamp.axes.col(0) +
-                                0.5 * lamp.opening.along_c90 * y * lamp.axes.col(1));
-    return static_cast<int>(geometry.vertices.size()) - 1;
-  };
-  constexpr int sides = 48;
+  const std::vector<Eigen::Vector3d> outline = opening_outline(lamp);
+  const auto first = static_cast<int>(geometry.vertices.size());
+  geometry.vertices.insert(geometry.vertices.end(), outline.begin(), outline.end());
   if (!lamp.opening.is_round) {
-    geometry.quads.push_back({vertex(1, 1), vertex(-1, 1), vertex(-1, -1), vertex(1, -1)});
+    geometry.quads.push_back({first, first + 1, first + 2, first + 3});
     return;
   }
-  const int middle = vertex(0, 0);
-  for (int i = 0; i < sides; ++i) {
-    const double turn = 2.0 * std::numbers::pi * i / sides;
-    vertex(std::cos(turn), std::sin(turn));
-    geometry.triangles.push_back({middle, middle + 1 + i, middle + 1 + (i + 1) % sides});
+  for (int i = 1; i + 1 < static_cast<int>(outline.size()); ++i) {
+    geometry.triangles.push_back({first, first + i, first + i + 1});
     geometry.group.push_back(group);
   }
 }
 
 }  // namespace
+
+std::vector<Eigen::Vector3d> opening_outline(const Lamp& lamp) {
+  const auto at = [&](double x, double y) {
+    return Eigen::Vector3d(lamp.position + 0.5 * lamp.opening.along_c0 * x * lamp.axes.col(0) +
+                           0.5 * lamp.opening.along_c90 * y * lamp.axes.col(1));
+  };
+  if (!lamp.opening.is_round) return {at(1, 1), at(-1, 1), at(-1, -1), at(1, -1)};
+  constexpr int sides = 48;
+  std::vector<Eigen::Vector3d> outline;
+  for (int i = 0; i < sides; ++i) {
+    const double turn = 2.0 * std::numbers::pi * i / sides;
+    outline.push_back(at(std::cos(turn), std::sin(turn)));
+  }
+  return outline;
+}
 
 VisibleLamps::VisibleLamps(const Scene& scene, const DirectLight& direct_light)
     : scene_(scene), intensity_(scene.lamps.size()) {

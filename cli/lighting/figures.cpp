@@ -11,9 +11,7 @@ namespace {
 
 // Bound of the first point that has the given illuminance; null where nothing is known.
 Json within_of(const LuxField& field, double lux) {
-  Eigen::Index at = 0;
-  (field.lux - lux).abs().minCoeff(&at);
-  const double within = field.lux_within[at];
+  const double within = bound_at(field, lux);
   return std::isfinite(within) ? Json(within) : Json();
 }
 

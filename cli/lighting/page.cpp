@@ -47,14 +47,6 @@ svg text {{ font-family: system-ui, sans-serif; }} .value {{ font-size: 2.1px; t
 </style></head><body>
 )";
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    result += c == '<' ? "&lt;" : c == '&' ? "&amp;" : c == '"' ? "&quot;" : std::string(1, c);
-  }
-  return result;
-}
-
 // Text within quotes of a style sheet, without the characters that mean something there.
 std::string for_style(std::string text) {
   for (char& c : text) {
@@ -69,9 +61,7 @@ std::string percent(double share) {
 
 // The bound of the point with the given illuminance, for a table.
 std::string small_within(const LuxField& field, double lux) {
-  Eigen::Index at = 0;
-  (field.lux - lux).abs().minCoeff(&at);
-  const double within = field.lux_within[at];
+  const double within = bound_at(field, lux);
   return std::isfinite(within) ? fmt::format(" <small>± {}</small>", lux_text(within)) : "";
 }
 
@@ -81,31 +71,35 @@ std::string mean_within(const LuxField& field) {
   return fmt::format(" <small>± {}</small>", lux_text(field.mean_within * field.mean));
 }
 
+const char* light_words(LightContent content) {
+  return content == LightContent::electric   ? "electric light"
+         : content == LightContent::daylight ? "daylight"
+                                             : "electric light and daylight";
+}
+
 void add_heading(const LightingReport& report, std::string& page) {
   const auto out = std::back_inserter(page);
   const ReportHeading& heading = report.heading;
-  fmt::format_to(out, "<h1>{}</h1>\n<dl class=\"heading\">", escaped(report.title));
+  fmt::format_to(out, "<h1>{}</h1>\n<dl class=\"heading\">", html_text(report.title));
   for (const auto& [name, text] :
        {std::pair("Project", &heading.project), std::pair("Client", &heading.client),
         std::pair("Author", &heading.author), std::pair("Date", &heading.date),
         std::pair("Remarks", &heading.remarks)}) {
-    if (!text->empty()) fmt::format_to(out, "<dt>{}</dt><dd>{}</dd>", name, escaped(*text));
+    if (!text->empty()) fmt::format_to(out, "<dt>{}</dt><dd>{}</dd>", name, html_text(*text));
   }
   const Provenance& made = report.provenance;
   fmt::format_to(out, "<dt>Computed with</dt><dd>Lightwell {} from {} ({:016x})</dd></dl>\n",
-                 escaped(made.version),
-                 escaped(std::filesystem::path(made.scene_file).filename().string()),
+                 html_text(made.version),
+                 html_text(std::filesystem::path(made.scene_file).filename().string()),
                  made.scene_hash);
   if (!report.picture) return;
   const ReportPicture& picture = *report.picture;
   fmt::format_to(out,
                  "<figure><img width=\"{}\" height=\"{}\" alt=\"\" "
-                 "src=\"data:image/png;base64,{}\"><figcaption>View '{}', {}.</figcaption>"
+                 "src=\"data:image/png;base64,{}\"><figcaption>View '{}', by {}.</figcaption>"
                  "</figure>\n",
-                 picture.width, picture.height, base64(picture.png), escaped(picture.camera),
-                 report.content == LightContent::electric   ? "by electric light"
-                 : report.content == LightContent::daylight ? "by daylight"
-                                                            : "by electric light and daylight");
+                 picture.width, picture.height, base64(picture.png), html_text(picture.camera),
+                 light_words(report.content));
 }
 
 std::string content_text(const LightingReport& report) {
@@ -114,11 +108,11 @@ std::string content_text(const LightingReport& report) {
       return "All figures are of electric light: the scene has no daylight, or it is switched off.";
     case LightContent::daylight:
       return fmt::format("All figures are of daylight ({}): there is no electric light.",
-                         escaped(report.sky));
+                         html_text(report.sky));
     case LightContent::apart:
       return fmt::format(
           "Electric light and daylight ({}) were measured each by itself; 'both' is their sum.",
-          escaped(report.sky));
+          html_text(report.sky));
     case LightContent::together:
       break;
   }
@@ -126,7 +120,7 @@ std::string content_text(const LightingReport& report) {
       "<b>All figures contain electric light and daylight ({}) together</b>, since the solution "
       "does not keep them apart; the maintenance factor multiplies both. A solution by 'lightwell "
       "solve' without '--channels off' tells them apart.",
-      escaped(report.sky));
+      html_text(report.sky));
 }
 
 struct NamedField {
@@ -140,10 +134,7 @@ std::vector<NamedField> fields_of(const LightingReport& report, const Calculatio
             {"daylight", *surface.daylight},
             {"both", surface.field}};
   }
-  return {{report.content == LightContent::electric   ? "electric light"
-           : report.content == LightContent::daylight ? "daylight"
-                                                      : "electric light and daylight",
-           surface.field}};
+  return {{light_words(report.content), surface.field}};
 }
 
 void add_table(const LightingReport& report, std::string& page) {
@@ -157,7 +148,7 @@ void add_table(const LightingReport& report, std::string& page) {
         out,
         "<tbody><tr class=\"total\"><td>{}</td><td></td><td></td><td></td><td></td><td>{}"
         "</td></tr>\n",
-        escaped(surface.grid.name), surface.grid.points.size());
+        html_text(surface.grid.name), surface.grid.points.size());
     for (const auto& [name, field] : fields_of(report, surface)) {
       fmt::format_to(out,
                      "<tr class=\"kind\"><td>{}</td><td>{}{}</td><td>{}{}</td>"
@@ -193,7 +184,7 @@ void add_results(const LightingReport& report, std::string& page) {
     if (!power) continue;
     fmt::format_to(
         out, "<p>Installed power over {} ({:.1f} m²): {:.2f} W/m²{}.</p>\n",
-        escaped(surface.grid.name), surface.grid.area, power->watts_per_area,
+        html_text(surface.grid.name), surface.grid.area, power->watts_per_area,
         power->per_hundred_lux
             ? fmt::format(", {:.2f} W/m² per 100 lx of electric light", *power->per_hundred_lux)
             : "; W/m² per 100 lx is not known, since electric light is not");
@@ -219,9 +210,9 @@ void add_luminaires(const LightingReport& report, std::string& page) {
     fmt::format_to(out,
                    "<tr><td>{}</td><td class=\"text\">{}</td><td>{}</td><td>{:.0f}</td><td>{}</td>"
                    "<td>{}</td></tr>\n",
-                   escaped(row.name),
-                   row.file ? escaped(row.file->name.empty() ? row.file->file.filename().string()
-                                                             : row.file->name)
+                   html_text(row.name),
+                   row.file ? html_text(row.file->name.empty() ? row.file->file.filename().string()
+                                                               : row.file->name)
                             : "",
                    row.count, row.flux, row.watts > 0.0 ? fmt::format("{:.1f}", row.watts) : "–",
                    row.watts > 0.0 ? fmt::format("{:.1f}", row.flux / row.watts) : "–");
@@ -241,10 +232,10 @@ void add_schedule(const LightingReport& report, std::string& page) {
     const LuminaireFile& file = *row.file;
     fmt::format_to(out, "<div class=\"luminaire-card\">{}<div><h3>{}</h3><p>",
                    file.is_radiometric ? "" : polar_svg(file),
-                   escaped(file.name.empty() ? row.name : file.name));
-    if (!file.maker.empty()) fmt::format_to(out, "{}<br>", escaped(file.maker));
-    fmt::format_to(out, "{} of '{}', {}<br>", row.count, escaped(row.name),
-                   escaped(file.file.filename().string()));
+                   html_text(file.name.empty() ? row.name : file.name));
+    if (!file.maker.empty()) fmt::format_to(out, "{}<br>", html_text(file.maker));
+    fmt::format_to(out, "{} of '{}', {}<br>", row.count, html_text(row.name),
+                   html_text(file.file.filename().string()));
     if (!file.is_radiometric) {
       fmt::format_to(out, "Flux of the table {:.0f} lm", file.flux());
       if (file.lamp_lumens > 0.0) {
@@ -278,7 +269,7 @@ void add_plans(const LightingReport& report, const std::optional<LuxRange>& rang
   int number = 0;
   for (const CalculationSurface& surface : report.surfaces) {
     const LuxGrid& grid = surface.grid;
-    fmt::format_to(out, "<section class=\"surface\"><h2>{}</h2>\n<p>", escaped(grid.name));
+    fmt::format_to(out, "<section class=\"surface\"><h2>{}</h2>\n<p>", html_text(grid.name));
     if (grid.options.height > 0.0) {
       fmt::format_to(out, "{:g} m above the surface. ", grid.options.height);
     }
@@ -319,13 +310,13 @@ void add_sources(const Observer& observer, std::string& page) {
       out,
       "<h3>Luminaires in sight of {}</h3>\n<table><tr><th>luminaire</th><th>luminance, cd/m²</th>"
       "<th>solid angle, sr</th><th>p</th><th>share</th></tr>\n",
-      escaped(observer.name));
+      html_text(observer.name));
   double all = 0.0;
   for (const GlareSource& source : observer.glare.sources) all += source.share;
   for (const GlareSource& source : observer.glare.sources) {
     fmt::format_to(out,
                    "<tr><td>{}</td><td>{:.0f}</td><td>{:.3g}</td><td>{:.2f}</td><td>{}</td></tr>\n",
-                   escaped(source.name), source.luminance, source.solid_angle,
+                   html_text(source.name), source.luminance, source.solid_angle,
                    source.position_index, percent(source.share / all));
   }
   page += "</table>\n";
@@ -351,7 +342,7 @@ void add_observers(const LightingReport& report, std::string& page) {
         out,
         "<tr><td>{} {}</td><td>{:.4g}, {:.4g}, {:.4g}</td><td>{}</td><td>{:.4g}</td>"
         "</tr>\n",
-        ++number, escaped(observer.name), p.x(), p.y(), p.z(),
+        ++number, html_text(observer.name), p.x(), p.y(), p.z(),
         observer.glare.ugr ? fmt::format("{:.1f}", *observer.glare.ugr) : "none in sight",
         observer.glare.background);
   }
@@ -361,7 +352,7 @@ void add_observers(const LightingReport& report, std::string& page) {
   for (const std::string& lamp : std::set<std::string>(lamps.begin(), lamps.end())) {
     fmt::format_to(out,
                    "<p>'{}' is a point without luminous area, for which there is no UGR.</p>\n",
-                   escaped(lamp));
+                   html_text(lamp));
   }
 }
 
@@ -412,7 +403,7 @@ std::optional<PowerDensity> power_density(const LightingReport& report,
 
 std::string lighting_page(const LightingReport& report, const std::optional<LuxRange>& range) {
   std::string page =
-      fmt::format(fmt::runtime(page_head), escaped(report.title), for_style(report.title));
+      fmt::format(fmt::runtime(page_head), html_text(report.title), for_style(report.title));
   add_heading(report, page);
   add_results(report, page);
   add_luminaires(report, page);

@@ -11,6 +11,8 @@
 #include <utility>
 #include <variant>
 
+#include "raytrace/visible_lamps.h"
+
 namespace lightwell {
 namespace {
 
@@ -88,8 +90,8 @@ void for_each_edge(const PolygonMesh& mesh, const Facet& facet, Visit&& visit) {
   for (const auto& hole : facet.holes) around(hole);
 }
 
-// Where the plane at plan.cut_height crosses a facet: between the first and the second crossing of
-// its boundary along the line, between the third and the fourth, and so on.
+// Cuts a facet by the plane at plan.cut_height. The cut runs between the first and the second
+// crossing of the facet's boundary along the line, between the third and the fourth, and so on.
 void cut_facet(const PlanFrame& frame, const PolygonMesh& mesh, const Facet& facet, bool is_pane,
                PlanLines& plan) {
   const Vector3d along3 = facet_normal(mesh, facet).cross(frame.normal);
@@ -107,6 +109,17 @@ void cut_facet(const PlanFrame& frame, const PolygonMesh& mesh, const Facet& fac
   }
 }
 
+// The circle of a sphere.
+std::vector<Vector2d> circle_of(const Vector2d& middle, double radius) {
+  constexpr int sides = 48;
+  std::vector<Vector2d> circle;
+  for (int i = 0; i < sides; ++i) {
+    const double turn = 2.0 * std::numbers::pi * i / sides;
+    circle.push_back(middle + radius * Vector2d(std::cos(turn), std::sin(turn)));
+  }
+  return circle;
+}
+
 void cut_spheres(const Scene& scene, const PlanFrame& frame, PlanLines& plan) {
   for (const Surface& surface : scene.surfaces) {
     const auto* sphere = std::get_if<Sphere>(&surface.shape);
@@ -114,16 +127,12 @@ void cut_spheres(const Scene& scene, const PlanFrame& frame, PlanLines& plan) {
     const double height = frame.height(sphere->center);
     const double lowest = height - sphere->radius;
     if (lowest > plan.cut_height || height < -frame.grid.options.height - sphere->radius) continue;
-    constexpr int sides = 48;
     const double off = std::max(0.0, height - plan.cut_height);  // cut below the middle
     const double radius = std::sqrt(std::max(0.0, sphere->radius * sphere->radius - off * off));
-    const Vector2d middle = frame.flat(sphere->center);
-    const auto at = [&](int i) {
-      const double turn = 2.0 * std::numbers::pi * i / sides;
-      return Vector2d(middle + radius * Vector2d(std::cos(turn), std::sin(turn)));
-    };
-    for (int i = 0; i < sides; ++i) {
-      if (may_show(plan, at(i), at(i + 1))) plan.edges.push_back({at(i), at(i + 1)});
+    const std::vector<Vector2d> circle = circle_of(frame.flat(sphere->center), radius);
+    for (std::size_t i = 0; i < circle.size(); ++i) {
+      const Vector2d &from = circle[i], &to = circle[(i + 1) % circle.size()];
+      if (may_show(plan, from, to)) plan.edges.push_back({from, to});
     }
   }
 }
@@ -209,27 +218,14 @@ void add_seen(const ElementCaster& caster, const PlanFrame& frame, const std::ve
   }
 }
 
-// An ellipse around `middle`, or a rectangle, of half sizes a and b along two directions.
-std::vector<Vector2d> outline_of(const PlanFrame& frame, const Vector3d& middle, const Vector3d& a,
-                                 const Vector3d& b, bool is_round) {
-  const auto at = [&](double x, double y) { return frame.flat(middle + x * a + y * b); };
-  if (!is_round) return {at(1, 1), at(-1, 1), at(-1, -1), at(1, -1)};
-  constexpr int sides = 32;
-  std::vector<Vector2d> outline;
-  for (int i = 0; i < sides; ++i) {
-    const double turn = 2.0 * std::numbers::pi * i / sides;
-    outline.push_back(at(std::cos(turn), std::sin(turn)));
-  }
-  return outline;
-}
-
-PlanLuminaire luminaire_of(const PlanFrame& frame, const Lamp& lamp) {
-  constexpr double of_a_point = 0.12;  // m, size of the sign of a lamp without an opening
-  const bool is_point = lamp.opening.is_point();
-  const Vector3d a = 0.5 * (is_point ? of_a_point : lamp.opening.along_c0) * lamp.axes.col(0);
-  const Vector3d b = 0.5 * (is_point ? of_a_point : lamp.opening.along_c90) * lamp.axes.col(1);
-  return {{outline_of(frame, lamp.position, a, b, is_point || lamp.opening.is_round)},
-          frame.flat(lamp.position)};
+// The outline of an opening; a lamp without one has a sign in its place.
+PlanLuminaire luminaire_of(const PlanFrame& frame, Lamp lamp) {
+  constexpr double sign = 0.12;  // m
+  if (lamp.opening.is_point())
+    lamp.opening = {.along_c0 = sign, .along_c90 = sign, .is_round = true};
+  PlanLuminaire luminaire{.outlines = {{}}, .middle = frame.flat(lamp.position)};
+  for (const Vector3d& p : opening_outline(lamp)) luminaire.outlines[0].push_back(frame.flat(p));
+  return luminaire;
 }
 
 // One luminaire for all facets of a surface that emits.
@@ -280,10 +276,8 @@ void add_luminaires(const Scene& scene, const PlanFrame& frame, const OverTheGri
     if (!scene.materials[static_cast<std::size_t>(surface.material)].is_emitter()) continue;
     if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
       if (!over.holds(plan, sphere->center, 0.0)) continue;
-      const double r = sphere->radius;
-      plan.luminaires.push_back(
-          {{outline_of(frame, sphere->center, r * frame.grid.u, r * frame.grid.v, true)},
-           frame.flat(sphere->center)});
+      const Vector2d middle = frame.flat(sphere->center);
+      plan.luminaires.push_back({{circle_of(middle, sphere->radius)}, middle});
       continue;
     }
     Vector3d middle;

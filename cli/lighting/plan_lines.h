@@ -17,7 +17,7 @@ struct PlanSegment {
 
 /// A luminaire in a plan.
 struct PlanLuminaire {
-  /// Of the opening of a lamp, or of each facet of an emitting surface.
+  /// Outlines of the opening of a lamp, or of each facet of an emitting surface, m.
   std::vector<std::vector<Eigen::Vector2d>> outlines{};
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
 };

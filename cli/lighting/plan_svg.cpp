@@ -5,11 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <numbers>
 
+#include "raytrace/encode_png.h"
 #include "raytrace/isolux_lines.h"
+#include "raytrace/round_step.h"
 #include "scene/photometric_web.h"
+#include "viewer/export/page_data.h"
 
 namespace lightwell {
 namespace {
@@ -28,11 +32,6 @@ struct Paper {
   }
 };
 
-double place_of(double lux, const LuxRange& range) {
-  if (range.is_even()) return lux / range.high;
-  return lux > 0.0 ? std::log(lux / range.low) / std::log(range.high / range.low) : 0.0;
-}
-
 std::string hex_colour(double place) {
   const Eigen::Array3f c =
       255.0f * false_color(std::clamp(static_cast<float>(place), 0.0f, 1.0f)) + 0.5f;
@@ -40,13 +39,29 @@ std::string hex_colour(double place) {
                      static_cast<int>(c[2]));
 }
 
-// The smallest of 1, 2 and 5 times the powers of ten that is at least `least`.
-double round_step(double least) {
-  const double power = std::pow(10.0, std::floor(std::log10(least)));
-  for (const double step : {1.0, 2.0, 5.0}) {
-    if (step * power >= least * (1.0 - 1e-9)) return step * power;
+// Cells as one picture with a pixel each, for grids of so many points that a page of rectangles
+// would be too large to open.
+void add_cells_as_picture(const PlanContents& plan, const Paper& paper, std::string& svg) {
+  const LuxGrid& grid = plan.surface.grid;
+  std::vector<std::uint8_t> rgba(4 * static_cast<std::size_t>(grid.columns) *
+                                 static_cast<std::size_t>(grid.rows));
+  const std::vector<float> lux(plan.field.lux.begin(), plan.field.lux.end());
+  const std::vector<std::uint8_t> colours = false_colors(lux, plan.range);
+  for (std::size_t i = 0; i < grid.cell.size(); ++i) {
+    const int column = grid.cell[i] % grid.columns, row = grid.cell[i] / grid.columns;
+    const int pixel = (grid.rows - 1 - row) * grid.columns + column;
+    std::copy_n(colours.begin() + static_cast<std::ptrdiff_t>(3 * i), 3,
+                rgba.begin() + std::ptrdiff_t{4} * pixel);
+    rgba[4 * static_cast<std::size_t>(pixel) + 3] = 255;
   }
-  return 10.0 * power;
+  const Vector2d corner = paper.at({0.0, grid.step_v * grid.rows});
+  fmt::format_to(std::back_inserter(svg),
+                 "<image x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
+                 "preserveAspectRatio=\"none\" style=\"image-rendering: pixelated\" "
+                 "href=\"data:image/png;base64,{}\"/>\n",
+                 corner.x(), corner.y(), paper.mm * grid.step_u * grid.columns,
+                 paper.mm * grid.step_v * grid.rows,
+                 base64(encode_png(grid.columns, grid.rows, rgba)));
 }
 
 void add_cells(const PlanContents& plan, const Paper& paper, std::string& svg) {
@@ -63,7 +78,7 @@ void add_cells(const PlanContents& plan, const Paper& paper, std::string& svg) {
                    "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
                    "fill=\"{}\"><title>{} lx{}</title></rect>\n",
                    corner.x(), corner.y(), w + overlap, h + overlap,
-                   hex_colour(place_of(lux, plan.range)), lux_text(lux),
+                   hex_colour(place_on_scale(lux, plan.range)), lux_text(lux),
                    std::isfinite(within) ? " ± " + lux_text(within) : "");
   }
 }
@@ -80,7 +95,7 @@ void add_values(const PlanContents& plan, const Paper& paper, std::string& svg) 
     constexpr double bright = 0.55;  // place on the scale above which black is easier to read
     fmt::format_to(out, "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"value\" fill=\"{}\">{}</text>\n",
                    middle.x(), middle.y() + 0.35 * letters,
-                   place_of(lux, plan.range) < bright ? "#fff" : "#000", lux_text(lux));
+                   place_on_scale(lux, plan.range) < bright ? "#fff" : "#000", lux_text(lux));
   }
 }
 
@@ -255,7 +270,8 @@ void add_colour_scale(const LuxRange& range, const Paper& paper, double left, do
   }
   for (const double value : scale_steps(range)) {
     fmt::format_to(out, "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"axis right\">{:.6g} lx</text>\n",
-                   left + bar + 1.2, top + height * (1.0 - place_of(value, range)) + 0.8, value);
+                   left + bar + 1.2, top + height * (1.0 - place_on_scale(value, range)) + 0.8,
+                   value);
   }
 }
 
@@ -303,7 +319,12 @@ std::string plan_svg(const PlanContents& plan) {
       "<g clip-path=\"url(#area-{})\">\n",
       left, top, width, top + height + below, width, plan.number, paper.width(), paper.height(),
       plan.number);
-  add_cells(plan, paper, svg);
+  constexpr std::size_t most_rectangles = 5000;  // half a megabyte
+  if (plan.surface.grid.cell.size() <= most_rectangles) {
+    add_cells(plan, paper, svg);
+  } else {
+    add_cells_as_picture(plan, paper, svg);
+  }
   add_segments(plan.surface.lines.edges, "edge", paper, svg);
   add_segments(plan.surface.lines.walls, "wall", paper, svg);
   add_segments(plan.surface.lines.panes, "pane", paper, svg);

@@ -8,7 +8,7 @@
 
 namespace lightwell {
 
-/// What a plan shows.
+/// Contents of a plan.
 struct PlanContents {
   const CalculationSurface& surface;
   const LuxField& field;

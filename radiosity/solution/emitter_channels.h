@@ -42,13 +42,11 @@ inline constexpr int most_channels = 256;
 ///   - there are more than most_channels channels.
 EmitterChannels channels_by_pattern(const Scene& scene, std::span<const ChannelPattern> patterns);
 
-/// Names of the channels of channels_by_kind().
-inline constexpr const char* sky_channel = "sky";
-inline constexpr const char* sun_channel = "sun";
+/// Channel of lamps and emitting surfaces in channels_by_kind().
 inline constexpr const char* electric_channel = "electric";
 
-/// One channel for the dome of the sky, one for the sun and one for lamps and emitting surfaces, as
-/// far as the scene has them. Empty if the scene has but one of the three.
+/// One channel for the dome of the sky, "sky", one for the sun, "sun", and one for lamps and
+/// emitting surfaces, as far as the scene has them. Empty if the scene has but one of the three.
 EmitterChannels channels_by_kind(const Scene& scene);
 
 /// One channel per name of emitting surfaces and free sources, with that name. Throws InputError

@@ -12,7 +12,7 @@ namespace lightwell {
 struct LuminaireFile;
 using SharedLuminaireFile = std::shared_ptr<const LuminaireFile>;
 
-/// What a report prints at its top (the [report] table): text for people, each empty unless given.
+/// Heading of a report (the [report] table): text for people, each empty unless given.
 struct ReportHeading {
   std::string project{}, client{}, author{}, date{}, remarks{};
 };

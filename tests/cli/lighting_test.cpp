@@ -282,6 +282,43 @@ TEST_F(DaylightReport, ThePageIsComplete) {
             "surface,x,y,z,lux,lux_within,electric_lux,daylight_lux\n\"");
 }
 
+/// With the sky switched off, figures are those of the lamp alone.
+TEST_F(DaylightReport, OfARelitSolutionIsOfTheLightThatIsOn) {
+  const Json both = report(daylit_room(true, true), {}, {});
+  const Ended relit = run({"relight", "daylit.vtp", "--channel", "sky=off", "-o", "night.vtp"});
+  ASSERT_EQ(relit.code, 0) << relit.err;
+  const Json night =
+      run_json({"report", "daylit.toml", "night.vtp", "--plane", "floor@0.75", "--rays", "256"});
+  EXPECT_EQ(night["contains"], "electric");
+  // The same rays with the same light.
+  EXPECT_DOUBLE_EQ(night["surfaces"][0]["E_m"].get<double>(),
+                   both["surfaces"][0]["electric"]["E_m"].get<double>());
+}
+
+/// Names cannot end the page's title, style sheet or script, and a grid of one point has a plan.
+TEST_F(DaylightReport, TakesHostileNamesAndTheSmallestGrid) {
+  std::string scene = daylit_room(false, true);
+  const std::string title = R"(title = "Room <1> & \"2\"")";
+  const std::size_t at = scene.find(title);
+  ASSERT_NE(at, std::string::npos);
+  scene.replace(at, title.size(), R"(title = "</style><script>alert(1)</script>\n} *")");
+  const Json json = report(scene, {}, {"--surface", "table", "--spacing", "2", "-o", "a.html"});
+  EXPECT_EQ(json["surfaces"][0]["points"], 1);
+  const std::string page = content_of(folder / "a.html");
+  EXPECT_EQ(page.find("<script"), std::string::npos);
+  EXPECT_EQ(page.find("</style>"), page.rfind("</style>")) << "the page's own";
+}
+
+/// A grid of more than 5000 points is drawn as a picture.
+TEST_F(DaylightReport, DrawsLargeGridsAsPictures) {
+  report(daylit_room(false, true), {},
+         {"--surface", "floor", "--spacing", "0.04", "--picture", "none", "-o", "a.html"});
+  const std::string page = content_of(folder / "a.html");
+  EXPECT_TRUE(says(page, "image-rendering: pixelated"));
+  constexpr std::size_t a_megabyte = 1 << 20;
+  EXPECT_LT(page.size(), a_megabyte);
+}
+
 TEST_F(DaylightReport, APlaneAtHeightZeroIsTheSurfaceItself) {
   const Json json = report(daylit_room(false, true), {}, {"--plane", "floor@0", "--margin", "0.5"});
   ASSERT_EQ(json["surfaces"].size(), 2u);
@@ -323,7 +360,8 @@ TEST_F(InfoCommand, ListsTheSurfacesThatReportsName) {
   ASSERT_EQ(list.size(), 2u);
   EXPECT_EQ(list[0]["name"], "room");
   EXPECT_EQ(list[0]["facets"], 6);
-  // 2 (4 x 3 + 4 x 2.5 + 3 x 2.5) m2, a sum of six products of doubles.
+  // 2 (4 x 3 + 4 x 2.5 + 3 x 2.5) m2. Each of six products and sums rounds by 1.1e-16 of at most
+  // 59: 12 * 6.5e-15 = 8e-14.
   EXPECT_NEAR(list[0]["area"].get<double>(), 59.0, 1e-13);
   EXPECT_EQ(list[1]["material"], "panel");
   EXPECT_TRUE(says(run({"info", "room.toml", "--surfaces"}).out, "room, material white, facets 6"));

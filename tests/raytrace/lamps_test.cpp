@@ -139,18 +139,34 @@ TEST(LampPictures, ShowTheOpeningAsBrightAsItsIntensityOverItsArea) {
   Scene scene = room_with_panel({});
   const SolvedScene solved = solve_scene(scene, quick());
   const Eigen::Vector3d panel(2, 2, 2.8);
-  constexpr float rounding = 4e-6f;  // a few floats; the pixel is too small to change a cosine
+  // A pixel is the mean of its corners. A float rounds by 6e-8; intensity, area, radiance, mirror,
+  // weights and sums of four corners are some 30 operations: 2e-6, doubled for the caster's floats.
+  constexpr float rounding = 4e-6f;
   constexpr float L = 8.0f / 0.16f;  // straight below: I / A
   EXPECT_NEAR(middle_of(scene, solved, {2, 2, 1}, panel), L, rounding * L);
-  // At 45 degrees the opening looks smaller by the cosine, and the intensity is the same. Over a
-  // pixel of 0.01 degrees the cosine changes by 2e-4.
+  // At 45 degrees the opening looks smaller by the cosine, and the intensity is the same. Over half
+  // a pixel of 0.01 degrees, 8.7e-5 rad, the cosine changes by that share.
+  constexpr float half_pixel = 8.7e-5f;
   const float oblique = L / std::cos(std::numbers::pi_v<float> / 4.0f);
-  EXPECT_NEAR(middle_of(scene, solved, {0.9, 2, 1.7}, panel), oblique, 1e-3f * oblique);
+  EXPECT_NEAR(middle_of(scene, solved, {0.9, 2, 1.7}, panel), oblique, half_pixel * oblique);
   // The mirror of the floor shows it, half as bright: at (2, 2, -2.8).
   EXPECT_NEAR(middle_of(scene, solved, {2, 2, 1}, {2, 2, -2.8}), 0.5f * L, rounding * L);
   scene.lamps[0].visible = false;
-  // The ceiling behind it has rho I / (pi d^2) = 32 straight above a point, and less by an opening.
-  EXPECT_LT(middle_of(scene, solved, {2, 2, 1}, panel), 0.8f * L);
+  // Straight above a point lamp at a distance of d = 0.2 m the ceiling has rho I / (pi d^2) = 32 by
+  // direct light; an opening gives less. Reflected light adds at most E / pi of a closed room with
+  // reflectance 0.5, Phi rho / (A (1 - rho) pi) = 4 pi 8 / (80 pi) = 0.4.
+  EXPECT_LT(middle_of(scene, solved, {2, 2, 1}, panel), 32.4f);
+}
+
+TEST(LampPictures, ShowAnOpeningInThePlaneOfItsCeiling) {
+  Scene scene = room_with_panel({});
+  scene.lamps[0].position.z() = 3.0;
+  const SolvedScene solved = solve_scene(scene, quick());
+  constexpr float L = 8.0f / 0.16f;
+  for (const double x : {1.85, 1.95, 2.05, 2.15}) {
+    const Eigen::Vector3d from(x, 2.1, 1.0), to(x, 2.1, 3.0);
+    EXPECT_NEAR(middle_of(scene, solved, from, to), L, 4e-6f * L) << "rounding as above";
+  }
 }
 
 TEST(LampPictures, ShowNoOpeningThatSendsNoLightToTheEye) {

@@ -122,6 +122,26 @@ TEST(LuxGrid, LeavesOutWhatABodyStandsOn) {
   EXPECT_EQ(without_buried_points(lit.caster, grid).points.size(), 60u);
 }
 
+/// Walls of any order of corners: v is up, u is level, and u, v and the normal are right-handed.
+TEST(LuxGrid, OfAWallStandsUpright) {
+  for (const bool is_high : {false, true}) {
+    const double x = is_high ? 1.0 : 4.0, z = is_high ? 4.0 : 1.0;
+    const Scene scene = SceneBuilder()
+                            .polygon({}, {{0, 0, 0}, {x, 0, 0}, {x, 0, z}, {0, 0, z}})
+                            .polygon({}, {{0, 5, z}, {x, 5, z}, {x, 5, 0}, {0, 5, 0}})
+                            .build();
+    for (int surface = 0; surface < 2; ++surface) {
+      const LuxGrid grid = lux_grid(scene, surface, up, {.spacing = 0.5});
+      // Differences and quotients of a few doubles of 5.
+      constexpr double rounding = 1e-14;
+      EXPECT_NEAR(grid.v.dot(up), 1.0, rounding);
+      EXPECT_NEAR(grid.u.dot(up), 0.0, rounding);
+      EXPECT_NEAR(grid.u.cross(grid.v).dot(grid.points[0].normal), 1.0, rounding);
+      EXPECT_EQ(grid.columns, is_high ? 2 : 8);
+    }
+  }
+}
+
 /// Points every metre, of which two lie on the sides of a chest, one to its left and one to its
 /// right, and one inside.
 TEST(LuxGrid, LeavesOutWhatIsOnTheFacesOfBodies) {

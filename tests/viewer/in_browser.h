@@ -72,7 +72,7 @@ const driver = {
   tap(key, code = '') {
     for (const type of ['keydown', 'keyup']) window.dispatchEvent(new KeyboardEvent(type, {key, code}));
   },
-  // Of a finger, in pixels.
+  // Events of a finger at a place in pixels.
   touch(kind, id, x, y, target = element('view')) {
     const event = {pointerId: id, pointerType: 'touch', clientX: x, clientY: y, bubbles: true};
     target.dispatchEvent(new PointerEvent(`pointer${kind}`, event));

@@ -7,6 +7,7 @@
 
 #include "raytrace/display.h"
 #include "raytrace/light_meter.h"
+#include "raytrace/round_step.h"
 #include "scene/parallel.h"
 #include "scene/specular.h"
 
@@ -21,13 +22,9 @@ const Material* find_material(const PatchMesh& mesh, const std::vector<Material>
   return m < materials.size() ? &materials[m] : nullptr;
 }
 
-/// About five even steps, each 1, 2 or 5 times a power of ten.
+/// Even steps, each 1, 2 or 5 times a power of ten: at least two, at most five.
 std::vector<double> even_steps(double high) {
-  const double power = std::pow(10.0, std::floor(std::log10(high / 5.0)));
-  double step = 10.0 * power;
-  for (const double factor : {5.0, 2.0, 1.0}) {
-    if (factor * power * 4.0 >= 0.999 * high) step = factor * power;
-  }
+  const double step = round_step(0.999 * high / 4.0);
   std::vector<double> steps;
   for (int i = 0; i * step <= 1.001 * high; ++i) steps.push_back(i * step);
   return steps;
@@ -154,19 +151,10 @@ LuxRange lux_range(const std::vector<float>& lux) {
   const double darkest = lit.front();
   const double brightest =
       lit[static_cast<std::size_t>(0.995 * static_cast<double>(lit.size() - 1))];
-  // The nearest of 1, 2 and 5 times a power of ten that is >= value (up) or <= value (down).
-  const auto round = [](double value, bool up) {
-    const double power = std::pow(10.0, std::floor(std::log10(value)));
-    double result = up ? 10.0 * power : power;
-    for (const double step : {2.0, 5.0}) {
-      if (up && step * power >= value) return value <= power ? power : step * power;
-      if (!up && step * power <= value) result = step * power;
-    }
-    return result;
-  };
   LuxRange range;
-  range.high = round(brightest, true);
-  range.low = round(std::max(darkest, range.high / 1000.0), false);
+  range.high = round_step(brightest);
+  // 1, 2 and 5 times the powers of ten are also their own reciprocals times a power of ten.
+  range.low = 1.0 / round_step(1.0 / std::max(darkest, range.high / 1000.0));
   if (!(range.low < range.high)) range.low = range.high / 10.0;
   return range;
 }
@@ -187,6 +175,11 @@ std::vector<double> scale_steps(const LuxRange& range) {
   return steps;
 }
 
+double place_on_scale(double value, const LuxRange& range) {
+  if (range.is_even()) return value / range.high;
+  return value > 0.0 ? std::log(value / range.low) / std::log(range.high / range.low) : 0.0;
+}
+
 Eigen::Array3f false_color(float place) {
   // Lightness rises evenly from stop to stop.
   static const std::array<Eigen::Array3f, 6> stops = {
@@ -201,13 +194,8 @@ Eigen::Array3f false_color(float place) {
 std::vector<std::uint8_t> false_colors(const std::vector<float>& lux, const LuxRange& range) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(3 * lux.size());
-  const auto place_of = [&range](double value) {
-    if (range.is_even()) return value / range.high;
-    return value > 0.0 ? std::log(value / range.low) / std::log(range.high / range.low) : 0.0;
-  };
   for (const float value : lux) {
-    const double place = place_of(value);
-    for (const float c : false_color(static_cast<float>(place))) {
+    for (const float c : false_color(static_cast<float>(place_on_scale(value, range)))) {
       bytes.push_back(static_cast<std::uint8_t>(255.0f * c + 0.5f));
     }
   }

@@ -82,6 +82,10 @@ struct LuxRange {
 /// thousandth of the high end. Without positive values: LuxRange's default.
 LuxRange lux_range(const std::vector<float>& lux);
 
+/// Position of a value on a scale: 0 at the low end, 1 at the high end; beyond them outside [0,1],
+/// and 0 for values that a logarithmic scale does not know.
+double place_on_scale(double value, const LuxRange& range);
+
 /// Labelled values of a scale, in its unit.
 /// - linear: about five even steps
 /// - logarithmic: 1, 2 and 5 times the powers of ten

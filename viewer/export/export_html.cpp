@@ -10,21 +10,6 @@
 namespace lightwell {
 namespace {
 
-/// `text` as the content of an HTML element.
-std::string escaped(std::string_view text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '<') {
-      result += "&lt;";
-    } else if (c == '&') {
-      result += "&amp;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
-
 /// JSON as the content of a script element. A script element ends at the first "</script", even
 /// inside a JSON string, and names may contain "</script" or "<!--": every "<" is escaped.
 std::string script_json(const nlohmann::ordered_json& json) {
@@ -84,7 +69,7 @@ void write_walkthrough(const std::filesystem::path& path, const BakedModel& mode
                        const std::optional<LuxRange>& range, const WhitePoint& white) {
   const PageData data = page_data(model, range.value_or(lux_range(model.illuminance)), white);
   Page page;
-  page.put("title", escaped(title_of(model)));
+  page.put("title", html_text(title_of(model)));
   page.put("style", web::page_css);
   page.put("about", script_json(data.about));
   page.put("data", base64(data.bytes));

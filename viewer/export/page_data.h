@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 
 #include "raytrace/light_meter.h"
 #include "viewer/export/appearance.h"
@@ -19,6 +20,9 @@ struct PageData {
 /// Data of a model's page. `range`: scale of the false colours of illuminance, lx; `white`: light
 /// that shows as grey at first.
 PageData page_data(const BakedModel& model, const LuxRange& range, const WhitePoint& white = {});
+
+/// Text as the content of an HTML element or of an attribute in double quotes.
+std::string html_text(std::string_view text);
 
 /// Base64 of RFC 4648, with padding.
 std::string base64(const std::string& bytes);

@@ -83,16 +83,10 @@ struct Bar {
   std::string title{};
 };
 
-/// Position of a value on the bar: 0 at the low end, 1 at the high end.
-double place_of(double value, const LuxRange& range) {
-  return range.is_even() ? value / range.high
-                         : std::log(value / range.low) / std::log(range.high / range.low);
-}
-
 Bar bar_of(const LuxRange& range, const std::string& unit) {
   Bar bar{.color = [](float place) { return false_color(place); }, .ticks = {}, .title = unit};
   for (const double value : scale_steps(range)) {
-    bar.ticks.push_back({place_of(value, range), fmt::format("{:.6g}", value)});
+    bar.ticks.push_back({place_on_scale(value, range), fmt::format("{:.6g}", value)});
   }
   return bar;
 }

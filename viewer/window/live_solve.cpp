@@ -325,13 +325,17 @@ std::string text_of(const LiveState& state) {
 LiveSolve::LiveSolve(const Scene& scene, const SolveOptions& options, const Provenance& provenance)
     : impl_(std::make_unique<Impl>(scene, options, provenance)) {}
 
-LiveSolve::~LiveSolve() {
+void LiveSolve::ask_to_end() {
   impl_->ending = true;
   {
     // The lock keeps the wake-up from falling between the thread's test and the thread's wait.
     const std::lock_guard lock(impl_->mutex);
   }
   impl_->wake.notify_all();
+}
+
+LiveSolve::~LiveSolve() {
+  ask_to_end();
   if (impl_->thread.joinable()) impl_->thread.join();
 }
 

@@ -76,6 +76,8 @@ class LiveSolve {
   /// Ends the thread: after the present sixteen rows of form factors or thousand vertices of a
   /// shot, and at the next report while gathering.
   ~LiveSolve();
+  /// Asks the thread to end, as the destructor does, without waiting.
+  void ask_to_end();
   LiveSolve(const LiveSolve&) = delete;
   LiveSolve& operator=(const LiveSolve&) = delete;
 

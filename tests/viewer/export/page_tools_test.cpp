@@ -272,6 +272,11 @@ driver.run(async (page, found) => {
   ASSERT_FALSE(found.is_null());
   ASSERT_FALSE(found.contains("failed")) << found["failed"];
   ASSERT_EQ(found["keys"].size(), 4u);
+  // English tells that there are placeholders to compare: a text for each of them.
+  ASSERT_EQ(found["placeholders"].size(), 4u);
+  ASSERT_EQ(found["placeholders"]["en"].size(), found["keys"]["en"].size());
+  EXPECT_FALSE(std::ranges::all_of(found["placeholders"]["en"],
+                                   [](const Json& names) { return names.empty(); }));
   for (const auto& [code, keys] : found["keys"].items()) {
     EXPECT_EQ(keys, found["keys"]["en"]) << code;
     EXPECT_EQ(found["placeholders"][code], found["placeholders"]["en"]) << code;

@@ -31,6 +31,9 @@ void main() {
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
 
+/** Y of the linear primaries. */
+const luminance_weights = [0.2126729, 0.7151522, 0.0721750];
+
 const fragment_program = `
 precision highp float;
 precision highp sampler2D;
@@ -69,7 +72,7 @@ void main() {
   float E = E_rgb.r + E_rgb.g + E_rgb.b;
   float slope = length(vec2(dFdx(E), dFdy(E)));
 #ifdef WITH_PICTURE
-  // Holes have no colour: what blending took of theirs is made up for.
+  // Texels of holes have no colour; dividing by alpha restores what blending with holes took.
   vec4 texel = texture(picture, at);
   if (is_there && texel.a < 0.5) discard;
   if (is_there) shown *= gain * texel.rgb / texel.a;
@@ -79,7 +82,7 @@ void main() {
   } else if (shows == 3) {
     pixel = vec4(E_rgb, 1.0);
   } else if (shows != 0) {
-    float value = shows == 1 ? E : lumens_per_watt * dot(shown, vec3(0.2126729, 0.7151522, 0.0721750));
+    float value = shows == 1 ? E : lumens_per_watt * dot(shown, vec3(${luminance_weights}));
     float place = !logarithmic ? (value - range.x) / (range.y - range.x)
                 : value > 0.0 ? log(value / range.x) / log(range.y / range.x) : 0.0;
     // Texel centres are the ends of the scale.
@@ -113,8 +116,6 @@ void main() {
   pixel = vec4(0.1, 0.1, 0.1, 1.0);
 }`;
 
-/** Y of the linear primaries. */
-const luminance_weights = [0.2126729, 0.7151522, 0.0721750];
 const glass_opacity = 0.2;
 const metering_width = 160;
 

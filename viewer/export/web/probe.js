@@ -48,7 +48,7 @@ function light_at(model, face, point) {
   });
   // A patch has the mean of its picture; here it is what is seen.
   if (texel_at) texel_at(...place).forEach((rho, k) => { radiance[k] *= gain[k] * rho; });
-  const Y = 0.2126729 * radiance[0] + 0.7151522 * radiance[1] + 0.0721750 * radiance[2];
+  const Y = luminance_weights.reduce((sum, weight, k) => sum + weight * radiance[k], 0);
   const within = model.within && model.is_as_solved() ? model.within[face] : null;
   return {illuminance, within, luminance: model.about.lumens_per_watt * Y, radiosity: radiance.map((L) => Math.PI * L)};
 }
