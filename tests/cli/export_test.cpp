@@ -110,6 +110,12 @@ TEST_F(ExportCommand, RefusesLightmapsThatCannotBe) {
   refused({"--lightmap"}, 1, "it is a folder");
 }
 
+TEST_F(ExportCommand, RefusesOptionsThatNoOutputFollows) {
+  expect_refused({"export", "room.vtp", "-o", "b.html", "--sides", "both"}, 2, "add '-o FILE.glb'");
+  expect_refused({"export", "room.vtp", "-o", "b.glb", "--white-balance", "auto"}, 2,
+                 "add '-o FILE.html'");
+}
+
 TEST_F(ExportCommand, SetsTheFirstWhiteBalanceOfThePage) {
   const auto page_with = [&](const Words& white) {
     const Ended ended = run(Words{"export", "room.vtp", "-o", "a.html", "--quiet"} + white);
