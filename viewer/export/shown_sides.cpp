@@ -17,7 +17,7 @@ namespace {
 
 constexpr int rays_per_patch = 64, patch_grain = 64;
 
-/// What a patch sees, and who sees it.
+/// Sight from a patch, and of a patch.
 struct PatchView {
   float escaped = 0.0f;     // share of the rays that leave the scene
   bool sees_light = false;  // a side that is not dark, glass or the outside

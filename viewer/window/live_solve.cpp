@@ -95,8 +95,8 @@ struct LiveSolve::Impl {
   bool step(int shots) {
     const int done = progressive.shots();
     const int most = done < single_shots ? 1 : shots - done;
-    if (most < 1 || !progressive.step(most)) return false;
     step_start = Clock::now();
+    if (most < 1 || !progressive.step(most)) return false;
     vertex_light.receive(progressive.last_shots(), [this](std::string_view, double share) {
       const std::lock_guard lock(mutex);
       shown.step_share = share;
@@ -225,6 +225,7 @@ void LiveSolve::Impl::run(const Progress& watch) {
     {
       const std::lock_guard lock(mutex);
       shown.phase = LivePhase::gathering;
+      shown.seconds_left = -1.0;
       shown.converged = progressive.has_converged();
     }
     const Clock::time_point start = Clock::now();

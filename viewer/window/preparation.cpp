@@ -52,9 +52,10 @@ struct Preparation::State {
 Preparation::Preparation(const Scene& scene, const LiveViewOptions& live, const Progress& watch)
     : state_(std::make_shared<State>()) {
   state_->watch = watch;
-  state_->thread = std::thread([state = state_.get(), &scene, live] {
+  state_->thread = std::thread([state = state_, &scene, live] {
     try {
       SolveOptions options = live.solve;
+      // The LiveSolve may outlive the Preparation, and keeps the reports' target alive.
       options.run.progress = [state](std::string_view phase, double share) {
         return state->take_report(phase, share);
       };
@@ -69,8 +70,11 @@ Preparation::Preparation(const Scene& scene, const LiveViewOptions& live, const 
 }
 
 Preparation::~Preparation() {
-  cancel();
-  if (state_->thread.joinable()) state_->thread.join();
+  if (state_->thread.joinable()) {
+    cancel();
+    state_->thread.join();
+  }
+  state_->made = {};  // whose options share the state
 }
 
 void Preparation::cancel() {

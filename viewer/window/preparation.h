@@ -8,20 +8,21 @@
 
 namespace lightwell {
 
-/// What a window needs before the first light: a scene cut into patches, its lamps and its
+/// Needs of a window before the first light: a scene cut into patches, its lamps and its
 /// daylight.
 struct PreparedSolve {
   std::unique_ptr<LiveSolve> solve{};
   SolvedScene dark{};  ///< LiveSolve::dark(), with the channels' scales of the options
 };
 
-/// Makes a LiveSolve in a thread, so that a window can say meanwhile what is done. Keeps a
-/// reference to the scene.
+/// Makes a LiveSolve in a thread, so that a window can say meanwhile what is done. Reports go to
+/// the Preparation, not to the progress of the options; after cancel() they say stop, also those of
+/// the LiveSolve. Keeps a reference to the scene.
 class Preparation {
  public:
   /// `watch`, for tests, is called in the thread with each progress report; its result is ignored.
   Preparation(const Scene& scene, const LiveViewOptions& live, const Progress& watch = {});
-  /// Cancels, and waits for the thread.
+  /// Cancels what take() has not taken, and waits for the thread.
   ~Preparation();
   Preparation(const Preparation&) = delete;
   Preparation& operator=(const Preparation&) = delete;
