@@ -127,7 +127,13 @@ std::string kind_of(const Material& material, bool relative_units) {
     words.push_back(fmt::format("texture {} x {}", picture.width(), picture.height()));
   }
   if (material.mask) words.emplace_back("mask");
-  if ((material.specular > 0.0f).any()) {
+  if (material.coat) {
+    words.push_back(
+        fmt::format("coat {:.4g}{}", material.coat->index_of_refraction,
+                    material.specular_roughness > 0.0f
+                        ? fmt::format(" of roughness {:.3g}", material.specular_roughness)
+                        : ""));
+  } else if ((material.specular > 0.0f).any()) {
     words.push_back(fmt::format("mirror {:.3g}", mean(material.specular)));
   }
   if (material.is_emitter()) {

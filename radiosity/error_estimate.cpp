@@ -385,7 +385,8 @@ std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptio
   SampledSolution sampled = sample_solution(mesh, solution, irradiance, samples);
   const PartMeans means_of_mesh = part_means(mesh, irradiance, parts);
   choose_rays(options, mesh, samples, points, means_of_mesh, sampled);
-  const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
+  const BandArray radiosity =
+      gatherable_radiosity(mesh, lit.direct_light, irradiance, solution.direct_irradiance);
   irradiance.resize(0, 0);
   const GatheredIrradiance gathered =
       gather_irradiance(lit, radiosity, sampled.points, independent_gather(options, batch));

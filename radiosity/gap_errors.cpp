@@ -152,7 +152,8 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
   if (solution.interpolation_error.size() != mesh.element_count()) return;
   // Caustics are in the mesh alone, and no gather at a point finds them.
   BandArray irradiance = solution.irradiance();
-  const BandArray radiosity = gatherable_radiosity(mesh, lit.direct_light, irradiance);
+  const BandArray radiosity =
+      gatherable_radiosity(mesh, lit.direct_light, irradiance, solution.direct_irradiance);
   const Eigen::ArrayXd reference = error_references(mesh, irradiance, solution.parts);
   std::vector<GapElement> lit_elements;
   for (const int e : elements_in_gaps(lit.caster)) {

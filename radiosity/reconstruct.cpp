@@ -561,7 +561,8 @@ BandArray with_indirect(const PilotGather& pilot, const BandArray& indirect) {
 VertexGather gather_in(const VertexGatherTask& task, BandArray irradiance,
                        const RadiositySolution& solution, KeptGather& kept) {
   const PatchMesh& mesh = task.lit.mesh();
-  BandArray radiosity = gatherable_radiosity(mesh, task.lit.direct_light, irradiance);
+  BandArray radiosity =
+      gatherable_radiosity(mesh, task.lit.direct_light, irradiance, task.pilot.direct);
   irradiance.resize(0, 0);
   if (task.pilot.tree) {
     keep_power(mesh, task.lit.direct_light, unscaled_radiosity(solution), radiosity);
@@ -651,7 +652,7 @@ void light_unread_patches(const LitScene& lit, const SolveOptions& options,
   GatherOptions gather = gather_options(options);
   gather.rays = std::min(few_rays, gather.rays);
   const BandArray radiosity =
-      gatherable_radiosity(mesh, lit.direct_light, with_indirect(pilot, indirect));
+      gatherable_radiosity(mesh, lit.direct_light, with_indirect(pilot, indirect), pilot.direct);
   const BandArray of_patch =
       spread_rows(gather_indirect(lit, radiosity, points_on(mesh, patches), gather).indirect,
                   patches, mesh.patch_count());

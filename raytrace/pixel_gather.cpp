@@ -38,7 +38,7 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
                          const DirectLight& direct_light, const RadiositySolution& solution,
                          int most_rays, int max_specular_depth)
     : paths_(scene, caster, max_specular_depth),
-      radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance())),
+      radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution)),
       bright_(scene, caster.mesh(), radiosity_),
       gaps_({scene, caster, direct_light}, radiosity_, paths_),
       aims_(std::max(BrightPatches::aimed(most_rays), Portals::aimed(most_rays))),
@@ -108,7 +108,8 @@ void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
     if (!place.portals.is_empty() && gaps_.is_near_portal(*portals_, ray, hit)) continue;
     const double share =
         bright_.share(place.bright, cosine, place.rays, ray, hit, aimed_density(place, ray, hit));
-    sum += share * interpolate(place.caster.mesh(), radiosity_, hit).cast<double>();
+    sum += share * paths_.base_factor(place.caster, ray, hit) *
+           interpolate(place.caster.mesh(), radiosity_, hit).cast<double>();
   }
 }
 
@@ -169,12 +170,14 @@ Spectrum PixelGather::arriving(const ElementCaster& caster, const Ray& ray, cons
   const PatchMesh& mesh = caster.mesh();
   Spectrum B = Spectrum::Zero(radiosity_.cols());
   if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
-    B = static_cast<float>(shares.straight) * interpolate(mesh, radiosity_, hit);
+    B = static_cast<float>(shares.straight * paths_.base_factor(caster, ray, hit)) *
+        interpolate(mesh, radiosity_, hit);
   }
   if (!paths_.is_specular(hit.facet)) return B;
   const auto by_way = static_cast<float>(shares.by_way);
   const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
-    B += by_way * end.throughput * interpolate(mesh, radiosity_, end.hit);
+    B += by_way * static_cast<float>(end.base_factor) * end.throughput *
+         interpolate(mesh, radiosity_, end.hit);
   });
   if (losses.sky.size() > 0 && dome_.size() > 0) {
     B += std::numbers::pi_v<float> * by_way * dome_ * losses.sky;

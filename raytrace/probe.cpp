@@ -295,7 +295,7 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
     }
     points.push_back(point);
   }
-  const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance());
+  const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution);
   const LitScene lit{scene, caster, direct_light};
   const MirroredLight mirrored =
       mirrored_in_air(lit, solution, points, options, bounds ? bounds->accuracy : 0.0);

@@ -84,7 +84,8 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
       gloss_points_(gloss_point_count),
       lamps_(direct_light),
-      openings_(scene, direct_light) {
+      openings_(scene, direct_light),
+      bases_(scene.materials) {
   if (textures_->is_empty()) textures_ = nullptr;
   constexpr double rounding = 1e-6;  // share of the scene's diagonal
   if (!normals_.is_empty()) least_lift_ = rounding * scene_bounds(scene).diagonal();
@@ -109,9 +110,8 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
     return material.gloss_roughness() > 0.0f && !material.dielectric;
   };
   if (std::any_of(scene.materials.begin(), scene.materials.end(), is_rough_mirror)) {
-    bright_ =
-        BrightPatches(scene, caster.mesh(),
-                      gatherable_radiosity(caster.mesh(), direct_light, solution.irradiance()));
+    bright_ = BrightPatches(scene, caster.mesh(),
+                            gatherable_radiosity(caster.mesh(), direct_light, solution));
   }
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
@@ -319,6 +319,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .turns = parent.turns,
                 .lobe_density = sample.density,
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
+                .behind_coat = parent.behind_coat || what.coat,
                 .width = cone_width(parent, at),
                 .media = parent.media,
                 .polarisation = sample.polarisation};
@@ -455,7 +456,11 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   const float share = share_of_bright(branch, hit, at);
   Spectrum M = emission(branch, hit, at);
   if (!direct_light_.owns(hit.facet, hit.from_back)) M *= share;
-  const Spectrum rho = share * reflectance(branch, hit, at);
+  Spectrum rho = share * reflectance(branch, hit, at);
+  if (const CoatedBase* base = base_at(hit)) {
+    const double cosine = -branch.ray.direction.normalized().dot(smooth_normal(hit, at));
+    rho *= static_cast<float>(base->factor(cosine));
+  }
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
   if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, state);
   state.result.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
@@ -472,11 +477,20 @@ void RayTree::shade_lamp(const Branch& branch, const ElementHit& hit, const Shad
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,
                                     const Branch& branch, const TreeState& state) const {
   const PatchMesh& mesh = caster_.mesh();
-  if (options_.pass == Pass::interpolate) {
-    return {.direct = interpolate(mesh, solution_.direct_irradiance, hit),
-            .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
-  }
   const Eigen::Vector3d normal = smooth_normal(hit, at);
+  const CoatedBase* base = base_at(hit);
+  constexpr float weak = 0.25f;
+  const bool is_dim = branch.behind_coat && (!branch.is_sharp || branch.weight.maxCoeff() < weak);
+  if (options_.pass == Pass::interpolate || is_dim) {
+    Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
+               .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
+    if (base) {
+      E.direct_at_coat = E.direct;
+      E.direct *=
+          static_cast<float>(direct_light_.base_gain({at.position, normal, hit.facet}, *base));
+    }
+    return E;
+  }
   const float share = state.effort * branch.weight.maxCoeff();
   ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? 4 : 8);
   // Many samples of a pixel average their shadows. A second stage of rays, cast only where the
@@ -485,12 +499,18 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   Arriving E;
   const ShadowOrigin from = shadow_origin(hit, at);
   const bool has_dome = dome_.is_fine(hit.element);
-  E.direct = direct_light_.irradiance(
-      *state.caster, {.at = {from.position, normal, from.facet},
-                      .key = random_key(state.key, branch.node, RandomPurpose::ray_tree_shadows),
-                      .shadows = shadows,
-                      .lights = has_dome ? Lights::all_but_dome : Lights::all});
-  if (has_dome) E.direct += interpolate(mesh, dome_.irradiance, hit);
+  LightQuery query{.at = {from.position, normal, from.facet},
+                   .key = random_key(state.key, branch.node, RandomPurpose::ray_tree_shadows),
+                   .shadows = shadows,
+                   .lights = has_dome ? Lights::all_but_dome : Lights::all};
+  const auto direct = [&] {
+    Spectrum sum = direct_light_.irradiance(*state.caster, query);
+    if (has_dome) sum += interpolate(mesh, dome_.irradiance, hit);
+    return sum;
+  };
+  if (base && with_layers_) E.direct_at_coat = direct();
+  query.base = base;
+  E.direct = direct();
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
         *state.caster,
@@ -546,7 +566,7 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
   // ones.
   const bool is_straight = branch.is_sharp && (branch.node & (branch.node + 1)) == 0;
   if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
-    const Spectrum all = E.direct + E.indirect;
+    const Spectrum all = (E.direct_at_coat.size() > 0 ? E.direct_at_coat : E.direct) + E.indirect;
     state.result.layers[first_sampled_column(Layer::illuminance)] =
         static_cast<float>(luminous(bands, all));
   }

@@ -17,6 +17,7 @@
 #include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
 #include "raytrace/visible_lamps.h"
+#include "scene/coat.h"
 #include "scene/facet_normals.h"
 #include "scene/facet_textures.h"
 #include "scene/sampling.h"
@@ -32,9 +33,11 @@ struct RaySample {
   /// sampled layers.
   SampledLayers layers = SampledLayers::Zero();
   std::uint64_t fingerprint = 0;  ///< identifies the surfaces seen, see RayTree
-  bool sees_gloss = false;        ///< a rough surface was met, at first or behind smooth ones
-  std::int64_t depth_cut = 0;     ///< branches that ended at max_depth
-  float cut_weight = 0.0f;        ///< sum over these branches of the largest weight of any band
+  /// A rough mirror or a rough clear surface was met, at first or behind smooth ones. (The light of
+  /// coats is a small share of a pixel's.)
+  bool sees_gloss = false;
+  std::int64_t depth_cut = 0;  ///< branches that ended at max_depth
+  float cut_weight = 0.0f;     ///< sum over these branches of the largest weight of any band
 };
 
 /// What light does at each smooth surface of a path: it is reflected or it crosses.
@@ -59,7 +62,8 @@ struct SpecularSegment {
 /// Whitted's ray tree (1980) over a radiosity solution. Radiance at a hit is the sum over the parts
 /// of the material:
 /// - diffuse: L = (M + rho E) / pi;
-/// - mirror: specular * L(reflected);
+/// - mirror: specular * L(reflected), with a coat times Fresnel's reflectance;
+/// - base under a coat: L = M / pi + rho g(out) / pi int L(in) g(in) cos, see CoatedBase;
 /// - clear dielectric: R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R;
 /// - rough mirror or dielectric: the mean over some directions of its lobe, see sample_scattering.
 ///
@@ -83,6 +87,9 @@ struct SpecularSegment {
 /// smooth surface that the facets approximate, so that neighbouring facets do not shade it (Hanika
 /// 2021, "Hacking the Shadow Terminator"); since the start lies before the facet, no light comes
 /// through the facet.
+///
+/// Behind a coat that mirrors less than a quarter of the light, or blurs it, diffuse surfaces show
+/// the solution's irradiance: shadow rays there would cost more than those of the coated surface.
 ///
 /// Textures are filtered over the footprint of a ray's pixel: a cone (Amanatides 1984) whose width
 /// is `pixel_width` times the length of the path, as if all surfaces on the way were flat.
@@ -165,14 +172,17 @@ class RayTree {
     /// View by which the rough surface at the branch's origin aims at bright patches as well; null:
     /// no such rays.
     const BrightPatches::View* bright = nullptr;
-    bool is_aimed = false;  ///< aimed at a bright patch
-    double width = 0.0;     ///< m, width of the cone at the ray's origin
+    bool is_aimed = false;     ///< aimed at a bright patch
+    bool behind_coat = false;  ///< a coat on the way
+    double width = 0.0;        ///< m, width of the cone at the ray's origin
     Media media{};
     Polarisation polarisation{};
   };
-  /// Irradiance at a point, W/m^2, direct and indirect.
+  /// Irradiance at a point, W/m^2, direct and indirect. A coated base gets direct light by its
+  /// angle (see LightQuery::base).
   struct Arriving {
     Spectrum direct{}, indirect{};
+    Spectrum direct_at_coat{};  ///< before the coat, for layers; empty: as `direct`
   };
   /// State and result of a tree while it grows.
   struct TreeState {
@@ -195,6 +205,8 @@ class RayTree {
   void add_seen(const Branch& branch, const Spectrum& L, TreeState& state) const;
   void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
              TreeState& state) const;
+  int lobe_samples(const SurfaceInteraction& interaction, const Branch& branch,
+                   const TreeState& state) const;
   void scatter(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
                const ShadingPoint& at, TreeState& state) const;
   void add_lamp(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
@@ -228,6 +240,9 @@ class RayTree {
              TreeState& state) const;
   void shade_lamp(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                   TreeState& state) const;
+  const CoatedBase* base_at(const ElementHit& hit) const {
+    return bases_.empty() ? nullptr : bases_.of(facets_[hit.facet].material);
+  }
   Arriving arriving(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
                     const TreeState& state) const;
   Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
@@ -260,6 +275,7 @@ class RayTree {
   BrightPatches bright_{};  ///< rough mirrors aim at these beside the lamps
   /// Lobes of the front and the back of each material; empty if the material is not rough.
   std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};
+  CoatedBases bases_;
   bool absorbs_ = false;  ///< whether any body absorbs light
   std::vector<FacetShape> facets_{};
 };

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "raytrace/shade.h"
+#include "scene/optics.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
@@ -20,15 +21,30 @@ bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d
 
 }  // namespace
 
+// Directions of a rough surface's lobe. Those of a coat have no other samples of the pixel beside
+// them; as many suffice as their share of the light asks for.
+int RayTree::lobe_samples(const SurfaceInteraction& interaction, const Branch& branch,
+                          const TreeState& state) const {
+  double wanted = double{state.effort} * options_.glossy_rays;
+  if (interaction.material.coat) {
+    constexpr double fewest = 4.0, more = 8.0, most = 4.0;
+    const ScatteringSample mirrored{.direction =
+                                        reflect(interaction.direction, interaction.normal)};
+    const Spectrum share = branch.weight * scattering_weight(interaction, mirrored);
+    wanted = std::clamp(more * static_cast<double>(share.maxCoeff()) * wanted, fewest,
+                        std::max(fewest, most * wanted));
+  }
+  return std::max(1, static_cast<int>(std::lround(wanted)));
+}
+
 // Adds the mean over sampled directions of a rough surface's lobe.
 void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interaction,
                       const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
-  state.result.sees_gloss = state.result.sees_gloss || branch.is_sharp;
+  const bool is_coat = interaction.material.coat.has_value();
+  state.result.sees_gloss = state.result.sees_gloss || (branch.is_sharp && !is_coat);
   if (!state.shades) return;
   const bool is_first = branch.is_sharp && !state.number && !state.lamps_alone;
-  const int count =
-      is_first ? std::max(1, static_cast<int>(std::lround(state.effort * options_.glossy_rays)))
-               : 1;
+  const int count = is_first ? lobe_samples(interaction, branch, state) : 1;
   const int first = state.number.value_or(0);
   const std::uint64_t key = random_key(state.gloss_key, branch.node, RandomPurpose::gloss,
                                        static_cast<std::uint64_t>(first / gloss_point_count));

@@ -23,6 +23,14 @@ double fresnel_reflectance(double cos_incident, double relative_index) {
   return 0.5 * (R.s + R.p);
 }
 
+double diffuse_fresnel(double index) {
+  // Midpoint rule in cos^2: 2 cos dcos = d(cos^2), so the weights are equal.
+  constexpr int steps = 1000;
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) sum += fresnel_reflectance(std::sqrt((i + 0.5) / steps), index);
+  return sum / steps;
+}
+
 double pane_reflectance(double cos_incident, double index) {
   const PolarisedReflectance R = polarised_reflectance(cos_incident, index);
   return R.s / (1.0 + R.s) + R.p / (1.0 + R.p);

@@ -10,6 +10,10 @@ namespace lightwell {
 /// reflection. Born & Wolf, Principles of Optics, section 1.5.
 double fresnel_reflectance(double cos_incident, double relative_index);
 
+/// Fresnel reflectance of a smooth dielectric for even light from the whole hemisphere, 2 int
+/// F(cos) cos dcos, [0,1]. `index` > 0 is relative to the side that the light comes from.
+double diffuse_fresnel(double index);
+
 /// Fresnel reflectances, [0,1], of light polarised across (s) and in (p) the plane of incidence;
 /// arguments as for fresnel_reflectance().
 struct PolarisedReflectance {

@@ -39,6 +39,15 @@ inline constexpr float lowest_index = 0.1f, highest_index = 10.0f;
 /// Highest absorption that validate() accepts, 1/m: light is gone within a micrometre.
 inline constexpr float highest_absorption = 1e6f;
 
+/// A clear coat over a diffuse base: lacquer, varnish, glaze, the skin of plastic (see coat.h).
+struct Coat {
+  float index_of_refraction = 1.5f;  ///< over that of the air before, in [lowest_coat_index,
+                                     ///< highest_index]
+};
+
+/// Least index of a coat that validate() accepts. A coat of the air's own index mirrors nothing.
+inline constexpr float lowest_coat_index = 1.0f;
+
 /// A picture of diffuse reflectance: rho is `factor` times the picture's r, g and b.
 struct ReflectanceTexture {
   SurfaceTexture image{};
@@ -52,14 +61,18 @@ struct Mask {
   float cutoff = 0.5f;     ///< (0,1]
 };
 
-/// Reflection, refraction and emission of a surface. Energy: reflectance + specular <= 1 in every
-/// band.
+/// Reflection, refraction and emission of a surface. Energy: reflectance + mean_mirrored() <= 1 in
+/// every band.
 struct Material {
   std::string name{};
   Spectrum reflectance{};           ///< diffuse rho, [0,1]; with a texture: of facets without UV
   Spectrum specular{};              ///< mirror reflectance, [0,1]
   float specular_roughness = 0.0f;  ///< GGX alpha of the mirror, [0,1]: spreads the reflected
                                     ///< light, whose share stays the same; 0: perfect mirror
+  /// If set, the surface mirrors Fresnel's share of the coat times `specular`, by the angle of
+  /// incidence. `reflectance` is that of base and coat together for even light, without the light
+  /// that the coat mirrors.
+  std::optional<Coat> coat{};
   std::optional<Dielectric> dielectric{};  ///< if set, the surface is clear; rho and specular are 0
   Spectrum emission{};            ///< exitance M = pi L of a Lambertian emitter, W/m^2, >= 0
   bool one_sided = false;         ///< nothing is reflected from behind; the back is black

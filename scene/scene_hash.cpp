@@ -37,10 +37,14 @@ class Hash {
 // Each kind begins with a word of its own, which no reflectance has.
 void add_gloss(const Material& m, Hash& hash) {
   constexpr std::uint64_t rough_mirror = 0x6d17707e, glass_body = 0x61a55b0d,
-                          body_of_pane = 0x9a4eb0d1;
+                          body_of_pane = 0x9a4eb0d1, coat = 0xc0a7ba5e;
   if (m.specular_roughness > 0.0f && (m.specular > 0.0f).any()) {
     hash.add(rough_mirror);
     hash.add(static_cast<double>(m.specular_roughness));
+  }
+  if (m.coat) {
+    hash.add(coat);
+    hash.add(static_cast<double>(m.coat->index_of_refraction));
   }
   if (!m.dielectric) return;
   const Dielectric& glass = *m.dielectric;

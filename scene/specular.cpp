@@ -54,8 +54,8 @@ bool has_absorbing_body(const Dielectric& glass) {
   return glass.thin && glass.transmissivity.size() > 0;
 }
 
-// Cosine between the incident light and the normal of the thin pane's microfacet, or of the whole
-// pane, that sends the light along `sample`.
+// Cosine between the incident light and the normal of the microfacet of a thin pane, a mirror or a
+// coat, or of the whole surface, that sends the light along `sample`.
 double cosine_at_facet(const SurfaceInteraction& interaction, const ScatteringSample& sample) {
   const Eigen::Vector3d reflected =
       sample.crosses ? reflect(sample.direction, interaction.normal) : sample.direction;
@@ -202,9 +202,11 @@ SmoothScattering lobes_of(const SurfaceInteraction& interaction, const Dielectri
 }
 
 ScatteringSample mirror_sample(const SurfaceInteraction& interaction) {
-  return {.direction = reflect(interaction.direction, interaction.normal),
-          .weight = interaction.material.specular,
-          .polarisation = mirrored_polarisation(interaction)};
+  ScatteringSample sample{.direction = reflect(interaction.direction, interaction.normal)};
+  sample.weight = scattering_weight(interaction, sample);
+  // A coat is taken to leave light unpolarised, as the base below it does.
+  if (!interaction.material.coat) sample.polarisation = mirrored_polarisation(interaction);
+  return sample;
 }
 
 ScatteringSample sample_smooth(const SurfaceInteraction& interaction, double which) {
@@ -225,6 +227,11 @@ ScatteringSample sample_smooth(const SurfaceInteraction& interaction, double whi
 
 Spectrum scattering_weight(const SurfaceInteraction& interaction, const ScatteringSample& sample) {
   const auto& glass = interaction.material.dielectric;
+  if (const auto& coat = interaction.material.coat) {
+    const double cosine = std::min(1.0, cosine_at_facet(interaction, sample));
+    const double F = fresnel_reflectance(cosine, double{coat->index_of_refraction});
+    return static_cast<float>(F) * interaction.material.specular;
+  }
   if (!glass) return interaction.material.specular;
   if (has_absorbing_body(*glass)) {
     const BodyShares shares = body_shares(*glass, cosine_at_facet(interaction, sample));

@@ -38,7 +38,8 @@ struct SmoothScattering {
 SmoothScattering smooth_scattering(const SurfaceInteraction& interaction);
 
 /// Share of light, per band, that continues once a sample's direction and side have been chosen:
-/// the reflectance of a mirror; for a dielectric, 1 if reflected and the tint if crossing. The body
+/// the reflectance of a mirror; that of a coat by Fresnel's equations at the microfacet; for a
+/// dielectric, 1 if reflected and the tint if crossing. The body
 /// of a thin pane that absorbs leaves less of both, by the angle to the microfacet. The weight that
 /// the sample carries does not count.
 Spectrum scattering_weight(const SurfaceInteraction& interaction, const ScatteringSample& sample);

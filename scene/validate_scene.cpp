@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "scene/coat.h"
 #include "scene/errors.h"
 #include "scene/limits.h"
 #include "scene/scene.h"
@@ -107,10 +108,11 @@ void check_pictures(const Scene& scene, const Material& m) {
     check_share(scene, m, "texture factor", m.texture->factor);
     constexpr float rounding = 1e-5f;
     const Spectrum brightest = m.texture->factor * m.texture->image.picture->largest();
-    if (!((brightest + m.specular) <= 1.0f + rounding).all()) {
+    const Spectrum mirrored = mean_mirrored(m);
+    if (!((brightest + mirrored) <= 1.0f + rounding).all()) {
       fail(scene, fmt::format("material '{}': where its texture is brightest, reflectance {} + "
                               "specular {} exceed 1; lower one",
-                              m.name, brightest.maxCoeff(), m.specular.maxCoeff()));
+                              m.name, brightest.maxCoeff(), mirrored.maxCoeff()));
     }
     if (m.dielectric) {
       fail(scene,
@@ -132,18 +134,35 @@ void check_pictures(const Scene& scene, const Material& m) {
   }
 }
 
+void check_coat(const Scene& scene, const Material& m) {
+  if (!m.coat) return;
+  const float index = m.coat->index_of_refraction;
+  if (!(index >= lowest_coat_index && index <= highest_index)) {
+    fail(scene, fmt::format("material '{}' has a coat of the index of refraction {}; it must lie "
+                            "between {} and {} (lacquer: 1.5)",
+                            m.name, index, lowest_coat_index, highest_index));
+  }
+  if (m.dielectric) {
+    fail(scene, fmt::format("material '{}' is a dielectric and has a coat; remove one: a clear "
+                            "surface has no base",
+                            m.name));
+  }
+}
+
 void check_material(const Scene& scene, const Material& m) {
   check_share(scene, m, "reflectance", m.reflectance);
   check_share(scene, m, "specular reflectance", m.specular);
+  check_coat(scene, m);
   constexpr float rounding = 1e-5f;  // decimals of a file that should add up to 1
+  const Spectrum mirrored = mean_mirrored(m);
   for (int k = 0; k < scene.bands.count(); ++k) {
-    const float sum = m.reflectance[k] + m.specular[k];
+    const float sum = m.reflectance[k] + mirrored[k];
     if (!(sum <= 1.0f + rounding)) {
       fail(scene,
            fmt::format(
                "material '{}': reflectance {} + specular {} = {} in band {}; more light would "
                "leave than arrives, lower one so that they add up to at most 1",
-               m.name, m.reflectance[k], m.specular[k], sum, scene.bands.names[k]));
+               m.name, m.reflectance[k], mirrored[k], sum, scene.bands.names[k]));
     }
   }
   check_roughness(scene, m, m.specular_roughness);

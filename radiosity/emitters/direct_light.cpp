@@ -243,6 +243,7 @@ Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
                          const DirectLight* like)
     : free_sources_(lightwell::free_sources(scene, mesh.source_scale, channels.of_source)),
+      bases_(scene.materials),
       bands_(scene.bands.count()),
       channel_count_(std::max(1, static_cast<int>(channels.names.size()))),
       samples_(most_probe_shadow_rays),
@@ -275,9 +276,10 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
 
   const std::vector<int> front = front_patches(mesh, facets.size());
   // Rays over the hemisphere find a large emitter in mirrors with less noise than rays of its own
-  // that meet the mirrors.
-  const bool has_mirrors = std::ranges::any_of(
-      scene.materials, [](const Material& material) { return material.is_specular(); });
+  // that meet the mirrors. Coats mirror little.
+  const bool has_mirrors = std::ranges::any_of(scene.materials, [](const Material& material) {
+    return material.is_specular() && !material.coat;
+  });
   double taken = 0.0;
   std::size_t large = 0;
   for (std::size_t i = 0; i < emitting.size();) {
@@ -396,6 +398,46 @@ SkyGlow DirectLight::dome_glow(const ElementCaster& caster, const LightQuery& qu
   return sky_->irradiance(caster, query.at, key, sky_effort(query.shadows, goal));
 }
 
+// Mean of the base's factor over four points of a light, by the light that they send.
+double DirectLight::base_factor(int light, const SurfacePoint& at, const CoatedBase& base) const {
+  const auto emitter_count = static_cast<int>(emitters_.size());
+  const Emitter* emitter = light < emitter_count ? &emitters_[light] : nullptr;
+  const SolidAngleSampler sampler =
+      emitter ? SolidAngleSampler(*emitter, at.position) : SolidAngleSampler();
+  double sum = 0.0, all = 0.0;
+  for (const double u : {0.25, 0.75}) {
+    for (const double v : {0.25, 0.75}) {
+      const ShadowSample sample =
+          emitter ? emitter_shadow_sample(*emitter, sampler, at, u, v)
+                  : shadow_sample(free_sources_[light - emitter_count], at, u, v);
+      if (!(sample.weight > 0.0)) continue;
+      sum += sample.weight * base.factor(sample.ray.direction.normalized().dot(at.normal));
+      all += sample.weight;
+    }
+  }
+  return all > 0.0 ? sum / all : 1.0;
+}
+
+double DirectLight::base_gain(const SurfacePoint& at, const CoatedBase& base) const {
+  if (dome()) return 1.0;
+  constexpr int most = 64;
+  const int step = (light_count() + most - 1) / most;
+  const auto emitter_count = static_cast<int>(emitters_.size());
+  double sum = 0.0, all = 0.0;
+  for (int i = 0; i < light_count(); i += step) {
+    const Spectrum& light =
+        i < emitter_count ? emitters_[i].exitance : free_sources_[i - emitter_count].light;
+    const double F = i < emitter_count ? unoccluded_form_factor(emitters_[i], at)
+                                       : unoccluded_kernel(free_sources_[i - emitter_count],
+                                                           at.position, at.normal);
+    const double E = F * static_cast<double>(light.mean());
+    if (!(E > 0.0)) continue;
+    sum += E * base_factor(i, at, base);
+    all += E;
+  }
+  return all > 0.0 ? sum / all : 1.0;
+}
+
 template <class Add>
 void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
                                  EmitterVisibility* visibility, Add&& add) const {
@@ -440,9 +482,10 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     const ShadowTally& tally = tallies[i];
     const double share = tally.share();
     const bool is_dimmed = tally.dimmed > 0.0;
+    const double F = query.base ? s.F * base_factor(s.index, query.at, *query.base) : s.F;
     Spectrum through;
-    if (is_dimmed) through = static_cast<float>(s.F / tally.all) * tally.through;
-    if (share > 0.0) add(s.channel, s.light(), static_cast<float>(s.F * share));
+    if (is_dimmed) through = static_cast<float>(F / tally.all) * tally.through;
+    if (share > 0.0) add(s.channel, s.light(), static_cast<float>(F * share));
     if (is_dimmed) add(s.channel, s.light(), through);
     if (!visibility) continue;
     const bool is_behind_panes = is_dimmed && !tally.is_mixed();

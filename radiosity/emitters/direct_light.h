@@ -13,6 +13,7 @@
 #include "radiosity/emitters/noise_goal.h"
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/visibility/clear_panes.h"
+#include "scene/coat.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/surface_point.h"
@@ -77,6 +78,9 @@ struct LightQuery {
   /// ShadowOptions::sky_rays to NoiseGoal::most_times as many; otherwise `shadows` decides alone.
   NoiseGoal sky_noise{};
   Lights lights = Lights::all;
+  /// If set, each light counts times CoatedBase::factor() at its angle: irradiance as the base
+  /// under a coat gets it. The light of the sky's dome is taken as even.
+  const CoatedBase* base = nullptr;
 };
 
 /// Direct light: closed form times visibility, for small bright emitters, a single large one and
@@ -145,6 +149,14 @@ class DirectLight {
   Spectrum irradiance(const ElementCaster& caster, const LightQuery& query,
                       EmitterVisibility* visibility = nullptr) const;
 
+  /// The coated base of a material; null: the material has no coat.
+  const CoatedBase* base_of(int material) const { return bases_.of(material); }
+  bool has_coats() const { return !bases_.empty(); }
+  /// Direct light that a coated base gets at a point over that of a base without a coat: the mean
+  /// of CoatedBase::factor() over emitters and lamps, by their unoccluded light. Of more than 64
+  /// lights some stand for all. 1 under a sky, whose light is not known here.
+  double base_gain(const SurfacePoint& at, const CoatedBase& base) const;
+
   /// Adds the irradiance of each channel to the channel's columns of E, which has column_count()
   /// of them.
   void add_irradiance(const ElementCaster& caster, const LightQuery& query, float* E,
@@ -152,6 +164,7 @@ class DirectLight {
 
  private:
   int first_light(Lights lights) const;
+  double base_factor(int light, const SurfacePoint& at, const CoatedBase& base) const;
   SkyGlow dome_glow(const ElementCaster& caster, const LightQuery& query, double full,
                     std::uint64_t key) const;
   template <class Add>
@@ -165,6 +178,7 @@ class DirectLight {
   enum class Owned : char { nothing, front, whole };
   std::vector<Owned> owned_;
   std::vector<int> first_column_;
+  CoatedBases bases_;
   int bands_ = 0, channel_count_ = 1;
   SobolPoints samples_;
   ClearPanes panes_;

@@ -46,6 +46,7 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
     print.add(material.emits_both_sides);
     print.add(material.specular);
     print.add(material.specular_roughness);
+    print.add(material.coat ? material.coat->index_of_refraction : 0.0f);
     print.add(material.dielectric.has_value());
     if (!material.dielectric) continue;
     const auto& [index_of_refraction, tint, absorption, roughness, thin, transmissivity] =

@@ -138,14 +138,13 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
           const double by_cosine =
               rays * static_cast<double>(points[first + r].z) * std::numbers::inv_pi;
           add_weight(h, by_cosine / (by_cosine + Portals::aimed(rays) * aimed), scratch, row);
-        } else if (paths_.has_specular() && h.facet >= 0 && paths_.is_specular(h.facet)) {
-          const std::uint64_t index = static_cast<std::uint64_t>(begin) + first + r;
-          pass_on(ray[r], h, random_key(key, RandomPurpose::form_factor_paths, index), scratch, row,
-                  by_way_of_specular);
-        } else if (h.element >= 0) {
-          scratch.first_.add(mesh.patch[h.element]);
         } else {
-          ++row.escaped;
+          count(h, scratch, row);
+        }
+        if (is_specular(h)) {
+          const std::uint64_t index = static_cast<std::uint64_t>(begin) + first + r;
+          pass_on(ray[r], h, random_key(key, RandomPurpose::form_factor_paths, index), row,
+                  by_way_of_specular);
         }
       }
       if (behind) count_hidden({ray.data(), n}, {hit.data(), n}, scratch);
@@ -168,9 +167,25 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   return row;
 }
 
+bool RowCaster::is_specular(const ElementHit& hit) const {
+  return paths_.has_specular() && hit.facet >= 0 && paths_.is_specular(hit.facet);
+}
+
+// Counts what a ray meets first; a mirror or glass may also scatter a share diffusely.
+void RowCaster::count(const ElementHit& hit, Scratch& scratch, EstimatedRow& row) const {
+  const bool is_clear = is_specular(hit) && !(paths_.is_diffuse(hit.facet) && hit.element >= 0);
+  if (is_clear) {
+    ++row.specular;
+  } else if (hit.element >= 0) {
+    scratch.first_.add(caster_.mesh().patch[hit.element]);
+  } else {
+    ++row.escaped;
+  }
+}
+
 // Density of aimed rays, 1/sr, of a ray that passes a portal and does not meet a mirror or glass.
 double RowCaster::density(const Portals::View& view, const Ray& ray, const ElementHit& hit) const {
-  if (hit.facet >= 0 && paths_.is_specular(hit.facet)) return 0.0;
+  if (hit.facet >= 0 && !paths_.is_mostly_diffuse(hit.facet)) return 0.0;
   return portals_->density(view, ray.origin, ray.direction, hit.t);
 }
 
@@ -208,16 +223,10 @@ void RowCaster::aim_at_portals(int patch, int rays, const Portals::View& view, S
   }
 }
 
-// Follows a ray that met a mirror or glass. The surface may also scatter a share diffusely.
+// Follows a ray that met a mirror, a coat or glass.
 void RowCaster::pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch,
-                        Scratch& scratch, EstimatedRow& row,
-                        std::map<int, Spectrum>& by_way_of_specular) const {
+                        EstimatedRow& row, std::map<int, Spectrum>& by_way_of_specular) const {
   const PatchMesh& mesh = caster_.mesh();
-  if (paths_.is_diffuse(hit.facet) && hit.element >= 0) {
-    scratch.first_.add(mesh.patch[hit.element]);
-  } else {
-    ++row.specular;
-  }
   const PathLosses losses =
       paths_.follow(ray, hit, branch, [&](const ElementHit& end, const Spectrum& throughput) {
         auto [at, is_new] = by_way_of_specular.try_emplace(mesh.patch[end.element], throughput);

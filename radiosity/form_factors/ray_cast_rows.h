@@ -99,8 +99,10 @@ class RowCaster {
   EstimatedRow cast(int patch, int rays, Scratch& scratch, bool count_hidden = false) const;
 
  private:
-  void pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch, Scratch& scratch,
-               EstimatedRow& row, std::map<int, Spectrum>& by_way_of_specular) const;
+  bool is_specular(const ElementHit& hit) const;
+  void count(const ElementHit& hit, Scratch& scratch, EstimatedRow& row) const;
+  void pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch, EstimatedRow& row,
+               std::map<int, Spectrum>& by_way_of_specular) const;
   double density(const Portals::View& view, const Ray& ray, const ElementHit& hit) const;
   void add_weight(const ElementHit& hit, double weight, Scratch& scratch, EstimatedRow& row) const;
   void aim_at_portals(int patch, int rays, const Portals::View& view, Scratch& scratch,

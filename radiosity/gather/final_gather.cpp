@@ -145,10 +145,10 @@ class HemisphereGather {
         if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
         if (is_near_portal(place, ray[r], hit[r])) continue;
         const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
-        add_radiosity(hit[r],
-                      bright_.share(place.bright, at.normal.dot(ray[r].direction), place.rays,
-                                    ray[r], hit[r], aimed_density(place, ray[r], hit[r])),
-                      sum[is_first ? 0 : 1]);
+        const double share =
+            bright_.share(place.bright, at.normal.dot(ray[r].direction), place.rays, ray[r], hit[r],
+                          aimed_density(place, ray[r], hit[r]));
+        add_radiosity(hit[r], share * paths_.base_factor(ray[r], hit[r]), sum[is_first ? 0 : 1]);
       }
     }
   }
@@ -207,7 +207,7 @@ class HemisphereGather {
                                   ? share
                                   : bright_.share(place.bright, at.normal.dot(ray.direction),
                                                   place.rays, ray, hit, aimed);
-      add_radiosity(hit, straight, sum);
+      add_radiosity(hit, straight * paths_.base_factor(ray, hit), sum);
     }
     if (paths_.is_specular(hit.facet)) {
       add_path(ray, hit, random_key(place.key, RandomPurpose::gather_paths, index), share, sum);
@@ -424,21 +424,58 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
   return result;
 }
 
+namespace {
+
+// Per vertex, what a coated base gets of direct light beyond its irradiance, as a share of the
+// latter; empty without coats.
+Eigen::ArrayXf direct_gains(const PatchMesh& mesh, const DirectLight& direct_light,
+                            const std::vector<int>& patch) {
+  if (!direct_light.has_coats()) return {};
+  Eigen::ArrayXf gains = Eigen::ArrayXf::Zero(mesh.vertex_count());
+  const VertexGatherPoints points(mesh);
+  constexpr int grain = 256;
+  parallel_for(mesh.vertex_count(), grain, [&](int begin, int end) {
+    for (int v = begin; v < end; ++v) {
+      const CoatedBase* base = direct_light.base_of(mesh.material[patch[v]]);
+      if (!base) continue;
+      const GatherPoint at = points[v];
+      gains[v] = static_cast<float>(
+          direct_light.base_gain({at.position, at.normal, at.facet}, *base) - 1.0);
+    }
+  });
+  return gains;
+}
+
+}  // namespace
+
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
-                               const BandArray& irradiance) {
+                               const BandArray& irradiance,
+                               const Eigen::Ref<const BandArray>& direct) {
   const std::vector<int> patch = vertex_patches(mesh);
   const BandArray rho = vertex_reflectance(mesh);
+  Eigen::ArrayXf gains;
+  if (direct.rows() > 0) gains = direct_gains(mesh, direct_light, patch);
   const Eigen::Index bands = mesh.reflectance.cols();
   BandArray B(irradiance.rows(), irradiance.cols());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int p = patch[v], facet = mesh.facet[mesh.first_element[p]];
+    const float gain = gains.size() > 0 ? gains[v] : 0.0f;
     for (Eigen::Index k = 0; k < B.cols(); k += bands) {
       B.row(v).segment(k, bands) = rho.row(v) * irradiance.row(v).segment(k, bands);
+      if (gain != 0.0f) {
+        B.row(v).segment(k, bands) += gain * rho.row(v) * direct.row(v).segment(k, bands);
+      }
     }
     if (direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
     B.row(v).segment(direct_light.first_column(facet), bands) += mesh.emission.row(p);
   }
   return B;
+}
+
+BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
+                               const RadiositySolution& solution) {
+  return gatherable_radiosity(mesh, direct_light, solution.irradiance(),
+                              solution.direct_irradiance);
 }
 
 namespace {

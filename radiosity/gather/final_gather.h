@@ -100,9 +100,15 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
                                    const GatherPoints& points, const GatherOptions& options);
 
 /// The radiosity that gather_irradiance reads, W/m^2: rho E, plus the emission of patches that
-/// `direct_light` does not own. `irradiance` E and the result are vertices x columns.
+/// `direct_light` does not own. `irradiance` E, its part `direct` straight from the lights, and the
+/// result are vertices x columns. Coated surfaces reflect direct light by its angle (see
+/// DirectLight::base_gain); with `direct` empty, they reflect all light as if it were even.
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
-                               const BandArray& irradiance);
+                               const BandArray& irradiance,
+                               const Eigen::Ref<const BandArray>& direct = BandArray());
+/// The same for the light of a solution.
+BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
+                               const RadiositySolution& solution);
 
 /// Irradiance at every vertex (vertices x columns, W/m^2) from the lights of DirectLight through
 /// mirrors and glass. `rays` rays of each light leave their power on the elements where they end

@@ -78,11 +78,11 @@ bool GapLight::is_gap(const Eigen::Vector3d& normal, const Ray& ray, const Eleme
   return other.dot(normal) < facing && width < widest_gap * size && width > narrowest_gap * size;
 }
 
-// True if the surface reflects diffusely, and neither mirrors nor emits.
+// True if the surface reflects diffusely, mirrors by a coat at most, and does not emit.
 bool GapLight::may_be_followed(const ElementHit& hit) const {
   const PatchMesh& mesh = lit_.mesh();
   const int patch = mesh.patch[hit.element];
-  return !paths_.is_specular(hit.facet) && !(mesh.emission.row(patch) > 0.0f).any() &&
+  return paths_.is_mostly_diffuse(hit.facet) && !(mesh.emission.row(patch) > 0.0f).any() &&
          (mesh.reflectance.row(patch) > 0.0f).any();
 }
 
@@ -128,10 +128,13 @@ void GapLight::add_end(const ElementCaster& caster, const Ray& ray, const Elemen
       }
     }
   };
-  if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) read(hit, share);
+  if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
+    read(hit, static_cast<float>(paths_.base_factor(caster, ray, hit)) * share);
+  }
   if (!paths_.is_specular(hit.facet)) return;
   paths_.follow(caster, ray, hit, key, [&](const LightArrival& arrival) {
-    if (arrival.hit.element >= 0) read(arrival.hit, share * arrival.throughput);
+    if (arrival.hit.element < 0) return;
+    read(arrival.hit, static_cast<float>(arrival.base_factor) * share * arrival.throughput);
   });
 }
 

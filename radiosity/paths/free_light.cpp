@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/patches/patch_sampler.h"
+#include "scene/coat.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -180,10 +181,11 @@ class Collector {
         }
       });
     }
+    const std::vector<Spectrum> mirrored = mean_mirrored(scene.materials);
     for (int i = 0; i < mesh.patch_count(); ++i) {
       from_afar_.col(i) += mesh.area[i] * E.row(i).transpose().cast<double>();
       const auto material = static_cast<std::size_t>(mesh.material[static_cast<std::size_t>(i)]);
-      const Eigen::ArrayXd kept = 1.0 - scene.materials[material].specular.cast<double>();
+      const Eigen::ArrayXd kept = 1.0 - mirrored[material].cast<double>();
       for (Eigen::Index k = 0; k < from_afar_.rows(); k += bands_) {
         light_.emitted.segment(k, bands_) += kept * from_afar_.col(i).segment(k, bands_);
       }

@@ -11,7 +11,7 @@ namespace lightwell {
 
 LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
                        PathNormals normals)
-    : scene_(scene), caster_(caster), max_depth_(max_depth) {
+    : scene_(scene), caster_(caster), max_depth_(max_depth), bases_(scene.materials) {
   if (normals == PathNormals::smooth) smooth_.emplace(scene);
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
@@ -29,6 +29,33 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
   }
 }
 
+bool LightPaths::is_mostly_diffuse(int facet) const {
+  return !is_specular(facet) || scene_.materials[material_[facet]].coat.has_value();
+}
+
+// The normal, unit, on the side that the light comes from.
+Eigen::Vector3d LightPaths::normal_at(const ElementCaster& caster, const ElementHit& hit,
+                                      const Eigen::Vector3d& point) const {
+  const Sphere* sphere = sphere_[hit.facet];
+  const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
+  Eigen::Vector3d normal = normal_[hit.facet];
+  if (sphere) {
+    normal = (point - (pose ? *pose * sphere->center : sphere->center)).normalized();
+  } else if (pose) {
+    normal = pose->linear() * normal;
+  }
+  return hit.from_back ? Eigen::Vector3d(-normal) : normal;
+}
+
+double LightPaths::base_factor(const ElementCaster& caster, const Ray& ray,
+                               const ElementHit& hit) const {
+  if (bases_.empty()) return 1.0;
+  const CoatedBase* base = bases_.of(material_[hit.facet]);
+  if (!base) return 1.0;
+  const Eigen::Vector3d normal = normal_at(caster, hit, ray.origin + hit.t * ray.direction);
+  return base->factor(-normal.dot(ray.direction.normalized()));
+}
+
 bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit,
                              std::uint64_t key, PathLight& light, PathLosses& losses) const {
   const Material& material = scene_.materials[material_[hit.facet]];
@@ -38,15 +65,8 @@ bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const Elemen
     return false;
   }
   const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
-  const Sphere* sphere = sphere_[hit.facet];
   const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
-  Eigen::Vector3d normal = normal_[hit.facet];
-  if (sphere) {
-    normal = (point - (pose ? *pose * sphere->center : sphere->center)).normalized();
-  } else if (pose) {
-    normal = pose->linear() * normal;
-  }
-  if (hit.from_back) normal = -normal;
+  const Eigen::Vector3d normal = normal_at(caster, hit, point);
   const Eigen::Vector3d direction = ray.direction.normalized();
   const bool is_smooth = smooth_ && smooth_->is_given(hit.facet);
   Eigen::Vector3d bent = normal;
@@ -132,7 +152,8 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
     }
     const std::uint64_t key_here = random_key(key, static_cast<std::uint64_t>(depth));
     if (!continue_at(caster, ray, hit, key_here, light, losses)) return losses;
-    if (depth >= max_depth_ && !survives(key_here, light, losses)) return losses;
+    const bool may_end = depth >= max_depth_ || met.coat;
+    if (may_end && !survives(key_here, light, losses)) return losses;
     caster.closest_hits({&ray, 1}, {&hit, 1});
     absorb(ray, hit, light, losses);
     const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));
@@ -146,6 +167,7 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
     if (is_diffuse(hit.facet) && hit.element >= 0) {
       arrive({.hit = hit,
               .throughput = throughput,
+              .base_factor = base_factor(caster, ray, hit),
               .position = ray.origin + hit.t * ray.direction,
               .through_panes_only = light.through_panes_only});
     }
@@ -156,7 +178,10 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
 PathLosses LightPaths::follow(
     const Ray& ray, const ElementHit& hit, std::uint64_t key,
     const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const {
-  const auto without_place = [&](const LightArrival& at) { arrive(at.hit, at.throughput); };
+  const auto without_place = [&](const LightArrival& at) {
+    if (at.base_factor == 1.0) return arrive(at.hit, at.throughput);
+    arrive(at.hit, static_cast<float>(at.base_factor) * at.throughput);
+  };
   return follow(ray, hit, key, std::function<void(const LightArrival&)>(without_place));
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
+#include "scene/coat.h"
 #include "scene/facet_normals.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
@@ -26,6 +27,7 @@ struct PathLosses {
 struct LightArrival {
   const ElementHit& hit;
   const Spectrum& throughput;
+  double base_factor;        ///< LightPaths::base_factor() of the arrival
   Eigen::Vector3d position;  ///< m
   bool through_panes_only;   ///< the path went straight on, through smooth thin panes alone
 };
@@ -40,9 +42,11 @@ enum class PathNormals {
 /// & Puech 1989). One scattering sample continues each ray: a branch of glass with Fresnel's
 /// probability, a direction of a rough surface's lobe (see sample_scattering). The mean is exact.
 /// Absorbing bodies attenuate along the path (see Media). Smooth surfaces polarise the light, which
-/// decides over its share at the surfaces behind them (see Polarisation). Paths that go on beyond
-/// `max_depth` (see deepest_path()) end by Russian roulette once they are weak: light in a closed
-/// body of brushed metal would be followed to the last of 128 surfaces otherwise.
+/// decides over its share at the surfaces behind them (see Polarisation).
+///
+/// Weak paths end by Russian roulette behind a coat, which mirrors a twentieth of the light, and
+/// beyond `max_depth` (see deepest_path()): light in a closed body of brushed metal would be
+/// followed to the last of 128 surfaces otherwise.
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
@@ -52,6 +56,15 @@ class LightPaths {
   bool has_specular() const { return has_specular_; }
   /// True if the facet mirrors or transmits at least a part of the light.
   bool is_specular(int facet) const { return specular_[facet] != 0; }
+  /// True if the facet mirrors by a coat, if at all: light there is mostly that of its base.
+  bool is_mostly_diffuse(int facet) const;
+  /// Light that leaves the diffuse base of a facet against a ray, or that the base gets along the
+  /// ray, over that at all angles alike: CoatedBase::factor(), and 1 without a coat. `hit` is where
+  /// the ray ends.
+  double base_factor(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const;
+  double base_factor(const Ray& ray, const ElementHit& hit) const {
+    return base_factor(caster_, ray, hit);
+  }
   /// True if the facet reflects or emits diffusely.
   bool is_diffuse(int facet) const { return diffuse_[facet] != 0; }
 
@@ -59,6 +72,7 @@ class LightPaths {
   /// facet's own diffuse share, if any, is left to the caller. `key` decides the branches.
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const LightArrival&)>& arrive) const;
+  /// The same; `arrive` gets the throughput times base_factor.
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const;
   /// Follows rays of another caster of the same scene, such as ElementCaster::at().
@@ -74,6 +88,8 @@ class LightPaths {
     Polarisation polarisation{};
     bool through_panes_only = true;
   };
+  Eigen::Vector3d normal_at(const ElementCaster& caster, const ElementHit& hit,
+                            const Eigen::Vector3d& point) const;
   bool continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit, std::uint64_t key,
                    PathLight& light, PathLosses& losses) const;
   bool survives(std::uint64_t key, PathLight& light, PathLosses& losses) const;
@@ -84,6 +100,7 @@ class LightPaths {
   int max_depth_ = 8;
   bool has_specular_ = false, absorbs_ = false;
   std::vector<char> specular_, diffuse_;
+  CoatedBases bases_;
   std::vector<int> material_;            // per facet
   std::vector<Eigen::Vector3d> normal_;  // per facet; zero for spheres
   std::vector<const Sphere*> sphere_;    // per facet; null for polygons

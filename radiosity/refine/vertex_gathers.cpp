@@ -257,7 +257,9 @@ void VertexGathers::sharpen_radiosity(const BandArray& caustic) {
   GatheredIrradiance gathered = sharpened_indirect(radiosity_);
   BandArray irradiance = direct_.topRows(mesh.vertex_count()) + gathered.indirect;
   if (caustic.size() > 0) irradiance += caustic;
-  radiosity_ = with_pools(mesh, radiosity_, gatherable_radiosity(mesh, direct_light_, irradiance));
+  radiosity_ = with_pools(
+      mesh, radiosity_,
+      gatherable_radiosity(mesh, direct_light_, irradiance, direct_.topRows(mesh.vertex_count())));
   if (!has_noise_goal_) return;
   const Eigen::ArrayXf rays =
       Eigen::Map<const Eigen::ArrayXi>(rays_.data(), mesh.vertex_count()).cast<float>();
@@ -351,7 +353,8 @@ BandArray VertexGathers::sharpened_by_channel(const BandArray& direct,
       direct.topRows(mesh.vertex_count()) + sharpened_indirect(light.radiosity).indirect;
   if (light.caustic.size() > 0) irradiance += light.caustic;
   return with_pools(mesh, light.radiosity,
-                    gatherable_radiosity(mesh, light.direct_light, irradiance));
+                    gatherable_radiosity(mesh, light.direct_light, irradiance,
+                                         direct.topRows(mesh.vertex_count())));
 }
 
 GatheredIrradiance VertexGathers::values_by_channel(

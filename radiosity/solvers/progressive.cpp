@@ -15,6 +15,7 @@
 #include "radiosity/form_factors/ray_cast_rows.h"
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/solvers/solve_channels.h"
+#include "scene/coat.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -82,6 +83,7 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
                                            const FreeLight& free_light)
     : scene_(scene),
       mesh_(mesh),
+      mirrored_(mean_mirrored(scene.materials)),
       rows_(std::move(rows)),
       options_(options),
       channels_(channels),
@@ -106,7 +108,7 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
 void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
   const Eigen::Index bands = mesh_.emission.cols();
   for (int i = 0; i < mesh_.patch_count(); ++i) {
-    const Spectrum& specular = scene_.materials[mesh_.material[i]].specular;
+    const Spectrum& specular = mirrored_[static_cast<std::size_t>(mesh_.material[i])];
     for (Eigen::Index k = 0; k < unshot_.cols(); ++k) {
       const float E = free_light.irradiance(i, k), rho = mesh_.reflectance(i, k % bands);
       radiosity_(i, k) += rho * E;
@@ -227,12 +229,39 @@ int ProgressiveRadiosity::rays_of(int patch) const {
   return static_cast<int>(std::bit_floor(rays));
 }
 
+// What coats mirror of a row's light over mean_mirrored() of it, per band: the light that arrives
+// or is lost beyond what was sent has been mirrored.
+Spectrum ProgressiveRadiosity::mirrored_by_coats(const EstimatedRow& row) const {
+  Spectrum beyond = row.specular_escaped + row.absorbed + row.cut +
+                    static_cast<float>(row.escaped + row.specular - 1.0);
+  Spectrum by_coats = Spectrum::Zero(beyond.size());
+  const auto arrive = [&](int j, const Spectrum& share) {
+    const int m = mesh_.material[j];
+    const Spectrum mirrored = share * mirrored_[static_cast<std::size_t>(m)];
+    beyond += share;
+    if (scene_.materials[m].coat) {
+      by_coats += mirrored;
+    } else {
+      beyond -= mirrored;
+    }
+  };
+  for (const auto& [j, share] : row.shares) arrive(j, Spectrum::Constant(beyond.size(), share));
+  for (std::size_t s = 0; s < row.specular_patch.size(); ++s) {
+    arrive(row.specular_patch[s], row.specular_share.row(static_cast<Eigen::Index>(s)).transpose());
+  }
+  constexpr float least = 0.25f, most = 4.0f;
+  return (by_coats > 0.0f).select((beyond / by_coats).max(least).min(most), 1.0f);
+}
+
 void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
   const Eigen::ArrayXd watts = mesh_.area[shot.patch] * shot.radiosity.cast<double>();
   const Eigen::Index columns = unshot_.cols(), bands = mesh_.emission.cols();
+  const Spectrum of_mean = mirrored_by_coats(row);
   // share_of(band): share of the shot light that arrives at patch j.
   const auto arrive = [&](int j, auto&& share_of) {
-    const Spectrum& specular = scene_.materials[mesh_.material[j]].specular;
+    const int m = mesh_.material[j];
+    Spectrum specular = mirrored_[static_cast<std::size_t>(m)];
+    if (scene_.materials[m].coat) specular *= of_mean;
     for (Eigen::Index k = 0; k < columns; ++k) {
       const Eigen::Index band = k % bands;
       const double arriving = watts[k] * static_cast<double>(share_of(band));

@@ -109,10 +109,12 @@ class ProgressiveRadiosity {
   BandEnergy energy_by_column() const;
   std::vector<int> choose(int most) const;
   int rays_of(int patch) const;
+  Spectrum mirrored_by_coats(const EstimatedRow& row) const;
   void receive(const Shot& shot, const EstimatedRow& row);
 
   const Scene& scene_;
   const PatchMesh& mesh_;
+  std::vector<Spectrum> mirrored_;  // of each material, share of even light
   ShotRows rows_;
   ProgressiveOptions options_;
   EmitterChannels channels_;

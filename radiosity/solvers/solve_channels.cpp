@@ -1,4 +1,5 @@
 #include "radiosity/solvers/solve_channels.h"
+#include "scene/coat.h"
 
 #include <algorithm>
 
@@ -110,17 +111,51 @@ void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors
   solution.residual = largest > 0.0 ? residual / largest : 0.0;
 }
 
+namespace {
+
+// What coats mirror of the light that arrives at them, over mean_mirrored() of it, per band: coats
+// mirror less of steep light and more of grazing light. The light that arrived or was lost beyond
+// what was sent has been mirrored.
+Eigen::ArrayXd mirrored_by_coats(const Scene& scene, const PatchMesh& mesh,
+                                 const FormFactors& form_factors, const BandArray& B,
+                                 const BandArray& E, const FreeLight& free_light) {
+  const std::vector<Spectrum> share = mean_mirrored(scene.materials);
+  Eigen::ArrayXd beyond = Eigen::ArrayXd::Zero(B.cols()), by_coats = beyond;
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    const auto m = static_cast<std::size_t>(mesh.material[i]);
+    const Spectrum B_i = B.row(i).transpose(), E_i = E.row(i).transpose();
+    const Spectrum lost =
+        (form_factors.absorbed_by_specular(i) + form_factors.escaped(i) - 1.0f) * B_i;
+    beyond += mesh.area[i] * (E_i + lost).cast<double>();
+    const Eigen::ArrayXd mirrored = mesh.area[i] * (share[m] * E_i).cast<double>();
+    (scene.materials[m].coat ? by_coats : beyond) +=
+        scene.materials[m].coat ? mirrored : Eigen::ArrayXd(-mirrored);
+  }
+  if (!free_light.empty()) beyond += free_light.absorbed + free_light.escaped - free_light.emitted;
+  // Between steep light and light that grazes all coats.
+  constexpr double least = 0.25, most = 4.0;
+  return (by_coats > 0.0).select((beyond / by_coats).max(least).min(most), 1.0);
+}
+
+}  // namespace
+
 BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFactors& form_factors,
                        const BandArray& B, const FreeLight& free_light) {
   BandArray E = gather(form_factors, B);
   if (!free_light.empty()) E += free_light.irradiance;
   BandEnergy energy = BandEnergy::Zero(4, B.cols());
+  std::vector<Spectrum> mirrored = mean_mirrored(scene.materials);
+  const Eigen::ArrayXf of_mean =
+      mirrored_by_coats(scene, mesh, form_factors, B, E, free_light).cast<float>();
+  for (std::size_t m = 0; m < mirrored.size(); ++m) {
+    if (scene.materials[m].coat) mirrored[m] *= of_mean;
+  }
   for (int i = 0; i < mesh.patch_count(); ++i) {
     const double A = mesh.area[i];
     const Spectrum B_i = B.row(i).transpose(), E_i = E.row(i).transpose();
     const Spectrum M_i = mesh.emission.row(i).transpose(),
                    rho = mesh.reflectance.row(i).transpose();
-    const Spectrum kept = 1.0f - rho - scene.materials[mesh.material[i]].specular;
+    const Spectrum kept = 1.0f - rho - mirrored[static_cast<std::size_t>(mesh.material[i])];
     const auto add = [&](int row, const Spectrum& per_area) {
       energy.row(row) += A * per_area.cast<double>().transpose();
     };

@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <functional>
+#include <memory>
 
+#include "scene/coat.h"
 #include "scene/optics.h"
 
 namespace lightwell {
@@ -30,28 +33,6 @@ double metal_reflectance(double cosine, std::complex<double> index) {
 
 }  // namespace
 
-double diffuse_fresnel(double index) {
-  return diffuse_mean([index](double cosine) { return fresnel_reflectance(cosine, index); });
-}
-
-Coat::Coat(double index, bool saturating, const Spectrum& specular)
-    : outside_(static_cast<float>(diffuse_fresnel(index))),
-      inside_(static_cast<float>(diffuse_fresnel(1.0 / index))),
-      saturating_(saturating),
-      specular_(specular) {}
-
-Spectrum Coat::operator()(const Spectrum& rho) const {
-  const Spectrum returned = saturating_ ? rho : Spectrum(Spectrum::Ones(rho.size()));
-  return (specular_ * outside_ +
-          (1.0f - outside_) * (1.0f - inside_) * rho / (1.0f - inside_ * returned))
-      .min(1.0f);
-}
-
-Spectrum coated_reflectance(const Spectrum& rho, double index, bool saturating,
-                            const Spectrum& specular) {
-  return Coat(index, saturating, specular)(rho);
-}
-
 Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k) {
   Spectrum mean(eta.size());
   for (Eigen::Index i = 0; i < mean.size(); ++i) {
@@ -60,6 +41,48 @@ Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k) {
         diffuse_mean([&](double cosine) { return metal_reflectance(cosine, index); }));
   }
   return mean;
+}
+
+namespace {
+
+void lay_coat_alone(Material& material, double index, double alpha, const Spectrum& specular) {
+  material.coat = Coat{.index_of_refraction = static_cast<float>(index)};
+  material.specular = specular;
+  material.specular_roughness = roughness_of(alpha);
+}
+
+// Replaces the base's reflectance, and that of its picture, by `coated` of it.
+void replace_base(Material& material, const std::function<Spectrum(const Spectrum&)>& coated) {
+  material.reflectance = coated(material.reflectance);
+  if (!material.texture) return;
+  const Spectrum factor = material.texture->factor;
+  std::shared_ptr<const Texture>& picture = material.texture->image.picture;
+  picture = std::make_shared<const Texture>(
+      picture->mapped([&](const Eigen::Array3f& texel) -> Eigen::Array3f {
+        const Spectrum base = factor * texel;
+        return coated(base);
+      }));
+  material.texture->factor.setOnes();
+}
+
+}  // namespace
+
+void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
+              bool saturating) {
+  lay_coat_alone(material, index, alpha, specular);
+  const CoatOverBase coat(material, saturating);
+  replace_base(material, [&](const Spectrum& base) { return coat.reflectance(base); });
+}
+
+void lay_simple_coat(Material& material, double index, double alpha, const Spectrum& specular) {
+  lay_coat_alone(material, index, alpha, specular);
+  const auto passed = static_cast<float>(1.0 - CoatedBase(material).mean_mirrored());
+  material.reflectance *= passed;
+  if (material.texture) material.texture->factor *= passed;
+}
+
+double alpha_of_exponent(double exponent) {
+  return std::sqrt(2.0 / (exponent + 2.0));
 }
 
 Dielectric thin_pane(double index, const Spectrum& tint, double alpha) {

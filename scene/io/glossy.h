@@ -13,38 +13,32 @@ inline constexpr double glossy_alpha = 0.5;
 /// Largest alpha of a surface that is read as smooth: a lobe of a thirtieth of a degree.
 inline constexpr double smooth_alpha = 1e-3;
 
+/// Share of metal below which a material counts as a dielectric, which has a coat.
+inline constexpr double least_metallic = 0.02;
+
 /// Least share of clear glass in a mixed material that is read as wholly clear. Materials with a
 /// smaller share are read as opaque.
 inline constexpr double mostly_clear = 0.5;
-
-/// Reflectance of a smooth dielectric for diffuse light: 2 integral F(cos) cos dcos, [0,1]. `index`
-/// > 0 is relative to the outside.
-double diffuse_fresnel(double index);
-
-/// Reflectance for diffuse light of a diffuse base rho under a smooth coat of index n, the coat's
-/// own reflection times `specular` included (Saunderson 1942): specular F_o + (1 - F_o)(1 - F_i)
-/// rho / (1 - rho F_i), at most 1. F_o and F_i are diffuse_fresnel() from outside and from within.
-/// With `saturating` false, rho in the denominator is taken as 1, a common simplification.
-Spectrum coated_reflectance(const Spectrum& rho, double index, bool saturating,
-                            const Spectrum& specular);
-
-/// coated_reflectance() of one coat over many bases: F_o and F_i are integrated once.
-class Coat {
- public:
-  Coat(double index, bool saturating, const Spectrum& specular);
-  Spectrum operator()(const Spectrum& rho) const;
-
- private:
-  float outside_, inside_;  // F_o, F_i
-  bool saturating_;
-  Spectrum specular_;
-};
 
 /// Reflectance of a metal of refractive index eta + i k for diffuse light, by Fresnel's equations
 /// (Born & Wolf, 14.2). The diffuse mean is used because a Material reflects the same at every
 /// angle: a dim metal such as tungsten reflects a tenth more of diffuse light than at normal
 /// incidence.
 Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k);
+
+/// Lays a clear coat of the index of refraction `index`, [lowest_coat_index, highest_index], and
+/// GGX width `alpha` over a material whose `reflectance` and texture are those of the base (see
+/// CoatOverBase). The coat mirrors Fresnel's share times `specular`. `saturating` as for
+/// CoatOverBase.
+void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
+              bool saturating = true);
+
+/// Lays a coat as lay_coat(), but light does not go to and fro below it: rho = (1 - F_o) base, as
+/// in glTF's materials.
+void lay_simple_coat(Material& material, double index, double alpha, const Spectrum& specular);
+
+/// GGX width of Phong's highlight cos^n, sqrt(2 / (n + 2)) (Walter et al. 2007).
+double alpha_of_exponent(double exponent);
 
 /// Pane without thickness; `tint` is the transmittance of the light that is not reflected.
 Dielectric thin_pane(double index, const Spectrum& tint, double alpha = 0.0);

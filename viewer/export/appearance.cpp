@@ -8,6 +8,7 @@
 #include "raytrace/display.h"
 #include "raytrace/light_meter.h"
 #include "raytrace/round_step.h"
+#include "scene/coat.h"
 #include "scene/parallel.h"
 #include "scene/specular.h"
 
@@ -20,6 +21,17 @@ const Material* find_material(const PatchMesh& mesh, const std::vector<Material>
                               int element) {
   const auto m = static_cast<std::size_t>(mesh.material[mesh.patch[element]]);
   return m < materials.size() ? &materials[m] : nullptr;
+}
+
+// Share of light that a specular material mirrors or lets pass.
+Spectrum passed_on(const Material& material) {
+  return material.dielectric ? crossing_share(*material.dielectric) : mean_mirrored(material);
+}
+std::vector<Spectrum> passed_on(const std::vector<Material>& materials) {
+  std::vector<Spectrum> shares;
+  shares.reserve(materials.size());
+  for (const Material& material : materials) shares.push_back(passed_on(material));
+  return shares;
 }
 
 /// Even steps, each 1, 2 or 5 times a power of ten: at least two, at most five.
@@ -55,12 +67,12 @@ BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>&
   const PatchMesh& mesh = solved.mesh;
   const BandArray E = solved.solution.irradiance();
   BandArray B = vertex_radiosity(mesh, solved.solution);
+  const std::vector<Spectrum> shares = passed_on(materials);
   std::vector<char> done(static_cast<std::size_t>(mesh.vertex_count()), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const Material* material = find_material(mesh, materials, e);
     if (!material || !material->is_specular()) continue;
-    const Spectrum share =
-        material->dielectric ? crossing_share(*material->dielectric) : material->specular;
+    const Spectrum& share = shares[static_cast<std::size_t>(material - materials.data())];
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       const int v = mesh.corners[e][c];
       if (!done[v]) B.row(v) += share.transpose() * E.row(v);
@@ -75,8 +87,7 @@ Spectrum shown_reflectance(const PatchMesh& mesh, const std::vector<Material>& m
   Spectrum share = mesh.reflectance.row(patch).transpose();
   const Material* material = find_material(mesh, materials, mesh.first_element[patch]);
   if (!material || !material->is_specular()) return share;
-  return share +
-         (material->dielectric ? crossing_share(*material->dielectric) : material->specular);
+  return share + passed_on(*material);
 }
 
 int first_corner(const PatchMesh& mesh, int element, const BandArray& radiance) {

@@ -110,7 +110,7 @@ class MaterialNumbers {
       const Material known = m < scene_.materials.size() ? scene_.materials[m] : Material{};
       materials_.push_back({.name = name_or_number(known.name, "material", material),
                             .is_glass = known.dielectric.has_value(),
-                            .is_mirror = !known.dielectric && known.is_specular()});
+                            .is_mirror = !known.dielectric && !known.coat && known.is_specular()});
     }
     return at->second;
   }

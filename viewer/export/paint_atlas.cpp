@@ -122,7 +122,7 @@ BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& mode
     found = gather_direct({scene, caster, direct_light}, points, gathering);
   } else {
     if (s.caustic_irradiance.size() > 0) interpolated(s.caustic_irradiance);
-    const BandArray B = gatherable_radiosity(solved.mesh, direct_light, s.irradiance());
+    const BandArray B = gatherable_radiosity(solved.mesh, direct_light, s);
     gathering.portals = find_portals(scene, caster, brightness_of_vertices(solved.mesh, B));
     const GatheredIrradiance all =
         gather_irradiance({scene, caster, direct_light}, B, points, gathering);

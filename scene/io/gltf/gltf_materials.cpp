@@ -308,6 +308,26 @@ void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, boo
     remarks_.add("Metals of roughness above 0.7 were read as diffuse", material.name);
   }
   set_metallic(material, base, metallic, alpha);
+  if (metallic < least_metallic) set_coat(from, alpha, material);
+}
+
+// Lays on the coat that a dielectric is, or its clear coat. Highlights of a roughness above 0.7 are
+// nearly diffuse and left to the base.
+void GltfMaterials::set_coat(const GltfObject& from, double alpha, Material& material) {
+  const auto clear = from.extension("KHR_materials_clearcoat");
+  const double clear_share = share_or(clear, "clearcoatFactor", 0.0);
+  if (clear_share >= mostly_clear) {
+    const double roughness = share_or(clear, "clearcoatRoughnessFactor", 0.0);
+    constexpr double of_clear_coats = 1.5;
+    return lay_simple_coat(material, of_clear_coats, roughness * roughness,
+                           Spectrum::Constant(3, static_cast<float>(clear_share)));
+  }
+  const auto specular = from.extension("KHR_materials_specular");
+  const double index = number_or(from.extension("KHR_materials_ior"), "ior", 1.5);
+  const Spectrum share = static_cast<float>(share_or(specular, "specularFactor", 1.0)) *
+                         color(specular, "specularColorFactor", 3).max(0.0f).min(1.0f);
+  const bool mirrors = index > 1.0 && index <= highest_index && (share > 0.0f).any();
+  if (mirrors && alpha <= glossy_alpha) lay_simple_coat(material, index, alpha, share);
 }
 
 void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, double alpha,

@@ -31,6 +31,7 @@ class GltfMaterials {
   Spectrum base_color(const GltfObject& from);
   void set_surface(const GltfObject& from, bool is_closed, Material& material);
   void set_shaded(const GltfObject& from, const Spectrum& base, bool is_closed, Material& material);
+  void set_coat(const GltfObject& from, double alpha, Material& material);
   void set_clear(const GltfObject& from, const Spectrum& base, double alpha, bool is_closed,
                  Material& material);
   Spectrum emission(const GltfObject& from);

@@ -130,10 +130,7 @@ Material MitsubaMaterials::read_new(const MitsubaNode& bsdf, Pixels pixels) {
     return wrapped(bsdf, pixels);
   if (is({"blendbsdf", "mixturebsdf"})) return blend(bsdf, pixels);
   if (type == "null") return clear_bsdf(1.0, Spectrum::Ones(3));
-  if (is({"phong", "ward", "modified_phong"})) {
-    remarks_.add(fmt::format("BSDF '{}': its highlight was left out in", type), bsdf.label());
-    return diffuse(bsdf, "diffuse_reflectance", pixels);
-  }
+  if (is({"phong", "ward", "modified_phong"})) return highlighted(bsdf, pixels);
   remarks_.add(
       fmt::format("BSDF plugin '{}' is not known and got a diffuse reflectance of 0.5", type),
       bsdf.label());
@@ -220,23 +217,45 @@ Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf, Pixels pixels) {
 }
 
 Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
-  const auto picture = colors_.texture(bsdf, "diffuse_reflectance", pixels);
-  const Spectrum rho =
-      picture ? picture->mean : colors_.share_or(bsdf, "diffuse_reflectance", 0.5f, pixels);
+  Material material = diffuse(bsdf, "diffuse_reflectance", pixels);
   const Spectrum specular = colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
-  remarks_.add("Plastics were read as diffuse, with what their gloss reflects in the mean",
-               bsdf.label());
-  const Coat coat(index_ratio(bsdf, polypropylene), bsdf.boolean_or("nonlinear", false), specular);
-  Material material = opaque_bsdf(coat(rho));
-  if (!picture) return material;
-  material.texture = picture->texture;
-  SurfaceTexture& image = material.texture->image;
-  image.picture = std::make_shared<const Texture>(
-      image.picture->mapped([&](const Eigen::Array3f& texel) -> Eigen::Array3f {
-        const Spectrum base = picture->texture.factor * texel;
-        return coat(base);
-      }));
-  material.texture->factor.setOnes();
+  const double alpha = bsdf.type == "roughplastic" ? roughness(bsdf) : 0.0;
+  const double index = std::max(index_ratio(bsdf, polypropylene), double{lowest_coat_index});
+  // Without `nonlinear`, Mitsuba's base reflects as if it were white below the coat.
+  lay_coat(material, index, alpha, specular, bsdf.boolean_or("nonlinear", false));
+  return material;
+}
+
+// A smooth or rough coating over another BSDF. Light passes the coating's absorption twice.
+Material MitsubaMaterials::coated(const MitsubaNode& bsdf, Material material, Pixels pixels) {
+  if (material.is_specular()) {
+    remarks_.add("Coatings over mirrors and glass were left out", bsdf.label());
+    return material;
+  }
+  Spectrum passed = Spectrum::Ones(3);
+  if (const auto sigma = colors_.positive(bsdf, "sigma_a")) {
+    passed = (-2.0f * static_cast<float>(bsdf.number_or("thickness", 1.0)) * *sigma).exp();
+  }
+  material.reflectance *= passed;
+  if (material.texture) material.texture->factor *= passed;
+  const double alpha = bsdf.type == "roughcoating" ? roughness(bsdf) : 0.0;
+  const double index = std::max(index_ratio(bsdf, bk7), double{lowest_coat_index});
+  lay_coat(material, index, alpha, colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels));
+  return material;
+}
+
+// Phong's and Ward's highlights: a share of the light, at every angle alike.
+Material MitsubaMaterials::highlighted(const MitsubaNode& bsdf, Pixels pixels) {
+  Material material = diffuse(bsdf, "diffuse_reflectance", pixels);
+  const Spectrum share = colors_.share_or(bsdf, "specular_reflectance", 0.2f, pixels);
+  const double alpha = bsdf.type == "ward"
+                           ? roughness(bsdf)
+                           : alpha_of_exponent(colors_.number_or(bsdf, "exponent", 30.0));
+  const Spectrum brightest =
+      material.texture
+          ? Spectrum(material.texture->factor * material.texture->image.picture->largest())
+          : material.reflectance;
+  add_highlight(material, share.min(1.0f - brightest).max(0.0f), alpha);
   return material;
 }
 
@@ -261,10 +280,19 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
   remarks_.add("Principled BSDFs were read by their base colour, metallic and roughness",
                bsdf.label());
   Material material = opaque_bsdf(black());
-  set_metallic(material, color, share("metallic", 0.0), alpha);
+  const double metallic = share("metallic", 0.0);
+  set_metallic(material, color, metallic, alpha);
   if (picture && (material.reflectance > 0.0f).any()) {
     material.texture = picture->texture;
     material.texture->factor *= (color > 0.0f).select(material.reflectance / color, 0.0f);
+  }
+  if (metallic < least_metallic && alpha <= glossy_alpha) {
+    // The reflectance 0.08 specular at normal incidence, as an index of refraction.
+    const double root = std::sqrt(0.08 * share("specular", 0.5));
+    const double index =
+        bsdf.property("eta") ? this->index(bsdf, "eta", 1.5) : (1.0 + root) / (1.0 - root);
+    lay_simple_coat(material, std::clamp(index, double{lowest_coat_index}, double{highest_index}),
+                    alpha, Spectrum::Ones(3));
   }
   return material;
 }
@@ -272,6 +300,9 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
 Material MitsubaMaterials::wrapped(const MitsubaNode& bsdf, Pixels pixels) {
   const auto inner = tree_.children(bsdf, "bsdf");
   if (inner.empty()) bsdf.fail("holds no BSDF");
+  if (bsdf.type == "coating" || bsdf.type == "roughcoating") {
+    return coated(bsdf, read(*inner.front(), pixels), pixels);
+  }
   if (bsdf.type != "mask") {
     remarks_.add(fmt::format("BSDF '{}' was read as what it covers", bsdf.type), bsdf.label());
     return read(*inner.front(), pixels);
@@ -327,6 +358,7 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
     sum.reflectance += weights[i] * part.reflectance;
     sum.specular += weights[i] * part.specular;
     sum.specular_roughness = std::max(sum.specular_roughness, part.specular_roughness);
+    if (part.coat) sum.coat = part.coat;
   }
   // The weights of a mixture may add up to more than 1; the reflectance must not exceed 1.
   const Spectrum excess = (sum.reflectance + sum.specular).max(1.0f);

@@ -32,6 +32,8 @@ class MitsubaMaterials {
   Material conductor(const MitsubaNode& bsdf, Pixels pixels);
   Material dielectric(const MitsubaNode& bsdf, Pixels pixels);
   Material plastic(const MitsubaNode& bsdf, Pixels pixels);
+  Material coated(const MitsubaNode& bsdf, Material material, Pixels pixels);
+  Material highlighted(const MitsubaNode& bsdf, Pixels pixels);
   Material principled(const MitsubaNode& bsdf, Pixels pixels);
   Material wrapped(const MitsubaNode& bsdf, Pixels pixels);
   Material two_sided(const MitsubaNode& bsdf, Pixels pixels);

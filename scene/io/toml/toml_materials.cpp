@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
+#include "scene/coat.h"
 #include "scene/errors.h"
 #include "scene/io/toml/toml_pictures.h"
 
@@ -168,6 +170,42 @@ void read_glass(const TomlTable& table, const TomlBands& bands, Material& materi
   }
 }
 
+// A coat: its index of refraction alone, or { ior = ..., roughness = ..., share = ... }.
+void read_coat(const TomlTable& table, const TomlBands& bands, Material& material) {
+  const auto coat = table.find("coat");
+  if (!coat) return;
+  for (const char* other : {"specular", "roughness", "glass"}) {
+    if (const auto value = table.find(other)) {
+      value->fail(
+          "contradicts 'coat', which mirrors by Fresnel's law alone (and has its roughness as a "
+          "key "
+          "of its own); remove one of the two keys");
+    }
+  }
+  std::optional<TomlTable> t;
+  if (coat->is_table()) t = coat->table({"ior", "roughness", "share"});
+  const TomlValue ior = t ? t->require("ior") : *coat;
+  const auto index = static_cast<float>(ior.positive());
+  if (!(index >= lowest_coat_index && index <= highest_index)) {
+    ior.fail(
+        fmt::format("is {:g}, but the index of refraction of a coat must lie between {} and {} "
+                    "(lacquer: 1.5)",
+                    ior.number(), lowest_coat_index, highest_index));
+  }
+  material.coat = Coat{.index_of_refraction = index};
+  material.specular =
+      t ? spectral_or(*t, "share", bands, 1.0f) : constant_spectrum(bands.bands, 1.0f);
+  if (t) material.specular_roughness = read_roughness(*t);
+  const Spectrum mirrored = mean_mirrored(material);
+  constexpr float rounding = 1e-5f;
+  if (((material.reflectance + mirrored) > 1.0f + rounding).any()) {
+    coat->fail(fmt::format(
+        "mirrors {:.4f} of even light, and the reflectance {:.4f} besides makes more than 1; "
+        "under this coat the reflectance is at most {:.4f}",
+        mirrored.maxCoeff(), material.reflectance.maxCoeff(), 1.0f - mirrored.maxCoeff()));
+  }
+}
+
 void read_emission(const TomlTable& table, const TomlBands& bands, TomlMaterial& result) {
   const auto given = table.present({"radiance", "exitance", "power"});
   if (given.size() > 1) {
@@ -252,7 +290,7 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures) {
   const TomlTable table =
       value.table({"reflectance", "specular", "roughness", "glass", "sides", "radiance", "exitance",
-                   "power", "emits", "texture", "mask"});
+                   "power", "emits", "texture", "mask", "coat"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
@@ -274,6 +312,7 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
   if (const auto sides = table.find("sides")) {
     material.one_sided = sides->one_of({"one", "two"}) == "one";
   }
+  read_coat(table, bands, material);
   read_glass(table, bands, material);
   read_toml_pictures(table, bands, pictures, material);
   read_emission(table, bands, result);

@@ -1,0 +1,108 @@
+#include "scene/coat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "scene/optics.h"
+#include "scene/sampling.h"
+#include "scene/specular.h"
+
+namespace lightwell {
+namespace {
+
+// Share that a rough coat mirrors at one angle: the mean weight of samples of its lobe.
+double mirrored_by_lobe(const Material& material, double cosine, std::uint64_t number) {
+  constexpr int count = 128;
+  static const SobolPoints points(count);
+  const SurfaceInteraction interaction{
+      .material = material,
+      .direction = {std::sqrt(1.0 - cosine * cosine), 0.0, -cosine},
+      .normal = Eigen::Vector3d::UnitZ()};
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Array4d u = points.point(i, number).cast<double>();
+    const ScatteringSample sample =
+        sample_scattering(interaction, {.component = u[2],
+                                        .u = u[0],
+                                        .v = u[1],
+                                        .key = random_key(number, static_cast<std::uint64_t>(i))});
+    sum += static_cast<double>(sample.weight[0]);
+  }
+  return sum / count;
+}
+
+// A grey coat of one band that mirrors all that Fresnel's equations give.
+Material lone_coat(const Material& material) {
+  Material coat;
+  coat.reflectance = coat.emission = Spectrum::Zero(1);
+  coat.specular = Spectrum::Ones(1);
+  coat.specular_roughness = material.specular_roughness;
+  coat.coat = material.coat;
+  return coat;
+}
+
+}  // namespace
+
+CoatedBase::CoatedBase(const Material& material) {
+  if (!material.coat) throw std::invalid_argument("a base needs a coat");
+  index_ = double{material.coat->index_of_refraction};
+  if (!(material.specular_roughness > 0.0f)) {
+    mean_ = diffuse_fresnel(index_);
+    return;
+  }
+  const Material coat = lone_coat(material);
+  std::array<float, steps_> rough{};
+  for (std::size_t i = 0; i < steps_; ++i) {
+    const double cosine = (static_cast<double>(i) + 0.5) / steps_;
+    const double A = mirrored_by_lobe(coat, cosine, i);
+    rough[i] = static_cast<float>(A);
+    mean_ += 2.0 * cosine * A / steps_;
+  }
+  rough_ = rough;
+}
+
+double CoatedBase::mirrored(double cosine) const {
+  if (!rough_) return fresnel_reflectance(cosine, index_);
+  const double place = std::clamp(cosine * steps_ - 0.5, 0.0, steps_ - 1.0);
+  const auto low = std::min(static_cast<std::size_t>(place), steps_ - 2);
+  const double part = place - static_cast<double>(low);
+  return (1.0 - part) * double{(*rough_)[low]} + part * double{(*rough_)[low + 1]};
+}
+
+double CoatedBase::factor(double cosine) const {
+  return (1.0 - mirrored(std::clamp(cosine, 0.0, 1.0))) / (1.0 - mean_);
+}
+
+CoatedBases::CoatedBases(const std::vector<Material>& materials) : bases_(materials.size()) {
+  for (std::size_t i = 0; i < materials.size(); ++i) {
+    if (!materials[i].coat) continue;
+    bases_[i].emplace(materials[i]);
+    empty_ = false;
+  }
+}
+
+Spectrum mean_mirrored(const Material& material) {
+  if (!material.coat) return material.specular;
+  return static_cast<float>(CoatedBase(material).mean_mirrored()) * material.specular;
+}
+
+std::vector<Spectrum> mean_mirrored(const std::vector<Material>& materials) {
+  std::vector<Spectrum> shares;
+  shares.reserve(materials.size());
+  for (const Material& material : materials) shares.push_back(mean_mirrored(material));
+  return shares;
+}
+
+CoatOverBase::CoatOverBase(const Material& material, bool saturating)
+    : outside_(static_cast<float>(CoatedBase(material).mean_mirrored())),
+      inside_(1.0f - (1.0f - outside_) /
+                         (material.coat->index_of_refraction * material.coat->index_of_refraction)),
+      saturating_(saturating) {}
+
+Spectrum CoatOverBase::reflectance(const Spectrum& base) const {
+  const Spectrum returned = saturating_ ? base : Spectrum(Spectrum::Ones(base.size()));
+  return (1.0f - outside_) * (1.0f - inside_) * base / (1.0f - inside_ * returned);
+}
+
+}  // namespace lightwell
