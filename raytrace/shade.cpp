@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "radiosity/gather/final_gather.h"
 #include "scene/optics.h"
@@ -293,15 +294,17 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
     const Eigen::Vector3d smooth = at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
     interaction.normal = visible_normal(branch.ray.direction, at.normal, smooth);
   }
-  if (material.gloss_roughness() > 0.0f) return scatter(branch, interaction, hit, at, state);
+  Branch here = branch;
+  if (!goes_on_at_coat(interaction, here, state)) return;
+  if (material.gloss_roughness() > 0.0f) return scatter(here, interaction, hit, at, state);
   if (state.turns && branch.depth >= state.turns->count) return;
   SmoothScattering lobes = smooth_scattering(interaction);
-  if (state.shades && branch.weight.maxCoeff() < options_.min_contribution) {
-    choose_one(branch, lobes, state);
+  if (state.shades && here.weight.maxCoeff() < options_.min_contribution) {
+    choose_one(here, lobes, state);
   }
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
-    if (state.turns && !state.turns->follows(branch.depth, lobes.sample[i].crosses)) continue;
-    grow(branch, child_node(branch.node, i), lobes.sample[i], hit, at, state);
+    if (state.turns && !state.turns->follows(here.depth, lobes.sample[i].crosses)) continue;
+    grow(here, child_node(here.node, i), lobes.sample[i], hit, at, state);
   }
 }
 
@@ -319,7 +322,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .turns = parent.turns,
                 .lobe_density = sample.density,
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
-                .behind_coat = parent.behind_coat || what.coat,
+                .behind_coat = parent.behind_coat + (parent.behind_coat > 0 || what.coat ? 1 : 0),
                 .width = cone_width(parent, at),
                 .media = parent.media,
                 .polarisation = sample.polarisation};
@@ -342,6 +345,27 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
     branch.ray.direction = on_its_side(branch.ray.direction, at.normal, sample.crosses);
   }
   follow(branch, state);
+}
+
+// Ends most branches that meet a coat behind another, and strengthens the rest.
+bool RayTree::goes_on_at_coat(const SurfaceInteraction& interaction, Branch& branch,
+                              const TreeState& state) const {
+  if (!interaction.material.coat || branch.behind_coat == 0 || !state.shades) return true;
+  const ScatteringSample mirrored{.direction = reflect(interaction.direction, interaction.normal)};
+  constexpr float times = 4.0f;
+  const float chance = times * scattering_weight(interaction, mirrored).maxCoeff();
+  if (chance >= 1.0f) return true;
+  if (!(roulette(branch, 1, state) < static_cast<double>(chance))) return false;
+  branch.weight /= chance;
+  return true;
+}
+
+// Light of lamps that a branch finds by chance, behind a rough coat and another surface.
+Spectrum RayTree::limited(const Branch& branch, Spectrum seen, const TreeState& state) {
+  if (branch.behind_coat < 2 || branch.is_sharp) return seen;
+  const float found = seen.mean();
+  if (found > state.most_by_chance) seen *= state.most_by_chance / found;
+  return seen;
 }
 
 // A number in [0,1) of a branch, `purpose` 0 or 1.
@@ -463,7 +487,9 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   }
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
   if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, state);
-  state.result.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
+  Spectrum seen = branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
+  if (direct_light_.owns(hit.facet, hit.from_back)) seen = limited(branch, std::move(seen), state);
+  state.result.radiance += seen;
   if (with_layers_) note_layers(branch, hit, M, rho, E, state);
 }
 
@@ -480,7 +506,8 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   const Eigen::Vector3d normal = smooth_normal(hit, at);
   const CoatedBase* base = base_at(hit);
   constexpr float weak = 0.25f;
-  const bool is_dim = branch.behind_coat && (!branch.is_sharp || branch.weight.maxCoeff() < weak);
+  const bool is_dim =
+      branch.behind_coat > 0 && (!branch.is_sharp || branch.weight.maxCoeff() < weak);
   if (options_.pass == Pass::interpolate || is_dim) {
     Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
                .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -88,6 +89,12 @@ struct SpecularSegment {
 /// 2021, "Hacking the Shadow Terminator"); since the start lies before the facet, no light comes
 /// through the facet.
 ///
+/// What a coat shows of another coat's reflection is less than a hundredth of the light far from
+/// grazing; such branches end by Russian roulette.
+///
+/// A lamp by way of a rough coat and further surfaces is found by chance only, as a few bright
+/// pixels. One sample of the coat's lobe adds at most twice the light of the coated surface by it.
+///
 /// Behind a coat that mirrors less than a quarter of the light, or blurs it, diffuse surfaces show
 /// the solution's irradiance: shadow rays there would cost more than those of the coated surface.
 ///
@@ -172,9 +179,9 @@ class RayTree {
     /// View by which the rough surface at the branch's origin aims at bright patches as well; null:
     /// no such rays.
     const BrightPatches::View* bright = nullptr;
-    bool is_aimed = false;     ///< aimed at a bright patch
-    bool behind_coat = false;  ///< a coat on the way
-    double width = 0.0;        ///< m, width of the cone at the ray's origin
+    bool is_aimed = false;  ///< aimed at a bright patch
+    int behind_coat = 0;    ///< surfaces on the way from the first coat on, that one included
+    double width = 0.0;     ///< m, width of the cone at the ray's origin
     Media media{};
     Polarisation polarisation{};
   };
@@ -196,6 +203,8 @@ class RayTree {
     const ChainTurns* turns = nullptr;  ///< the one path to follow; null: all
     std::optional<int> number{};  ///< number among many samples of one key; none: a sample alone
     std::uint64_t gloss_key = 0;  ///< the same for all samples of one key
+    /// Most radiance, mean of the bands, that one sample of a coat's lobe may find by chance.
+    float most_by_chance = std::numeric_limits<float>::infinity();
   };
 
   RaySample outline(const Ray& ray) const;
@@ -222,6 +231,9 @@ class RayTree {
   float share_of_bright(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   Spectrum emission(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   const RoughLobe& lobe(int material, bool from_back) const;
+  bool goes_on_at_coat(const SurfaceInteraction& interaction, Branch& branch,
+                       const TreeState& state) const;
+  static Spectrum limited(const Branch& branch, Spectrum seen, const TreeState& state);
   void grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
             const ElementHit& hit, const ShadingPoint& at, TreeState& state) const;
   static double roulette(const Branch& branch, int purpose, const TreeState& state);

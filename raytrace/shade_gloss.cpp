@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "raytrace/shade.h"
 #include "scene/optics.h"
@@ -45,13 +46,20 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
   if (!state.shades) return;
   const bool is_first = branch.is_sharp && !state.number && !state.lamps_alone;
   const int count = is_first ? lobe_samples(interaction, branch, state) : 1;
+  const float before = state.most_by_chance;
+  if (is_coat) {
+    constexpr float times = 2.0f;
+    state.most_by_chance =
+        std::min(before, times * state.result.radiance.mean() / static_cast<float>(count));
+  }
   const int first = state.number.value_or(0);
   const std::uint64_t key = random_key(state.gloss_key, branch.node, RandomPurpose::gloss,
                                        static_cast<std::uint64_t>(first / gloss_point_count));
   // Typical number of samples of one point in a picture.
   constexpr int usual_samples = 64;
   BrightPatches::View view;
-  if (!state.lamps_alone && !bright_.is_empty() && !interaction.material.dielectric) {
+  const bool is_weak = is_coat && branch.behind_coat > 0;
+  if (!state.lamps_alone && !bright_.is_empty() && !interaction.material.dielectric && !is_weak) {
     view = bright_.view(at.position, interaction.normal, usual_samples);
   }
   for (int i = 0; i < count; ++i) {
@@ -82,6 +90,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
     spread.bright = view.is_empty() ? nullptr : &view;
     grow(spread, node, sample, hit, at, state);
   }
+  state.most_by_chance = before;
 }
 
 const RoughLobe& RayTree::lobe(int material, bool from_back) const {
@@ -119,6 +128,7 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
     media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, facets_[lamp->emitter->facet].material, false, lamp->distance);
   }
+  seen = limited(branch, std::move(seen), state);
   state.result.radiance += seen;
   if (with_layers_) {
     state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
@@ -169,6 +179,7 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
     media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, -1, false, source_sample.distance);
   }
+  seen = limited(branch, std::move(seen), state);
   state.result.radiance += seen;
   if (with_layers_) {
     state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=

@@ -111,10 +111,10 @@ void LightPaths::absorb(const Ray& ray, const ElementHit& hit, PathLight& light,
   light.throughput *= passed;
 }
 
-// Ends weak paths by chance (Arvo & Kirk 1990), and strengthens the others. What is lost and won
-// counts as absorbed, so that the shares of each path still add up to 1.
-bool LightPaths::survives(std::uint64_t key, PathLight& light, PathLosses& losses) const {
-  constexpr float weak = 0.125f;
+// Ends paths weaker than `weak` by chance (Arvo & Kirk 1990), and strengthens the others. What is
+// lost and won counts as absorbed, so that the shares of each path still add up to 1.
+bool LightPaths::survives(std::uint64_t key, float weak, PathLight& light,
+                          PathLosses& losses) const {
   const float strongest = light.throughput.maxCoeff();
   if (!(strongest < weak)) return true;
   const float chance = strongest / weak;
@@ -152,8 +152,14 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
     }
     const std::uint64_t key_here = random_key(key, static_cast<std::uint64_t>(depth));
     if (!continue_at(caster, ray, hit, key_here, light, losses)) return losses;
-    const bool may_end = depth >= max_depth_ || met.coat;
-    if (may_end && !survives(key_here, light, losses)) return losses;
+    // A coat mirrors 4 % of steep light. Such paths go on, so that base and coat of a white surface
+    // add up to all light for every ray; paths by way of two coats end by chance.
+    constexpr float weak = 0.125f, weak_behind_coats = 0.03125f;
+    const bool is_deep = depth >= max_depth_;
+    if ((is_deep || met.coat) &&
+        !survives(key_here, is_deep ? weak : weak_behind_coats, light, losses)) {
+      return losses;
+    }
     caster.closest_hits({&ray, 1}, {&hit, 1});
     absorb(ray, hit, light, losses);
     const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));

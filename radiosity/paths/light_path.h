@@ -44,9 +44,9 @@ enum class PathNormals {
 /// Absorbing bodies attenuate along the path (see Media). Smooth surfaces polarise the light, which
 /// decides over its share at the surfaces behind them (see Polarisation).
 ///
-/// Weak paths end by Russian roulette behind a coat, which mirrors a twentieth of the light, and
-/// beyond `max_depth` (see deepest_path()): light in a closed body of brushed metal would be
-/// followed to the last of 128 surfaces otherwise.
+/// Weak paths end by Russian roulette, behind two coats, which mirror a twentieth of the light
+/// each, and beyond `max_depth` (see deepest_path()): light in a closed body of brushed metal would
+/// be followed to the last of 128 surfaces otherwise.
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
@@ -92,7 +92,7 @@ class LightPaths {
                             const Eigen::Vector3d& point) const;
   bool continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit, std::uint64_t key,
                    PathLight& light, PathLosses& losses) const;
-  bool survives(std::uint64_t key, PathLight& light, PathLosses& losses) const;
+  bool survives(std::uint64_t key, float weak, PathLight& light, PathLosses& losses) const;
   void absorb(const Ray& ray, const ElementHit& hit, PathLight& light, PathLosses& losses) const;
 
   const Scene& scene_;

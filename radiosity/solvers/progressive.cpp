@@ -14,6 +14,7 @@
 
 #include "radiosity/form_factors/ray_cast_rows.h"
 #include "radiosity/journal/journal_phase.h"
+#include "radiosity/solvers/mirrored_by_coats.h"
 #include "radiosity/solvers/solve_channels.h"
 #include "scene/coat.h"
 #include "scene/parallel.h"
@@ -105,16 +106,34 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
   reflections_ = (1.0 / (1.0 - (reflected / mesh.area.sum()).min(most_reflected))).cast<float>();
 }
 
-void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
+// What coats mirror of the light of lamps and sky over mean_mirrored() of it, per column.
+Spectrum ProgressiveRadiosity::mirrored_by_coats(const FreeLight& free_light) const {
+  MirroredByCoats mirrored(unshot_.cols());
   const Eigen::Index bands = mesh_.emission.cols();
   for (int i = 0; i < mesh_.patch_count(); ++i) {
-    const Spectrum& specular = mirrored_[static_cast<std::size_t>(mesh_.material[i])];
+    const auto m = static_cast<std::size_t>(mesh_.material[i]);
+    const Eigen::ArrayXd E =
+        mesh_.area[i] * free_light.irradiance.row(i).transpose().cast<double>();
+    mirrored.arrive(E, mirrored_[m].replicate(E.size() / bands, 1).cast<double>(),
+                    scene_.materials[m].coat.has_value());
+  }
+  mirrored.beyond += free_light.absorbed + free_light.escaped - free_light.emitted;
+  return mirrored.of_mean();
+}
+
+void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
+  const Eigen::Index bands = mesh_.emission.cols();
+  const Spectrum of_mean = mirrored_by_coats(free_light);
+  for (int i = 0; i < mesh_.patch_count(); ++i) {
+    const auto m = static_cast<std::size_t>(mesh_.material[i]);
+    Spectrum specular = mirrored_[m].replicate(unshot_.cols() / bands, 1);
+    if (scene_.materials[m].coat) specular *= of_mean;
     for (Eigen::Index k = 0; k < unshot_.cols(); ++k) {
       const float E = free_light.irradiance(i, k), rho = mesh_.reflectance(i, k % bands);
       radiosity_(i, k) += rho * E;
       unshot_(i, k) += rho * E;
       energy_(absorbed_row, k) +=
-          mesh_.area[i] * static_cast<double>(E * (1.0f - rho - specular[k % bands]));
+          mesh_.area[i] * static_cast<double>(E * (1.0f - rho - specular[k]));
     }
   }
   free_energy_ = free_energy(free_light);
@@ -229,28 +248,23 @@ int ProgressiveRadiosity::rays_of(int patch) const {
   return static_cast<int>(std::bit_floor(rays));
 }
 
-// What coats mirror of a row's light over mean_mirrored() of it, per band: the light that arrives
-// or is lost beyond what was sent has been mirrored.
+// What coats mirror of a row's light over mean_mirrored() of it, per band.
 Spectrum ProgressiveRadiosity::mirrored_by_coats(const EstimatedRow& row) const {
-  Spectrum beyond = row.specular_escaped + row.absorbed + row.cut +
-                    static_cast<float>(row.escaped + row.specular - 1.0);
-  Spectrum by_coats = Spectrum::Zero(beyond.size());
+  MirroredByCoats mirrored(row.absorbed.size());
   const auto arrive = [&](int j, const Spectrum& share) {
-    const int m = mesh_.material[j];
-    const Spectrum mirrored = share * mirrored_[static_cast<std::size_t>(m)];
-    beyond += share;
-    if (scene_.materials[m].coat) {
-      by_coats += mirrored;
-    } else {
-      beyond -= mirrored;
-    }
+    const auto m = static_cast<std::size_t>(mesh_.material[j]);
+    mirrored.arrive(share.cast<double>(), mirrored_[m].cast<double>(),
+                    scene_.materials[m].coat.has_value());
   };
-  for (const auto& [j, share] : row.shares) arrive(j, Spectrum::Constant(beyond.size(), share));
+  for (const auto& [j, share] : row.shares) {
+    arrive(j, Spectrum::Constant(row.absorbed.size(), share));
+  }
   for (std::size_t s = 0; s < row.specular_patch.size(); ++s) {
     arrive(row.specular_patch[s], row.specular_share.row(static_cast<Eigen::Index>(s)).transpose());
   }
-  constexpr float least = 0.25f, most = 4.0f;
-  return (by_coats > 0.0f).select((beyond / by_coats).max(least).min(most), 1.0f);
+  mirrored.beyond += (row.specular_escaped + row.absorbed + row.cut).cast<double>() + row.escaped +
+                     row.specular - 1.0;
+  return mirrored.of_mean();
 }
 
 void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {

@@ -110,6 +110,7 @@ class ProgressiveRadiosity {
   std::vector<int> choose(int most) const;
   int rays_of(int patch) const;
   Spectrum mirrored_by_coats(const EstimatedRow& row) const;
+  Spectrum mirrored_by_coats(const FreeLight& free_light) const;
   void receive(const Shot& shot, const EstimatedRow& row);
 
   const Scene& scene_;

@@ -1,4 +1,5 @@
 #include "radiosity/solvers/solve_channels.h"
+#include "radiosity/solvers/mirrored_by_coats.h"
 #include "scene/coat.h"
 
 #include <algorithm>
@@ -113,28 +114,25 @@ void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors
 
 namespace {
 
-// What coats mirror of the light that arrives at them, over mean_mirrored() of it, per band: coats
-// mirror less of steep light and more of grazing light. The light that arrived or was lost beyond
-// what was sent has been mirrored.
-Eigen::ArrayXd mirrored_by_coats(const Scene& scene, const PatchMesh& mesh,
-                                 const FormFactors& form_factors, const BandArray& B,
-                                 const BandArray& E, const FreeLight& free_light) {
+// MirroredByCoats of all light.
+Spectrum mirrored_by_coats(const Scene& scene, const PatchMesh& mesh,
+                           const FormFactors& form_factors, const BandArray& B, const BandArray& E,
+                           const FreeLight& free_light) {
   const std::vector<Spectrum> share = mean_mirrored(scene.materials);
-  Eigen::ArrayXd beyond = Eigen::ArrayXd::Zero(B.cols()), by_coats = beyond;
+  MirroredByCoats mirrored(B.cols());
   for (int i = 0; i < mesh.patch_count(); ++i) {
     const auto m = static_cast<std::size_t>(mesh.material[i]);
-    const Spectrum B_i = B.row(i).transpose(), E_i = E.row(i).transpose();
+    const Spectrum B_i = B.row(i).transpose();
     const Spectrum lost =
         (form_factors.absorbed_by_specular(i) + form_factors.escaped(i) - 1.0f) * B_i;
-    beyond += mesh.area[i] * (E_i + lost).cast<double>();
-    const Eigen::ArrayXd mirrored = mesh.area[i] * (share[m] * E_i).cast<double>();
-    (scene.materials[m].coat ? by_coats : beyond) +=
-        scene.materials[m].coat ? mirrored : Eigen::ArrayXd(-mirrored);
+    mirrored.beyond += mesh.area[i] * lost.cast<double>();
+    mirrored.arrive(mesh.area[i] * E.row(i).transpose().cast<double>(), share[m].cast<double>(),
+                    scene.materials[m].coat.has_value());
   }
-  if (!free_light.empty()) beyond += free_light.absorbed + free_light.escaped - free_light.emitted;
-  // Between steep light and light that grazes all coats.
-  constexpr double least = 0.25, most = 4.0;
-  return (by_coats > 0.0).select((beyond / by_coats).max(least).min(most), 1.0);
+  if (!free_light.empty()) {
+    mirrored.beyond += free_light.absorbed + free_light.escaped - free_light.emitted;
+  }
+  return mirrored.of_mean();
 }
 
 }  // namespace
@@ -145,8 +143,7 @@ BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFact
   if (!free_light.empty()) E += free_light.irradiance;
   BandEnergy energy = BandEnergy::Zero(4, B.cols());
   std::vector<Spectrum> mirrored = mean_mirrored(scene.materials);
-  const Eigen::ArrayXf of_mean =
-      mirrored_by_coats(scene, mesh, form_factors, B, E, free_light).cast<float>();
+  const Spectrum of_mean = mirrored_by_coats(scene, mesh, form_factors, B, E, free_light);
   for (std::size_t m = 0; m < mirrored.size(); ++m) {
     if (scene.materials[m].coat) mirrored[m] *= of_mean;
   }

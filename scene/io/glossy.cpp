@@ -45,12 +45,6 @@ Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k) {
 
 namespace {
 
-void lay_coat_alone(Material& material, double index, double alpha, const Spectrum& specular) {
-  material.coat = Coat{.index_of_refraction = static_cast<float>(index)};
-  material.specular = specular;
-  material.specular_roughness = roughness_of(alpha);
-}
-
 // Replaces the base's reflectance, and that of its picture, by `coated` of it.
 void replace_base(Material& material, const std::function<Spectrum(const Spectrum&)>& coated) {
   material.reflectance = coated(material.reflectance);
@@ -67,15 +61,21 @@ void replace_base(Material& material, const std::function<Spectrum(const Spectru
 
 }  // namespace
 
+void set_coat(Material& material, double index, double alpha, const Spectrum& specular) {
+  material.coat = Coat{.index_of_refraction = static_cast<float>(index)};
+  material.specular = specular;
+  material.specular_roughness = roughness_of(alpha);
+}
+
 void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
               bool saturating) {
-  lay_coat_alone(material, index, alpha, specular);
+  set_coat(material, index, alpha, specular);
   const CoatOverBase coat(material, saturating);
   replace_base(material, [&](const Spectrum& base) { return coat.reflectance(base); });
 }
 
 void lay_simple_coat(Material& material, double index, double alpha, const Spectrum& specular) {
-  lay_coat_alone(material, index, alpha, specular);
+  set_coat(material, index, alpha, specular);
   const auto passed = static_cast<float>(1.0 - CoatedBase(material).mean_mirrored());
   material.reflectance *= passed;
   if (material.texture) material.texture->factor *= passed;

@@ -26,6 +26,10 @@ inline constexpr double mostly_clear = 0.5;
 /// incidence.
 Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k);
 
+/// Lays a clear coat over a material whose `reflectance` is that of base and coat together (see
+/// Material::coat); arguments as for lay_coat().
+void set_coat(Material& material, double index, double alpha, const Spectrum& specular);
+
 /// Lays a clear coat of the index of refraction `index`, [lowest_coat_index, highest_index], and
 /// GGX width `alpha` over a material whose `reflectance` and texture are those of the base (see
 /// CoatOverBase). The coat mirrors Fresnel's share times `specular`. `saturating` as for

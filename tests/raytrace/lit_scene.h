@@ -28,6 +28,7 @@ struct Paint {
   float roughness = 0.0f;   ///< of the mirror or the dielectric
   float absorption = 0.0f;  ///< 1/m
   bool thin = false;
+  std::optional<float> coat{};  ///< index of refraction; `roughness` is the coat's
 };
 
 /// Builds a scene surface by surface.
@@ -87,6 +88,10 @@ class SceneBuilder {
                       .emission = constant_spectrum(bands, paint.exitance),
                       .one_sided = paint.one_sided,
                       .emits_both_sides = paint.emits_both_sides};
+    if (paint.coat) {
+      material.coat = Coat{.index_of_refraction = *paint.coat};
+      material.specular = constant_spectrum(bands, 1.0f);
+    }
     if (paint.index_of_refraction) {
       material.dielectric = Dielectric{.index_of_refraction = *paint.index_of_refraction,
                                        .tint = constant_spectrum(bands, paint.tint),

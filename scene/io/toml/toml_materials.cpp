@@ -9,6 +9,7 @@
 
 #include "scene/coat.h"
 #include "scene/errors.h"
+#include "scene/io/glossy.h"
 #include "scene/io/toml/toml_pictures.h"
 
 namespace lightwell {
@@ -170,10 +171,19 @@ void read_glass(const TomlTable& table, const TomlBands& bands, Material& materi
   }
 }
 
-// A coat: its index of refraction alone, or { ior = ..., roughness = ..., share = ... }.
-void read_coat(const TomlTable& table, const TomlBands& bands, Material& material) {
+// A coat: its index of refraction alone, or { ior = ..., roughness = ..., share = ..., base = ...
+// }.
+struct GivenCoat {
+  double index = 1.5;
+  Spectrum share{};
+  float roughness = 0.0f;
+  bool has_base = false;  // Material::reflectance and texture are those of the base so far
+};
+
+std::optional<GivenCoat> read_coat(const TomlTable& table, const TomlBands& bands,
+                                   Material& material) {
   const auto coat = table.find("coat");
-  if (!coat) return;
+  if (!coat) return std::nullopt;
   for (const char* other : {"specular", "roughness", "glass"}) {
     if (const auto value = table.find(other)) {
       value->fail(
@@ -183,23 +193,42 @@ void read_coat(const TomlTable& table, const TomlBands& bands, Material& materia
     }
   }
   std::optional<TomlTable> t;
-  if (coat->is_table()) t = coat->table({"ior", "roughness", "share"});
+  if (coat->is_table()) t = coat->table({"ior", "roughness", "share", "base"});
   const TomlValue ior = t ? t->require("ior") : *coat;
-  const auto index = static_cast<float>(ior.positive());
-  if (!(index >= lowest_coat_index && index <= highest_index)) {
+  GivenCoat given{.index = ior.positive(), .share = constant_spectrum(bands.bands, 1.0f)};
+  if (!(given.index >= double{lowest_coat_index} && given.index <= double{highest_index})) {
     ior.fail(
         fmt::format("is {:g}, but the index of refraction of a coat must lie between {} and {} "
                     "(lacquer: 1.5)",
-                    ior.number(), lowest_coat_index, highest_index));
+                    given.index, lowest_coat_index, highest_index));
   }
-  material.coat = Coat{.index_of_refraction = index};
-  material.specular =
-      t ? spectral_or(*t, "share", bands, 1.0f) : constant_spectrum(bands.bands, 1.0f);
-  if (t) material.specular_roughness = read_roughness(*t);
+  if (!t) return given;
+  given.share = spectral_or(*t, "share", bands, 1.0f);
+  given.roughness = read_roughness(*t);
+  if (const auto base = t->find("base")) {
+    if (table.has("reflectance")) {
+      base->fail(
+          "is a second statement of the diffuse reflectance, after 'reflectance', which is that of "
+          "base and coat together; keep one");
+    }
+    material.reflectance = spectral(*base, bands, Quantity::share);
+    given.has_base = true;
+  }
+  return given;
+}
+
+// Lays the coat over the material, whose pictures have been read.
+void lay_given_coat(const TomlTable& table, const GivenCoat& given, Material& material) {
+  if (given.has_base) return lay_coat(material, given.index, given.roughness, given.share);
+  set_coat(material, given.index, given.roughness, given.share);
   const Spectrum mirrored = mean_mirrored(material);
+  if (!table.has("reflectance") && material.texture) {
+    material.texture->factor -= mirrored;
+    material.reflectance *= 1.0f - mirrored;
+  }
   constexpr float rounding = 1e-5f;
   if (((material.reflectance + mirrored) > 1.0f + rounding).any()) {
-    coat->fail(fmt::format(
+    table.require("coat").fail(fmt::format(
         "mirrors {:.4f} of even light, and the reflectance {:.4f} besides makes more than 1; "
         "under this coat the reflectance is at most {:.4f}",
         mirrored.maxCoeff(), material.reflectance.maxCoeff(), 1.0f - mirrored.maxCoeff()));
@@ -312,9 +341,10 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
   if (const auto sides = table.find("sides")) {
     material.one_sided = sides->one_of({"one", "two"}) == "one";
   }
-  read_coat(table, bands, material);
+  const std::optional<GivenCoat> coat = read_coat(table, bands, material);
   read_glass(table, bands, material);
   read_toml_pictures(table, bands, pictures, material);
+  if (coat) lay_given_coat(table, *coat, material);
   read_emission(table, bands, result);
   return result;
 }

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "scene/coat.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -61,8 +60,9 @@ void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureF
     if (!bands.bands.wavelengths_nm.empty()) {
       texture->fail("is red, green and blue, but the scene's bands are wavelengths; remove it");
     }
-    if (!table.has("reflectance")) {
-      material.reflectance = Spectrum::Ones(3) - mean_mirrored(material);
+    // A coat gives its base's reflectance.
+    if (!table.has("reflectance") && !(material.reflectance > 0.0f).any()) {
+      material.reflectance = Spectrum::Ones(3) - material.specular;
     }
     Laid laid = read_laid(*texture, PictureCode::srgb, false, pictures);
     laid.image.picture = laid.picture.color;

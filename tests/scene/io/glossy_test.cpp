@@ -4,6 +4,10 @@
 
 #include <cmath>
 
+#include "scene/coat.h"
+#include "scene/optics.h"
+#include "tests/pictures.h"
+
 namespace lightwell::glossy_test {
 namespace {
 
@@ -26,15 +30,26 @@ TEST(Glossy, GlassReflectsNinePercentOfDiffuseLight) {
   EXPECT_NEAR(diffuse_fresnel(1.5), 0.0918, 5e-5);
 }
 
-TEST(Glossy, AWhiteBaseUnderAClearCoatGivesBackAllLight) {
-  const Spectrum all = coated_reflectance(grey(1.0f), 1.5, true, grey(1.0f));
-  EXPECT_LT((all - 1.0f).abs().maxCoeff(), 1e-6f);  // float arithmetic
+// With a base of reflectance b: b (1 - F_o) where light does not go to and fro below the coat.
+TEST(Glossy, CoatsAreLaidOverBasesAndTheirPictures) {
+  Material lacquer{.reflectance = grey(0.5f), .specular = grey(0.0f), .emission = grey(0.0f)};
+  lay_simple_coat(lacquer, 1.5, 0.2, grey(0.5f));
+  EXPECT_NEAR(lacquer.reflectance[0], 0.5 * (1.0 - CoatedBase(lacquer).mean_mirrored()), 1e-6);
+  EXPECT_FLOAT_EQ(lacquer.specular[1], 0.5f);
+  EXPECT_FLOAT_EQ(lacquer.specular_roughness, 0.2f);
+  ASSERT_TRUE(lacquer.coat);
+  EXPECT_FLOAT_EQ(lacquer.coat->index_of_refraction, 1.5f);
+
+  Material glaze{.reflectance = grey(0.5f), .specular = grey(0.0f), .emission = grey(0.0f)};
+  glaze.texture = ReflectanceTexture{.image = picture_of(1, 1, {0.5f}), .factor = grey(1.0f)};
+  lay_coat(glaze, 1.5, 0.0, grey(1.0f));
+  // Texels have 16 bits, of the square root: steps of 2e-5 here.
+  EXPECT_NEAR(glaze.texture->image.picture->mean()[0], glaze.reflectance[0], 4e-5);
 }
 
-TEST(Glossy, ABlackBaseLeavesTheCoatsReflection) {
-  const Spectrum coat = coated_reflectance(grey(0.0f), 1.5, true, grey(1.0f));
-  EXPECT_NEAR(coat[0], diffuse_fresnel(1.5), 1e-6);
-  EXPECT_EQ(coated_reflectance(grey(0.0f), 1.5, true, grey(0.0f))[0], 0.0f);
+TEST(Glossy, ExponentsOfPhongBecomeWidths) {
+  EXPECT_DOUBLE_EQ(alpha_of_exponent(0.0), 1.0);
+  EXPECT_DOUBLE_EQ(alpha_of_exponent(198.0), 0.1);
 }
 
 // A metal without absorption reflects as glass; with a huge one it reflects everything.

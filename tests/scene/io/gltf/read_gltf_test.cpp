@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/coat.h"
 #include "tests/scene/gltf_text.h"
 #include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
@@ -119,6 +120,26 @@ TEST_F(Gltf, MetalsAreGlossyAndOnlyTheRoughestDiffuse) {
       R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.6,0.7,1],"metallicFactor":1,"roughnessFactor":0.9}})");
   EXPECT_FLOAT_EQ(rough.reflectance[2], 0.7f);
   EXPECT_FALSE(rough.is_specular());
+}
+
+// A dielectric mirrors ((n - 1) / (n + 1))^2 of steep light and keeps the rest for its base.
+TEST_F(Gltf, DielectricsHaveACoatUnlessTheyAreRough) {
+  const std::string base = R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.5,0.5,1],
+      "metallicFactor":0,"roughnessFactor":)";
+  const Material tile = material(base + R"(0.3},"extensions":{"KHR_materials_ior":{"ior":1.4},
+      "KHR_materials_specular":{"specularFactor":0.5}}})");
+  ASSERT_TRUE(tile.coat);
+  EXPECT_FLOAT_EQ(tile.coat->index_of_refraction, 1.4f);
+  EXPECT_FLOAT_EQ(tile.specular[0], 0.5f);
+  EXPECT_FLOAT_EQ(tile.specular_roughness, 0.09f);
+  EXPECT_NEAR(tile.reflectance[0], 0.5 * (1.0 - CoatedBase(tile).mean_mirrored()), 1e-6);
+  const Material plaster = material(base + "0.9}}");
+  EXPECT_FALSE(plaster.coat);
+  EXPECT_FLOAT_EQ(plaster.reflectance[0], 0.5f);
+  const Material lacquer = material(base + R"(0.9},"extensions":{"KHR_materials_clearcoat":
+      {"clearcoatFactor":1,"clearcoatRoughnessFactor":0.1}}})");
+  ASSERT_TRUE(lacquer.coat);
+  EXPECT_FLOAT_EQ(lacquer.specular_roughness, 0.01f);
 }
 
 TEST_F(Gltf, SheetsShineToBothSidesWhereTheyAreDoubleSided) {

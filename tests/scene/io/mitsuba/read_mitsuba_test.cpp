@@ -5,7 +5,9 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/coat.h"
 #include "scene/io/glossy.h"
+#include "scene/optics.h"
 #include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
 
@@ -243,13 +245,66 @@ TEST_F(Mitsuba, MetalsAndGlassKeepTheirGloss) {
   EXPECT_FLOAT_EQ(pane.dielectric->tint[0], 1.0f);
 }
 
-TEST_F(Mitsuba, PlasticsReflectByBaseAndGloss) {
+TEST_F(Mitsuba, PlasticsAreCoatsOverABase) {
   const Material plastic =
       material(R"(<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.8"/>
       <float name="int_ior" value="1.5"/><float name="ext_ior" value="1"/>
       <boolean name="nonlinear" value="true"/></bsdf>)");
-  const double F_o = diffuse_fresnel(1.5), F_i = diffuse_fresnel(1.0 / 1.5);
-  EXPECT_NEAR(plastic.reflectance[0], F_o + (1 - F_o) * (1 - F_i) * 0.8 / (1 - 0.8 * F_i), 1e-6);
+  ASSERT_TRUE(plastic.coat);
+  EXPECT_FLOAT_EQ(plastic.coat->index_of_refraction, 1.5f);
+  EXPECT_FLOAT_EQ(plastic.reflectance[0],
+                  CoatOverBase(plastic).reflectance(Spectrum::Constant(3, 0.8f))[0]);
+  EXPECT_FLOAT_EQ(plastic.specular_roughness, 0.0f);
+  const Material rough = material(R"(<bsdf type="roughplastic"><float name="alpha" value="0.3"/>
+      <rgb name="specular_reflectance" value="0.5"/></bsdf>)");
+  ASSERT_TRUE(rough.coat);
+  EXPECT_FLOAT_EQ(rough.specular_roughness, 0.3f);
+  EXPECT_FLOAT_EQ(rough.specular[0], 0.5f);
+  EXPECT_FLOAT_EQ(rough.reflectance[0],
+                  CoatOverBase(rough, false).reflectance(Spectrum::Constant(3, 0.5f))[0]);
+}
+
+// The light passes the coating's body of sigma 0.5 and thickness 0.2 twice.
+TEST_F(Mitsuba, CoatingsCoverDiffuseSurfaces) {
+  const Material varnish = material(R"(<bsdf type="roughcoating"><float name="alpha" value="0.2"/>
+      <float name="int_ior" value="1.6"/><float name="ext_ior" value="1"/>
+      <float name="thickness" value="0.2"/><rgb name="sigma_a" value="0.5"/>
+      <bsdf type="diffuse"><rgb name="reflectance" value="0.6"/></bsdf></bsdf>)");
+  ASSERT_TRUE(varnish.coat);
+  EXPECT_FLOAT_EQ(varnish.coat->index_of_refraction, 1.6f);
+  EXPECT_FLOAT_EQ(varnish.specular_roughness, 0.2f);
+  const auto base = static_cast<float>(0.6 * std::exp(-0.2));
+  EXPECT_FLOAT_EQ(varnish.reflectance[0],
+                  CoatOverBase(varnish).reflectance(Spectrum::Constant(3, base))[0]);
+  const Material gold = material(R"(<bsdf type="coating"><bsdf type="conductor">
+      <string name="material" value="none"/></bsdf></bsdf>)");
+  EXPECT_FALSE(gold.coat);
+  EXPECT_FLOAT_EQ(gold.specular[0], 1.0f);
+}
+
+TEST_F(Mitsuba, HighlightsOfPhongAndWardAreKept) {
+  const Material phong =
+      material(R"(<bsdf type="phong"><rgb name="diffuse_reflectance" value="0.5"/>
+      <rgb name="specular_reflectance" value="0.2"/><float name="exponent" value="198"/></bsdf>)");
+  EXPECT_FLOAT_EQ(phong.specular[0], 0.2f);
+  EXPECT_FLOAT_EQ(phong.specular_roughness, 0.1f);
+  const Material ward = material(R"(<bsdf type="ward"><rgb name="diffuse_reflectance" value="0.9"/>
+      <rgb name="specular_reflectance" value="0.2"/><float name="alpha_u" value="0.15"/>
+      <float name="alpha_v" value="0.05"/></bsdf>)");
+  EXPECT_FLOAT_EQ(ward.specular[0], 0.1f);  // what the diffuse share leaves
+  EXPECT_FLOAT_EQ(ward.specular_roughness, 0.15f);
+}
+
+// The default `specular` of 0.5 stands for a reflectance of 0.04 at normal incidence, index 1.5.
+TEST_F(Mitsuba, PrincipledDielectricsHaveACoat) {
+  const Material wood = material(R"(<bsdf type="principled"><rgb name="base_color" value="0.5"/>
+      <float name="roughness" value="0.4"/></bsdf>)");
+  ASSERT_TRUE(wood.coat);
+  EXPECT_NEAR(wood.coat->index_of_refraction, 1.5, 1e-6);
+  EXPECT_FLOAT_EQ(wood.specular_roughness, 0.16f);
+  EXPECT_FALSE(material(R"(<bsdf type="principled"><float name="metallic" value="1"/>
+      <float name="roughness" value="0.4"/></bsdf>)")
+                   .coat);
 }
 
 TEST_F(Mitsuba, ColoursComeInEveryForm) {

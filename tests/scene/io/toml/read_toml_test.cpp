@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numbers>
 
+#include "scene/coat.h"
 #include "scene/io/read_scene.h"
 #include "tests/temporary_folder.h"
 
@@ -103,6 +104,35 @@ TEST(ReadToml, MaterialsReflect) {
   ASSERT_TRUE(glass.dielectric);
   EXPECT_FLOAT_EQ(glass.dielectric->index_of_refraction, 1.52f);
   expect_spectrum(glass.dielectric->tint, {0.9f, 0.95f, 0.9f});
+}
+
+TEST(ReadToml, CoatsCoverTheirBase) {
+  const Scene scene = read_text(R"(
+[materials.lacquer]
+reflectance = 0.4
+coat = 1.6
+[materials.glaze]
+coat = { ior = 1.5, roughness = 0.1, share = 0.8, base = [1, 0.5, 0] }
+[[surfaces]]
+name = "a"
+material = "lacquer"
+polygon = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+[[surfaces]]
+name = "b"
+material = "glaze"
+polygon = [[0, 0, 1], [1, 0, 1], [0, 1, 1]]
+)");
+  const Material& lacquer = material_of(scene, "a");
+  ASSERT_TRUE(lacquer.coat);
+  EXPECT_FLOAT_EQ(lacquer.coat->index_of_refraction, 1.6f);
+  expect_spectrum(lacquer.reflectance, {0.4f, 0.4f, 0.4f});
+  expect_spectrum(lacquer.specular, {1.0f, 1.0f, 1.0f});
+  const Material& glaze = material_of(scene, "b");
+  ASSERT_TRUE(glaze.coat);
+  EXPECT_FLOAT_EQ(glaze.specular_roughness, 0.1f);
+  expect_spectrum(glaze.specular, {0.8f, 0.8f, 0.8f});
+  const Spectrum rho = CoatOverBase(glaze).reflectance(Spectrum{{1.0f, 0.5f, 0.0f}});
+  expect_spectrum(glaze.reflectance, {rho[0], rho[1], rho[2]});
 }
 
 TEST(ReadToml, GlossGlassAndLensesAreAsTheySay) {
