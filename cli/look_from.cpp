@@ -20,7 +20,9 @@ void add_camera(const Camera& camera, std::vector<Ray>& rays) {
   const SobolPoints sobol(count);
   for (int i = 0; i < count; ++i) {
     const Eigen::Array4d u = sobol.point(i, 0).cast<double>();
-    rays.push_back(of_camera.ray(u[0] * camera.width, u[1] * camera.height, u[2], u[3]));
+    const double x = u[0] * camera.width, y = u[1] * camera.height;
+    const auto ray = of_camera.ray_at(x, y, u[2], u[3], of_camera.panel_at(x, y));
+    if (ray) rays.push_back(*ray);
   }
 }
 

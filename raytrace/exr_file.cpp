@@ -45,16 +45,6 @@ class ExrStream : public Imf::OStream {
   std::ostream& stream_;
 };
 
-void check_size(const Image& image, const std::filesystem::path& path) {
-  const std::int64_t pixels = std::int64_t{image.width} * image.height;
-  if (image.width <= 0 || image.height <= 0 || pixels > max_image_pixels ||
-      image.radiance.rows() != pixels) {
-    fail_write(path,
-               fmt::format("{} x {} pixels with {} values is not a picture of 1 to {} pixels",
-                           image.width, image.height, image.radiance.rows(), max_image_pixels));
-  }
-}
-
 // One channel of an EXR file: the values first[0], first[step], first[2 step], ... are the pixels'.
 struct ChannelPlane {
   std::string name{};
@@ -208,11 +198,7 @@ Image read_image(Imf::InputFile& file, const std::string& name, ExrChannels whic
 
 void write_exr(const std::filesystem::path& path, const Image& image, const Bands& bands,
                const ImageMetadata& metadata, const ExrOptions& options) {
-  check_size(image, path);
-  if (image.radiance.cols() != bands.count()) {
-    fail_write(path, fmt::format("the image has {} bands, its description {}",
-                                 image.radiance.cols(), bands.count()));
-  }
+  check_writable(image, bands, path);
   const bool is_rgb = bands.wavelengths_nm.empty();
   const BandArray rgb = is_rgb ? BandArray() : rgb_of_bands(image, bands);
   std::vector<ChannelPlane> planes;

@@ -14,7 +14,8 @@ GlossMask::GlossMask(const CameraRays& rays, const RayTree& tree, int width, int
   parallel_for(static_cast<int>(corners.size()), grain, [&](int begin, int stop) {
     for (int i = begin; i < stop; ++i) {
       const double x = i % columns, y = first + i / columns;
-      corners[static_cast<std::size_t>(i)] = tree.sees_gloss(rays.ray(x, y)) ? 1 : 0;
+      const auto ray = rays.ray_at(x, y);
+      corners[static_cast<std::size_t>(i)] = ray && tree.sees_gloss(*ray) ? 1 : 0;
     }
   });
   gloss_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows));

@@ -47,6 +47,13 @@ struct ExrOptions {
 void write_exr(const std::filesystem::path& path, const Image& image, const Bands& bands,
                const ImageMetadata& metadata = {}, const ExrOptions& options = {});
 
+/// Writes a RADIANCE picture (.hdr): R, G and B of 8 bits with a common exponent. Values are such
+/// that 179 (0.265 R + 0.670 G + 0.065 B) is the luminance in cd/m^2, by which RADIANCE's programs
+/// read them (Ward 1994). `header` are lines for the file's header, such as "VIEW= -vta ...".
+/// Temporary name, renaming and errors as for write_exr.
+void write_hdr(const std::filesystem::path& path, const Image& image, const Bands& bands,
+               const std::vector<std::string>& header = {});
+
 /// Reads channels R, G, B of an EXR file, half or float, as radiance. ExrChannels::bands adds
 /// channels of wavelengths ("400-404nm") as layers, ExrChannels::all adds all other channels, in
 /// the order of their names. Throws InputError if the file is missing, not an EXR with R, G and B,

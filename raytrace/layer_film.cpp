@@ -4,6 +4,22 @@
 #include <limits>
 
 namespace lightwell {
+namespace {
+
+// Share of points of a pixel that show something.
+float coverage(const CameraRays& rays, int x, int y) {
+  constexpr int points = 8;  // along an edge
+  const int panel = rays.panel_at(x + 0.5, y + 0.5);
+  int seen = 0;
+  for (int j = 0; j < points; ++j) {
+    for (int i = 0; i < points; ++i) {
+      seen += rays.ray_at(x + (i + 0.5) / points, y + (j + 0.5) / points, panel) ? 1 : 0;
+    }
+  }
+  return static_cast<float>(seen) / (points * points);
+}
+
+}  // namespace
 
 LayerFilm::LayerFilm(const std::vector<Layer>& layers, Image& image) : image_(image) {
   LayerColumns& columns = image.layers;
@@ -27,11 +43,16 @@ void LayerFilm::set_sampled(Eigen::Index pixel, const SampledLayers& mean) {
   }
 }
 
-void LayerFilm::finish_row(int y, const Bands& bands, const Camera& camera, const CameraRays& rays,
+void LayerFilm::finish_row(int y, const Bands& bands, const CameraRays& rays,
                            const ElementCaster& caster) {
   bool has_centres = false;
   for (const auto& [layer, column, count] : placed_) {
     has_centres = has_centres || layer == Layer::depth || layer == Layer::patch;
+    if (layer == Layer::coverage) {
+      for (int x = 0; x < image_.width; ++x) {
+        image_.layers.values(Eigen::Index{y} * image_.width + x, column) = coverage(rays, x, y);
+      }
+    }
     if (layer != Layer::luminance) continue;
     for (int x = 0; x < image_.width; ++x) {
       const Eigen::Index pixel = Eigen::Index{y} * image_.width + x;
@@ -39,26 +60,34 @@ void LayerFilm::finish_row(int y, const Bands& bands, const Camera& camera, cons
       image_.layers.values(pixel, column) = static_cast<float>(luminous(bands, L));
     }
   }
-  if (has_centres) trace_centres(y, camera, rays, caster);
+  if (has_centres) trace_centres(y, rays, caster);
 }
 
-void LayerFilm::trace_centres(int y, const Camera& camera, const CameraRays& rays,
-                              const ElementCaster& caster) {
-  std::vector<Ray> view_rays(image_.width);
-  for (int x = 0; x < image_.width; ++x) view_rays[x] = rays.ray(x + 0.5, y + 0.5);
+void LayerFilm::trace_centres(int y, const CameraRays& rays, const ElementCaster& caster) {
+  std::vector<Ray> view_rays;
+  std::vector<int> columns;  // of the rays: those that show something
+  for (int x = 0; x < image_.width; ++x) {
+    const auto ray = rays.ray_at(x + 0.5, y + 0.5);
+    if (!ray) continue;
+    view_rays.push_back(*ray);
+    columns.push_back(x);
+  }
   std::vector<ElementHit> hits(view_rays.size());
   caster.closest_elements(view_rays, hits);
   for (const auto& [layer, column, count] : placed_) {
-    for (int x = 0; x < image_.width; ++x) {
-      const ElementHit& hit = hits[x];
-      float& value = image_.layers.values(Eigen::Index{y} * image_.width + x, column);
-      if (layer == Layer::depth) {
-        value = hit.facet < 0
-                    ? std::numeric_limits<float>::infinity()
-                    : static_cast<float>(hit.t * view_rays[x].direction.dot(camera.direction));
-      } else if (layer == Layer::patch) {
+    if (layer != Layer::depth && layer != Layer::patch) continue;
+    const Eigen::Index first = Eigen::Index{y} * image_.width;
+    const float nothing = layer == Layer::depth ? std::numeric_limits<float>::infinity() : -1.0f;
+    image_.layers.values.col(column).segment(first, image_.width).setConstant(nothing);
+    for (std::size_t i = 0; i < hits.size(); ++i) {
+      const ElementHit& hit = hits[i];
+      float& value = image_.layers.values(first + columns[i], column);
+      if (layer == Layer::depth && hit.facet >= 0) {
+        const Ray& ray = view_rays[i];
+        value = static_cast<float>(rays.depth(ray.origin + hit.t * ray.direction));
+      } else if (layer == Layer::patch && hit.element >= 0) {
         // A float holds patch numbers exactly up to 2^24.
-        value = hit.element < 0 ? -1.0f : static_cast<float>(caster.mesh().patch[hit.element]);
+        value = static_cast<float>(caster.mesh().patch[hit.element]);
       }
     }
   }

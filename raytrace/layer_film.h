@@ -19,16 +19,14 @@ class LayerFilm {
   void set_sampled(Eigen::Index pixel, const SampledLayers& mean);
   /// Fills the remaining layers of row y: depth and patch at the pixels' centres, and luminance
   /// from radiance.
-  void finish_row(int y, const Bands& bands, const Camera& camera, const CameraRays& rays,
-                  const ElementCaster& caster);
+  void finish_row(int y, const Bands& bands, const CameraRays& rays, const ElementCaster& caster);
 
  private:
   struct Placed {
     Layer layer;
     int column, count;  // first of the layer's columns in LayerColumns, and their number
   };
-  void trace_centres(int y, const Camera& camera, const CameraRays& rays,
-                     const ElementCaster& caster);
+  void trace_centres(int y, const CameraRays& rays, const ElementCaster& caster);
 
   Image& image_;
   std::vector<Placed> placed_{};

@@ -20,6 +20,7 @@ std::vector<std::string> channel_names(Layer layer) {
   const NamedLayer& it = named(layer);
   const std::string stem = std::string(it.name) + ".";
   if (layer == Layer::patch) return {stem + std::string(it.components)};
+  if (layer == Layer::coverage) return {std::string(it.components)};
   std::vector<std::string> names;
   for (const char component : it.components) names.push_back(stem + component);
   return names;

@@ -14,9 +14,11 @@ namespace lightwell {
 /// Layers of a picture beside its radiance, about the surface that a pixel shows: the first that
 /// its eye rays meet.
 enum class Layer {
-  albedo,     ///< diffuse reflectance, as RGB under equal-energy light, white = 1
-  normal,     ///< towards the eye, in the scene's axes; smoothed like the shading
-  depth,      ///< m along the camera's direction, at the pixel's centre; infinity: nothing is there
+  albedo,  ///< diffuse reflectance, as RGB under equal-energy light, white = 1
+  normal,  ///< towards the eye, in the scene's axes; smoothed like the shading
+  /// At the pixel's centre, m along the camera's direction, or from its position if the picture is
+  /// not flat; infinity: nothing is there.
+  depth,
   direct,     ///< rho E_direct / pi, W/(m^2 sr), as linear RGB
   indirect,   ///< rho E_indirect / pi, the same
   specular,   ///< light from mirrors and through glass
@@ -26,6 +28,9 @@ enum class Layer {
   /// glass.
   illuminance,
   patch,  ///< patch number in the solution, at the pixel's centre; -1: none
+  /// Share of the pixel that shows something, which is less at and beyond the circle of a fisheye.
+  /// Radiance is already multiplied by it.
+  coverage,
 };
 
 struct NamedLayer {
@@ -36,7 +41,7 @@ struct NamedLayer {
 };
 
 /// All layers, in the order of their channels in a picture.
-inline constexpr std::array<NamedLayer, 10> named_layers = {{
+inline constexpr std::array<NamedLayer, 11> named_layers = {{
     {Layer::albedo, "albedo", "RGB", "share, 0 to 1"},
     {Layer::normal, "normal", "XYZ", "unit vector"},
     {Layer::depth, "depth", "Z", "m"},
@@ -47,13 +52,14 @@ inline constexpr std::array<NamedLayer, 10> named_layers = {{
     {Layer::luminance, "luminance", "Y", "cd/m^2"},
     {Layer::illuminance, "illuminance", "Y", "lx"},
     {Layer::patch, "patch", "id", "number of the solution's patch"},
+    {Layer::coverage, "coverage", "A", "share, 0 to 1"},
 }};
 
 const NamedLayer& named(Layer layer);
 /// Returns the layer of a name; empty if the name is unknown.
 std::optional<Layer> layer_named(std::string_view name);
 /// Names of a layer's channels as in OpenEXR: "albedo.R", "albedo.G", "albedo.B"; "depth.Z";
-/// "patch.id".
+/// "patch.id". That of coverage is "A", OpenEXR's name of alpha.
 std::vector<std::string> channel_names(Layer layer);
 
 /// One column for each channel of a picture's layers; rows as in Image::radiance.
@@ -88,6 +94,7 @@ constexpr int first_sampled_column(Layer layer) {
     case Layer::depth:
     case Layer::luminance:
     case Layer::patch:
+    case Layer::coverage:
       break;
   }
   return -1;

@@ -42,15 +42,6 @@ std::vector<Tone> typical_tones(std::vector<Tone> tones) {
   return tones;
 }
 
-// A camera's picture of another width and the same shape.
-Camera with_width(const Camera& camera, int width) {
-  Camera coarse = camera;
-  const double height = static_cast<double>(width) * camera.height / camera.width;
-  coarse.width = width;
-  coarse.height = std::clamp(static_cast<int>(std::lround(height)), 1, 4 * width);
-  return coarse;
-}
-
 struct PixelRays {
   std::vector<Ray> rays{};
   std::vector<int> pixels{};
@@ -91,14 +82,17 @@ std::optional<double> typical_luminance(const Image& image, const Bands& bands) 
 Image coarse_picture(const ElementCaster& caster, std::span<const char> passed,
                      const BandArray& radiance, const Camera& camera, int width, const Sky* sky) {
   constexpr int most_layers = 16;  // panes, backs and others that a ray passes
-  const Camera coarse = with_width(camera, width);
-  const CameraRays camera_rays(coarse);
-  Image image{coarse.width, coarse.height, {}};
+  const CameraRays camera_rays(camera);
+  const double rows = static_cast<double>(width) * camera.height / camera.width;
+  Image image{width, std::clamp(static_cast<int>(std::lround(rows)), 1, 4 * width), {}};
   image.radiance = BandArray::Zero(image.width * image.height, radiance.cols());
   PixelRays all;
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
-      all.rays.push_back(camera_rays.ray(x + 0.5, y + 0.5));
+      const auto ray = camera_rays.ray_at((x + 0.5) * camera.width / image.width,
+                                          (y + 0.5) * camera.height / image.height);
+      if (!ray) continue;
+      all.rays.push_back(*ray);
       all.pixels.push_back(y * image.width + x);
     }
   }

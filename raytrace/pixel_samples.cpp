@@ -67,13 +67,14 @@ void PixelSamples::take_more(int x, int y, bool is_beside_noise, PixelTally& tal
   }
 }
 
-RaySample PixelSamples::sample_at_time(Ray ray, double time, std::uint64_t key, int number) const {
+RaySample PixelSamples::sample_at_time(Ray ray, double time, std::uint64_t key, int number,
+                                       const PixelCone& cone) const {
   if (exposure_->camera) {
     const Eigen::Isometry3d moved = exposure_->camera->at(time);
     ray.origin = moved * ray.origin;
     ray.direction = moved.linear() * ray.direction;
   }
-  return tree_.trace_one_of_many(ray, key, number, exposure_->caster.at(time));
+  return tree_.trace_one_of_many(ray, key, number, exposure_->caster.at(time), cone);
 }
 
 // Offset of a sample from the pixel's centre along one axis.
@@ -85,15 +86,19 @@ void PixelSamples::take(int x, int y, int until, PixelTally& tally) const {
   const auto column = static_cast<std::uint64_t>(x), row = static_cast<std::uint64_t>(y);
   const std::uint64_t sample_key = random_key(column, row, RandomPurpose::pixel_points);
   const std::uint64_t shading_key = random_key(column, row, RandomPurpose::pixel_shading);
+  const int panel = rays_.panel_at(x + 0.5, y + 0.5);
+  const PixelCone cone = rays_.cone(x + 0.5, y + 0.5, panel);
+  const auto traced = [&](const Ray& ray) {
+    if (!exposure_) return tree_.trace_one_of_many(ray, shading_key, tally.count, cone);
+    const double part = SobolPoints::fifth(tally.count, sample_key);
+    const double time = exposure_->open + part * (exposure_->close - exposure_->open);
+    return sample_at_time(ray, time, shading_key, tally.count, cone);
+  };
   for (; tally.count < until; ++tally.count) {
     const Eigen::Array4d u = points_.point(tally.count, sample_key).cast<double>();
-    const Ray ray = rays_.ray(x + 0.5 + offset(u[0]), y + 0.5 + offset(u[1]), u[2], u[3]);
-    const double part = exposure_ ? SobolPoints::fifth(tally.count, sample_key) : 0.0;
-    RaySample sample =
-        exposure_
-            ? sample_at_time(ray, exposure_->open + part * (exposure_->close - exposure_->open),
-                             shading_key, tally.count)
-            : tree_.trace_one_of_many(ray, shading_key, tally.count);
+    const auto ray =
+        rays_.ray_at(x + 0.5 + offset(u[0]), y + 0.5 + offset(u[1]), u[2], u[3], panel);
+    RaySample sample = ray ? traced(*ray) : tree_.nothing();
     const auto light = static_cast<double>(sample.radiance.mean());
     tally.light += light;
     tally.square += light * light;

@@ -67,7 +67,8 @@ class PixelSamples {
  private:
   void take(int x, int y, int until, PixelTally& tally) const;
   double offset(double u) const;
-  RaySample sample_at_time(Ray ray, double time, std::uint64_t key, int number) const;
+  RaySample sample_at_time(Ray ray, double time, std::uint64_t key, int number,
+                           const PixelCone& cone) const;
 
   const CameraRays& rays_;
   const RayTree& tree_;

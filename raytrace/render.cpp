@@ -45,30 +45,39 @@ struct Counters {
   }
 };
 
-// Tracer of points of the picture, given in lattice steps from the top left corner.
+// Tracer of points of the picture, given in lattice steps from the top left corner, as points of a
+// panel (see PicturePlane). Where the picture shows nothing, points are black.
 class Eye {
  public:
   Eye(const CameraRays& rays, const RayTree& tree, Counters& counters)
       : rays_(rays), tree_(tree), counters_(counters) {}
 
-  RaySample trace(int x, int y, float effort = 1.0f) const {
+  RaySample trace(int x, int y, int panel, float effort = 1.0f) const {
+    const auto ray = ray_at(x, y, panel);
+    if (!ray) return tree_.nothing();
     const auto key = random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));
-    RaySample sample = tree_.trace(ray(x, y), key, effort);
+    RaySample sample = tree_.trace(*ray, key, effort, rays_.cone(step * x, step * y, panel));
     counters_.eye_rays.fetch_add(1, std::memory_order_relaxed);
     counters_.depth_cut.fetch_add(sample.depth_cut, std::memory_order_relaxed);
     counters_.add_cut(double{sample.cut_weight});
     return sample;
   }
-  std::uint64_t fingerprint(double x, double y) const { return tree_.fingerprint(ray(x, y)); }
+  std::uint64_t fingerprint(double x, double y, int panel) const {
+    const auto ray = ray_at(x, y, panel);
+    return ray ? tree_.fingerprint(*ray) : 0;
+  }
+  /// Returns the panel of a pixel.
+  int panel_of_pixel(int x, int y) const { return rays_.panel_at(x + 0.5, y + 0.5); }
   /// Returns the pixels with gloss of rows `first` to `end` of a picture of `width` columns.
   GlossMask gloss(int width, int first, int end) const {
     return GlossMask(rays_, tree_, width, first, end);
   }
 
  private:
-  Ray ray(double x, double y) const {
-    constexpr double step = 1.0 / lattice_steps;
-    return rays_.ray(step * x, step * y);
+  static constexpr double step = 1.0 / lattice_steps;
+
+  std::optional<Ray> ray_at(double x, double y, int panel) const {
+    return rays_.ray_at(step * x, step * y, panel);
   }
 
   const CameraRays& rays_;
@@ -104,6 +113,7 @@ class PixelMean {
   // `corners`: top left, top right, bottom left, bottom right.
   PixelValue operator()(int x, int y, const std::array<const RaySample*, 4>& corners) {
     met_gloss_ = false;
+    panel_ = eye_.panel_of_pixel(x, y);
     x_ = x * lattice_steps;
     y_ = y * lattice_steps;
     if (!must_split(0, 0, cells_, corners) && (cells_ > 1 || are_alike(corners))) {
@@ -133,7 +143,8 @@ class PixelMean {
       int step = cells_;
       while ((i | j) % step != 0) step /= 2;
       const float effort = static_cast<float>(step) / static_cast<float>(cells_);
-      RaySample sample = eye_.trace(x_ + i * steps_per_cell_, y_ + j * steps_per_cell_, effort);
+      RaySample sample =
+          eye_.trace(x_ + i * steps_per_cell_, y_ + j * steps_per_cell_, panel_, effort);
       met_gloss_ = met_gloss_ || sample.sees_gloss;
       keep(i, j, std::move(sample));
     }
@@ -192,7 +203,7 @@ class PixelMean {
     for (int s = 0; s < edge_points_.count(); ++s) {
       const Eigen::Array4f u = edge_points_.point(s, key);
       const std::uint64_t seen =
-          eye_.fingerprint(x + u[0] * steps_per_cell_, y + u[1] * steps_per_cell_);
+          eye_.fingerprint(x + u[0] * steps_per_cell_, y + u[1] * steps_per_cell_, panel_);
       const auto alike = [&](const RaySample* sample) { return sample->fingerprint == seen; };
       const auto count = std::count_if(c.begin(), c.end(), alike);
       if (count == 0) continue;  // a surface that no corner shows
@@ -217,22 +228,43 @@ class PixelMean {
     // Something thin may pass between the corners. The fingerprint at the middle costs no shadow
     // rays.
     const int half = size * steps_per_cell_ / 2;
-    return eye_.fingerprint(x_ + i * steps_per_cell_ + half, y_ + j * steps_per_cell_ + half) !=
-           c[0]->fingerprint;
+    return eye_.fingerprint(x_ + i * steps_per_cell_ + half, y_ + j * steps_per_cell_ + half,
+                            panel_) != c[0]->fingerprint;
   }
 
   const Eye& eye_;
   const RenderOptions& options_;
   const SobolPoints edge_points_{16};
   int cells_, steps_per_cell_;
-  int x_ = 0, y_ = 0;
+  int x_ = 0, y_ = 0, panel_ = 0;
   bool met_gloss_ = false;
   std::vector<RaySample> lattice_samples_;  // samples at this pixel's lattice points
   std::vector<char> known_;
 };
 
-// A row of pixel corners.
+// A row of pixel corners, each as a point of the panel to its right and below.
 using CornerRow = std::vector<RaySample>;
+
+// Corners of the pixel of column x between two rows of corners: those of the rows, or, where a
+// panel ends, ones traced anew in the pixel's own panel.
+class PixelCorners {
+ public:
+  PixelCorners(const Eye& eye, int x, int y, const CornerRow& top, const CornerRow& bottom)
+      : corners_{&top[x], &top[x + 1], &bottom[x], &bottom[x + 1]} {
+    const int panel = eye.panel_of_pixel(x, y);
+    for (int c = 1; c < 4; ++c) {
+      const int right = x + (c & 1), below = y + (c >> 1);
+      if (eye.panel_of_pixel(right, below) == panel) continue;
+      own_[c] = eye.trace(right * lattice_steps, below * lattice_steps, panel);
+      corners_[c] = &own_[c];
+    }
+  }
+  const std::array<const RaySample*, 4>& operator*() const { return corners_; }
+
+ private:
+  std::array<RaySample, 4> own_{};
+  std::array<const RaySample*, 4> corners_;
+};
 
 // Pixels that many samples are taken of, beside subdivision.
 struct SampledPixels {
@@ -248,7 +280,9 @@ void trace_corners(const Eye& eye, int first_row, std::span<CornerRow> rows,
     for (int i = begin; i < end; ++i) {
       const int row = i / columns, column = i % columns;
       if (mask && !mask->is_corner_of_matt_pixel(column, first_row + row)) continue;
-      rows[row][column] = eye.trace(column * lattice_steps, (first_row + row) * lattice_steps);
+      const int y = first_row + row;
+      rows[row][column] =
+          eye.trace(column * lattice_steps, y * lattice_steps, eye.panel_of_pixel(column, y));
     }
   });
 }
@@ -271,9 +305,8 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
     for (int i = begin; i < end; ++i) {
       const int row = i / image.width, x = i % image.width, y = first_row + row;
       if (sampled && sampled->mask.has_gloss(x, y)) continue;
-      const CornerRow& top = corners[row];
-      const CornerRow& bottom = corners[row + 1];
-      const PixelValue value = pixel_mean(x, y, {&top[x], &top[x + 1], &bottom[x], &bottom[x + 1]});
+      const PixelCorners pixel_corners(eye, x, y, corners[row], corners[row + 1]);
+      const PixelValue value = pixel_mean(x, y, *pixel_corners);
       if (sampled && pixel_mean.met_gloss()) {
         PixelTally tally = sampled->samples.first_samples(x, y);
         sampled->samples.take_more(x, y, true, tally);
@@ -350,7 +383,9 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
   print.add(solution.indirect_irradiance);
   // add_exposure() has the camera's motion and shutter.
   const auto& [name, position, direction, up, fov_degrees, width, height, lens_radius,
-               focus_distance, blades, shutter_open, shutter_close, motion] = camera;
+               focus_distance, blades, shutter_open, shutter_close, motion, projection, view_width,
+               near_distance, far_distance, shift, window, distortion, circle_degrees,
+               eye_separation] = camera;
   // Left out are `caustics`, which follows from `photons`; `layers`, whose names render() adds;
   // `run` and `rows_done`, which change no bit.
   const auto& [pass, max_depth, min_contribution, shadows, gather_rays, photons, caustics,
@@ -373,6 +408,17 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
   print.add(lens_radius);
   print.add(focus_distance);
   print.add(blades);
+  print.add(projection);
+  print.add(view_width);
+  print.add(near_distance);
+  print.add(far_distance);
+  print.add(shift.x());
+  print.add(shift.y());
+  for (const double edge : {window.left, window.top, window.right, window.bottom}) print.add(edge);
+  const auto& [k1, k2, k3, p1, p2] = distortion;
+  for (const double coefficient : {k1, k2, k3, p1, p2}) print.add(coefficient);
+  print.add(circle_degrees);
+  print.add(eye_separation);
   print.add(gather_rays);
   print.add(glossy_rays);
   print.add(photons);
@@ -485,7 +531,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   const auto start = std::chrono::steady_clock::now();
   validate(options);
   const CameraRays rays(camera);
-  const RayTree tree(scene, caster, direct_light, solution, options, rays.pixel_width());
+  const RayTree tree(scene, caster, direct_light, solution, options);
   Counters counters;
   const Eye eye(rays, tree, counters);
   Image image{.width = camera.width, .height = camera.height};
@@ -519,7 +565,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
       tiles.render(y, rows);
       parallel_for(rows, 1, [&](int begin, int end) {
         for (int i = begin; i < end; ++i) {
-          layers.finish_row(y + i, scene.bands, camera, rays, caster);
+          layers.finish_row(y + i, scene.bands, rays, caster);
         }
       });
       phase.keep(tile, values);

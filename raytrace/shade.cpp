@@ -70,14 +70,12 @@ ShadowOptions shadows_for(ShadowOptions shadows, float weight, int fewest) {
 }  // namespace
 
 RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-                 const RadiositySolution& solution, const RenderOptions& options,
-                 double pixel_width)
+                 const RadiositySolution& solution, const RenderOptions& options)
     : scene_(scene),
       caster_(caster),
       direct_light_(direct_light),
       solution_(solution),
       options_(options),
-      pixel_width_(pixel_width),
       textures_(std::make_shared<const FacetTextures>(scene)),
       normals_(scene),
       with_layers_(std::any_of(options.layers.begin(), options.layers.end(),
@@ -138,19 +136,20 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   }
 }
 
-RaySample RayTree::trace(const Ray& ray, std::uint64_t key, float effort) const {
+RaySample RayTree::trace(const Ray& ray, std::uint64_t key, float effort,
+                         const PixelCone& cone) const {
   const int bands = scene_.bands.count();
   TreeState state{.result = {.radiance = Spectrum::Zero(bands)},
                   .key = key,
                   .effort = effort,
                   .caster = &caster_,
                   .gloss_key = key};
-  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, state);
+  follow({.ray = ray, .weight = Spectrum::Ones(bands), .cone = cone}, state);
   return state.result;
 }
 
 RaySample RayTree::trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
-                                     const ElementCaster& caster) const {
+                                     const ElementCaster& caster, const PixelCone& cone) const {
   const int bands = scene_.bands.count();
   TreeState state{.result = {.radiance = Spectrum::Zero(bands)},
                   .key = random_key(key, static_cast<std::uint64_t>(number)),
@@ -158,7 +157,7 @@ RaySample RayTree::trace_one_of_many(const Ray& ray, std::uint64_t key, int numb
                   .caster = &caster,
                   .number = number,
                   .gloss_key = key};
-  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, state);
+  follow({.ray = ray, .weight = Spectrum::Ones(bands), .cone = cone}, state);
   return state.result;
 }
 
@@ -323,7 +322,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .lobe_density = sample.density,
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
                 .behind_coat = parent.behind_coat + (parent.behind_coat > 0 || what.coat ? 1 : 0),
-                .width = cone_width(parent, at),
+                .cone = {.start = cone_width(parent, at), .spread = parent.cone.spread},
                 .media = parent.media,
                 .polarisation = sample.polarisation};
   if (!survives(branch, state)) return;

@@ -15,6 +15,7 @@
 #include "raytrace/caustic_map.h"
 #include "raytrace/dome_on_mesh.h"
 #include "raytrace/lamp_samples.h"
+#include "raytrace/pixel_cone.h"
 #include "raytrace/pixel_gather.h"
 #include "raytrace/render.h"
 #include "raytrace/visible_lamps.h"
@@ -98,27 +99,30 @@ struct SpecularSegment {
 /// Behind a coat that mirrors less than a quarter of the light, or blurs it, diffuse surfaces show
 /// the solution's irradiance: shadow rays there would cost more than those of the coated surface.
 ///
-/// Textures are filtered over the footprint of a ray's pixel: a cone (Amanatides 1984) whose width
-/// is `pixel_width` times the length of the path, as if all surfaces on the way were flat.
+/// Textures are filtered over the PixelCone of a ray, which grows with the length of the path as if
+/// all surfaces on the way were flat.
 class RayTree {
  public:
   RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
-          const RadiositySolution& solution, const RenderOptions& options,
-          double pixel_width = 0.0);
+          const RadiositySolution& solution, const RenderOptions& options);
 
   /// Traces a ray. `key` decides the shadow samples; `effort`, (0, 1], scales their number, for
   /// samples that are averaged with others.
-  RaySample trace(const Ray& ray, std::uint64_t key, float effort = 1.0f) const;
+  RaySample trace(const Ray& ray, std::uint64_t key, float effort = 1.0f,
+                  const PixelCone& cone = {}) const;
+  /// Returns the sample of a ray that shows nothing: black.
+  RaySample nothing() const { return {.radiance = Spectrum::Zero(scene_.bands.count())}; }
   /// Traces one of many samples of the same key that are averaged, numbered from 0. Each has few
   /// shadow and gather rays and one direction per rough surface; these are well spread over all
   /// samples.
-  RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number) const {
-    return trace_one_of_many(ray, key, number, caster_);
+  RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
+                              const PixelCone& cone = {}) const {
+    return trace_one_of_many(ray, key, number, caster_, cone);
   }
   /// Traces one of many samples with `caster`, the result of ElementCaster::at() of a caster that
   /// knows the scene's motions.
   RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
-                              const ElementCaster& caster) const;
+                              const ElementCaster& caster, const PixelCone& cone = {}) const;
   /// Radiance along a ray, W/(m^2 sr), of DirectLight's lights by way of mirrors, gloss and clear
   /// bodies alone. Left out:
   /// - light straight through clear panes, which is direct light;
@@ -181,7 +185,7 @@ class RayTree {
     const BrightPatches::View* bright = nullptr;
     bool is_aimed = false;  ///< aimed at a bright patch
     int behind_coat = 0;    ///< surfaces on the way from the first coat on, that one included
-    double width = 0.0;     ///< m, width of the cone at the ray's origin
+    PixelCone cone{};       ///< of the ray, from its origin on
     Media media{};
     Polarisation polarisation{};
   };
@@ -259,7 +263,7 @@ class RayTree {
                     const TreeState& state) const;
   Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   double cone_width(const Branch& branch, const ShadingPoint& at) const {
-    return branch.width + pixel_width_ * (at.position - branch.ray.origin).norm();
+    return branch.cone.start + branch.cone.spread * (at.position - branch.ray.origin).norm();
   }
   void add_caustics(const ElementHit& hit, const ShadingPoint& at, Spectrum& indirect) const;
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
@@ -270,7 +274,6 @@ class RayTree {
   const DirectLight& direct_light_;
   const RadiositySolution& solution_;
   const RenderOptions& options_;
-  double pixel_width_;                               ///< m at a distance of one metre
   std::shared_ptr<const FacetTextures> textures_{};  ///< null: no textures
   FacetNormals normals_;
   /// Least height of a shadow ray's origin over its facet, m, beyond rounding.

@@ -218,7 +218,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   aimed.node = random_key(branch.node, RandomPurpose::gloss_patches,
                           static_cast<std::uint64_t>(aim.element));
   aimed.is_sharp = false;
-  aimed.width = cone_width(branch, at);
+  aimed.cone.start = cone_width(branch, at);
   aimed.lobe_density = 0.0;
   aimed.bright = nullptr;
   aimed.is_aimed = true;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/bands.h"
+#include "scene/camera.h"
 #include "scene/lamp.h"
 #include "scene/motion.h"
 #include "scene/normal_map.h"
@@ -126,30 +127,6 @@ struct Surface {
   int motion = -1;  ///< index into Scene::motions; -1: the surface stands still
 };
 
-/// Pinhole or thin-lens camera. The picture's x axis is direction x up: with direction +z and up
-/// +y, world +x is on the left. Row 0 is the top.
-struct Camera {
-  std::string name{};
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit length
-  Eigen::Vector3d up = Eigen::Vector3d::UnitY();  ///< unit length, perpendicular to direction
-  double fov_degrees = 40.0;                      ///< full horizontal angle, (0, 180)
-  int width = 512, height = 512;                  ///< pixels
-  double lens_radius = 0.0;     ///< m; 0: a pinhole, whose pictures are sharp everywhere
-  double focus_distance = 1.0;  ///< m along `direction` to the plane that is sharp, > 0
-  int blades = 0;               ///< of the aperture, 3 to max_blades; 0: round
-  /// Times in s; a picture is the mean over the time in which the shutter is open. Equal times: an
-  /// instant.
-  double shutter_open = 0.0, shutter_close = 0.0;
-  int motion = -1;  ///< index into Scene::motions; -1: the camera stands still
-
-  bool is_open_for_a_while() const { return shutter_close > shutter_open; }
-  double shutter_middle() const { return 0.5 * (shutter_open + shutter_close); }
-};
-
-/// Most blades of an aperture.
-inline constexpr int max_blades = 64;
-
 /// A room and its contents as plain data, in metres and watts.
 struct Scene {
   std::filesystem::path file{};  ///< source of the scene, for messages
@@ -220,11 +197,6 @@ Bounds scene_bounds(const Scene& scene);
 /// lamps whose axes are a rotation and whose intensity is a finite number >= 0, sound motions, a
 /// sound sky. Throws InputError naming surface, material, value and remedy.
 void validate(const Scene& scene);
-
-/// The same for a camera: finite places and times within farthest_coordinate, direction and up unit
-/// vectors at right angles, within 1e-6, a field of view between 0 and 180 degrees, an aperture and
-/// a distance of focus that rays can be computed with. Throws InputError naming camera and value.
-void validate(const Camera& camera);
 
 /// 64-bit hash of everything that decides the light: geometry, materials, lamps, sky and bands, not
 /// cameras, names or notes. Solutions store the hash, so that a solution of another scene is

@@ -316,10 +316,7 @@ void validate(const Camera& camera) {
       !(std::abs(camera.direction.dot(camera.up)) < rounding)) {
     refuse("direction and up must be unit vectors at right angles to each other");
   }
-  if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
-    refuse(fmt::format("a field of view of {} degrees; it must lie between 0 and 180",
-                       camera.fov_degrees));
-  }
+  if (const std::string what = projection_fault(camera); !what.empty()) refuse(what);
   if (!(camera.lens_radius >= 0.0 && camera.lens_radius <= farthest_coordinate)) {
     refuse(fmt::format("a lens of radius {} m; it must lie between 0, for a pinhole, and {:g} m",
                        camera.lens_radius, farthest_coordinate));

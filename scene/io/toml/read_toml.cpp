@@ -7,10 +7,10 @@
 #include <set>
 
 #include "scene/errors.h"
-#include "scene/io/camera_name.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
+#include "scene/io/toml/toml_camera.h"
 #include "scene/io/toml/toml_design.h"
 #include "scene/io/toml/toml_lamps.h"
 #include "scene/io/toml/toml_materials.h"
@@ -53,101 +53,6 @@ double metres_in(const std::string& unit) {
   if (unit == "in") return 0.0254;
   if (unit == "ft") return 0.3048;
   return 1.0;
-}
-
-Eigen::Vector3d read_view_direction(const TomlTable& table, const Eigen::Vector3d& position) {
-  const auto given = table.present({"direction", "look_at"});
-  if (given.size() != 1) table.fail("needs exactly one of 'direction' and 'look_at'");
-  const TomlValue value = table.require(given[0]);
-  const Eigen::Vector3d direction =
-      given[0] == "look_at" ? Eigen::Vector3d(value.vector() - position) : value.vector();
-  if (!(direction.stableNorm() > 0.0)) {
-    value.fail(given[0] == "look_at" ? "is the camera's own position; look at another point"
-                                     : "has no length; give the direction to look in");
-  }
-  return direction.stableNormalized();
-}
-
-// An f-number refers to a film 36 mm wide, so the focal length follows from fov.
-void read_toml_lens(const TomlTable& table, double metres_per_unit, Camera& camera) {
-  const auto given = table.present({"aperture_radius", "f_number"});
-  if (given.size() > 1) {
-    table.require(given[1]).fail("is a second statement of the aperture, after 'aperture_radius'");
-  }
-  if (given.empty()) {
-    for (const auto& key : table.present({"focus_distance", "blades"})) {
-      table.require(key).fail(
-          "needs a lens; give 'f_number' or 'aperture_radius', or remove it: a pinhole camera "
-          "shows everything sharp");
-    }
-    return;
-  }
-  const TomlValue aperture = table.require(given[0]);
-  if (given[0] == "aperture_radius") {
-    camera.lens_radius = metres_per_unit * aperture.positive();
-  } else {
-    constexpr double half_film = 0.018;  // m
-    const double focal_length =
-        half_film / std::tan(0.5 * camera.fov_degrees * std::numbers::pi / 180.0);
-    camera.lens_radius = 0.5 * focal_length / aperture.positive();
-  }
-  if (!std::isfinite(camera.lens_radius)) aperture.fail("is no aperture");
-  camera.focus_distance = metres_per_unit * table.require("focus_distance").positive();
-  if (const auto blades = table.find("blades")) {
-    camera.blades = static_cast<int>(blades->integer_within(3, max_blades));
-  }
-}
-
-// `names`: of the cameras before this one.
-Camera read_camera(const TomlValue& value, std::size_t number, const Scene& scene,
-                   std::set<std::string>& names) {
-  const auto given = value.member("name");
-  Camera camera{.name = given ? given->name() : fmt::format("camera{}", number)};
-  if (camera.name.find_first_of("/\\") != std::string::npos || camera.name.starts_with('.')) {
-    given->fail(
-        fmt::format("is '{}'; pictures are called after it, so it must not contain a slash "
-                    "or start with a dot",
-                    camera.name));
-  }
-  if (camera.name.size() > longest_camera_name) {
-    given->fail(fmt::format("is of {} bytes; pictures are called after it, so give at most {}",
-                            camera.name.size(), longest_camera_name));
-  }
-  const TomlTable table =
-      value.renamed(fmt::format("camera '{}'", camera.name))
-          .table({"name", "position", "direction", "look_at", "up", "fov", "size",
-                  "aperture_radius", "f_number", "focus_distance", "blades", "shutter", "motion"});
-  if (!names.insert(camera.name).second) {
-    table.fail("has a name that an earlier camera has; give it another");
-  }
-  const Eigen::Vector3d position = table.require("position").vector();
-  camera.position = scene.metres_per_unit * position;
-  camera.direction = read_view_direction(table, position);
-  const auto up = table.find("up");
-  const Eigen::Vector3d upwards = up ? Eigen::Vector3d(up->vector().stableNormalized()) : camera.up;
-  const Eigen::Vector3d across = upwards - upwards.dot(camera.direction) * camera.direction;
-  if (!(across.norm() > parallel_sine)) {
-    (up ? *up : table.value())
-        .fail(up ? "has no length or is parallel to the viewing direction; choose another"
-                 : "looks along [0, 1, 0]; say with 'up' which way is up in the picture");
-  }
-  camera.up = across.normalized();
-  if (const auto fov = table.find("fov")) {
-    camera.fov_degrees = fov->number();
-    if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
-      fov->fail(fmt::format("is {}; it must lie between 0 and 180 degrees", camera.fov_degrees));
-    }
-  }
-  if (const auto size = table.find("size")) {
-    const auto pixels = size->elements("number");
-    if (pixels.size() != 2) size->fail("must be two whole numbers [width, height]");
-    camera.width = static_cast<int>(pixels[0].integer_within(1, max_picture_edge));
-    camera.height = static_cast<int>(pixels[1].integer_within(1, max_picture_edge));
-  }
-  read_toml_lens(table, scene.metres_per_unit, camera);
-  if (const auto shutter = table.find("shutter")) read_toml_shutter(*shutter, camera);
-  if (const auto motion = table.find("motion")) camera.motion = find_toml_motion(*motion, scene);
-  return camera;
 }
 
 std::vector<TomlMaterial> read_toml_materials(const TomlTable& document, const TomlBands& bands,
@@ -210,7 +115,7 @@ Scene read_toml(const std::filesystem::path& path) {
     number = 0;
     std::set<std::string> names;
     for (const auto& camera : cameras->elements("camera")) {
-      scene.cameras.push_back(read_camera(camera, ++number, scene, names));
+      scene.cameras.push_back(read_toml_camera(camera, ++number, scene, names));
       have_shutter.push_back(camera.member("shutter") ? 1 : 0);
     }
   }
