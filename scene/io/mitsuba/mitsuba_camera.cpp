@@ -70,11 +70,40 @@ void read_mitsuba_lens(const MitsubaNode& sensor, Camera& camera) {
   }
 }
 
+// Crop windows of the film, in pixels of the whole picture.
+void read_crop(const MitsubaNode& film, Camera& camera) {
+  const int width = camera.width, height = camera.height;
+  const auto window = [&](const char* offset, const char* size, int whole, double& low,
+                          double& high) {
+    const double first = film.number_or(offset, 0.0), count = film.number_or(size, whole - first);
+    if (!(first >= 0.0 && count >= 1.0 && first + count <= whole)) {
+      film.fail(fmt::format("has {} {} and {} {}; the window must lie within {} pixels", offset,
+                            first, size, count, whole));
+    }
+    low = first / whole;
+    high = (first + count) / whole;
+  };
+  window("crop_offset_x", "crop_width", width, camera.window.left, camera.window.right);
+  window("crop_offset_y", "crop_height", height, camera.window.top, camera.window.bottom);
+  set_picture_size(width, height, camera);
+}
+
+// An orthographic sensor of Mitsuba sees the square from -1 to 1 of its own frame in a square
+// picture; in others the picture's width is 2. The transformation scales it.
+void set_parallel(const Eigen::Affine3d& to_world, const MitsubaNode& sensor, Camera& camera) {
+  camera = with_projection(camera, Projection::orthographic);
+  camera.view_width = 2.0 * to_world.linear().col(0).norm();
+  if (std::abs(to_world.linear().col(1).norm() / to_world.linear().col(0).norm() - 1.0) > 1e-3) {
+    sensor.fail("is scaled differently in width and height; pixels are square here");
+  }
+}
+
 }  // namespace
 
 void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scene& scene,
                         Remarks& remarks) {
-  if (sensor.type != "perspective" && sensor.type != "thinlens") {
+  const bool is_parallel = sensor.type == "orthographic";
+  if (!is_parallel && sensor.type != "perspective" && sensor.type != "thinlens") {
     remarks.add(fmt::format("Cameras of the plugin '{}' were left out", sensor.type),
                 sensor.label());
     return;
@@ -84,14 +113,23 @@ void add_mitsuba_camera(const MitsubaNode& sensor, const MitsubaTree& tree, Scen
   const MitsubaNode* film = films.empty() ? nullptr : films.front();
   camera.width = pixels(film, "width", 768);  // Mitsuba's own default
   camera.height = pixels(film, "height", 576);
-  if (film && film->property("crop_width")) {
-    remarks.add("Crop windows have no effect", camera.name);
+  const Eigen::Affine3d to_world = read_to_world(sensor);
+  if (is_parallel) {
+    set_parallel(to_world, sensor, camera);
+  } else {
+    camera.fov_degrees = 2.0 * std::atan(half_width(sensor, camera.width, camera.height)) / degree;
+    // The offset moves the picture to the right and downwards.
+    camera.shift = {sensor.number_or("principal_point_offset_x", 0.0),
+                    -sensor.number_or("principal_point_offset_y", 0.0)};
   }
-  camera.fov_degrees = 2.0 * std::atan(half_width(sensor, camera.width, camera.height)) / degree;
-  if (!place_camera(read_to_world(sensor), Eigen::Vector3d::UnitZ(), camera, remarks)) {
+  if (film) read_crop(*film, camera);
+  camera.near_distance = sensor.number_or("near_clip", camera.near_distance);
+  camera.far_distance = sensor.number_or("far_clip", camera.far_distance);
+  if (!place_camera(to_world, Eigen::Vector3d::UnitZ(), camera, remarks)) {
     sensor.fail("has a transformation that leaves it no direction or no upright");
   }
   if (sensor.type == "thinlens") read_mitsuba_lens(sensor, camera);
+  if (const std::string what = projection_fault(camera); !what.empty()) sensor.fail("has " + what);
   scene.cameras.push_back(camera);
 }
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include "scene/degree.h"
 #include "scene/io/camera_name.h"
@@ -66,9 +67,82 @@ bool begins_a_view(std::string_view word) {
   return std::ranges::any_of(beginnings, [&](auto b) { return word.starts_with(b); });
 }
 
+// RADIANCE's letters of view types. There is none of the other projections.
+struct ViewType {
+  char letter;
+  Projection projection;
+};
+constexpr std::array<ViewType, 6> view_types = {{{'v', Projection::perspective},
+                                                 {'l', Projection::orthographic},
+                                                 {'a', Projection::equidistant},
+                                                 {'h', Projection::hemispherical},
+                                                 {'s', Projection::stereographic},
+                                                 {'c', Projection::cylindrical}}};
+
+// What a side of a view's picture spans, in lengths of its projection's plane: `span` is the side's
+// angle, degrees, or its width of a parallel view. angle_of() is the inverse.
+double plane_length(Projection projection, double span, bool is_height) {
+  const double angle = span * degree;
+  if (projection == Projection::cylindrical && is_height) return 2.0 * std::tan(0.5 * angle);
+  switch (projection) {
+    case Projection::orthographic:
+      return span;
+    case Projection::equidistant:
+    case Projection::cylindrical:
+      return angle;
+    case Projection::hemispherical:
+      return 2.0 * std::sin(0.5 * angle);
+    case Projection::stereographic:
+      return 4.0 * std::tan(0.25 * angle);
+    default:
+      return 2.0 * std::tan(0.5 * angle);
+  }
+}
+
+double span_of(Projection projection, double length, bool is_height) {
+  if (projection == Projection::cylindrical && is_height)
+    return 2.0 * std::atan(0.5 * length) / degree;
+  switch (projection) {
+    case Projection::orthographic:
+      return length;
+    case Projection::equidistant:
+    case Projection::cylindrical:
+      return length / degree;
+    case Projection::hemispherical:
+      return 2.0 * std::asin(std::min(1.0, 0.5 * length)) / degree;
+    case Projection::stereographic:
+      return 4.0 * std::atan(0.25 * length) / degree;
+    default:
+      return 2.0 * std::atan(0.5 * length) / degree;
+  }
+}
+
+// Returns what is wrong with the spans of a view; empty: nothing.
+std::string span_fault(const RadianceView& view, Projection projection) {
+  if (projection == Projection::orthographic) {
+    const bool is_sound = view.horizontal > 0.0 && view.vertical > 0.0;
+    return is_sound ? "" : "is not wide or not high; -vh and -vv must be above 0";
+  }
+  const double widest = named(projection).widest;
+  const bool is_open =
+      projection == Projection::perspective || projection == Projection::stereographic;
+  const auto is_sound = [&](double angle, double most, bool below) {
+    return angle > 0.0 && (angle < most || (angle == most && !below));
+  };
+  const bool is_cylinder = projection == Projection::cylindrical;
+  const double highest = is_cylinder ? 180.0 : widest;
+  for (const auto& [angle, most, below] : {std::tuple{view.horizontal, widest, is_open},
+                                           {view.vertical, highest, is_open || is_cylinder}}) {
+    if (is_sound(angle, most, below)) continue;
+    return fmt::format("spans {} degrees; -vh and -vv must lie between 0 and {}", angle, most);
+  }
+  return {};
+}
+
 // Sets the picture's size: as wide or as high as allowed, with square pixels.
-void set_size(const RadianceView& view, double half_width, double half_height, Camera& camera) {
-  const double aspect = half_height / half_width;
+void set_size(const RadianceView& view, Camera& camera) {
+  const double aspect = plane_length(camera.projection, view.vertical, true) /
+                        plane_length(camera.projection, view.horizontal, false);
   const double width = std::min(view.width, view.height / aspect);
   // Angles near 0 and 180 degrees have aspects that are no numbers.
   const auto pixels = [](double count) {
@@ -77,6 +151,25 @@ void set_size(const RadianceView& view, double half_width, double half_height, C
   };
   camera.width = pixels(width);
   camera.height = pixels(width * aspect);
+}
+
+// Sets the projection, angles, shift and range.
+void set_projection(const RadianceView& view, Projection projection, Camera& camera) {
+  camera.projection = projection;
+  if (projection == Projection::orthographic) {
+    camera.view_width = view.horizontal;
+  } else {
+    camera.fov_degrees = view.horizontal;
+  }
+  camera.shift = {view.shift, view.lift};
+  if (is_fisheye(projection)) {
+    // A shifted view is often a piece of a larger picture, which goes on beyond its angles.
+    camera.circle_degrees = camera.shift.isZero(0.0) ? std::max(view.horizontal, view.vertical)
+                                                     : named(projection).widest;
+  }
+  if (view.fore > 0.0) camera.near_distance = view.fore;
+  if (view.aft > 0.0) camera.far_distance = view.aft;
+  set_size(view, camera);
 }
 
 }  // namespace
@@ -106,30 +199,22 @@ std::vector<RadianceView> read_radiance_views(const TextFile& file, RadianceView
 
 void add_radiance_camera(const RadianceView& view, const std::string& name,
                          const RadianceLocation& location, Scene& scene, Remarks& remarks) {
-  if (view.type != 'v') {
-    remarks.add("Views that are no perspectives (-vtv) were left out", name);
-    return;
-  }
   const auto fail = [&](const std::string& what) {
     location.fail(fmt::format("the view '{}' {}", name, what));
   };
-  for (const double angle : {view.horizontal, view.vertical}) {
-    if (!(angle > 0.0 && angle < 180.0)) {
-      fail(fmt::format("spans {} degrees; -vh and -vv must lie between 0 and 180", angle));
-    }
+  const auto* const type = std::ranges::find(view_types, view.type, &ViewType::letter);
+  if (type == view_types.end()) {
+    fail(fmt::format("is of the unknown type '-vt{}'; write -vtv, -vtl, -vta, -vth, -vts or -vtc",
+                     view.type));
+    return;
   }
+  if (const std::string what = span_fault(view, type->projection); !what.empty()) fail(what);
   if (!(std::min(view.width, view.height) >= 1.0 &&
         std::max(view.width, view.height) <= max_picture_edge)) {
     fail(fmt::format("has a picture of {} x {} pixels; give from 1 to {}", view.width, view.height,
                      max_picture_edge));
   }
-  if (view.shift != 0.0 || view.lift != 0.0) {
-    remarks.add("Views off their axis (-vs, -vl) were read as if on it", name);
-  }
-  if (view.fore > 0.0 || view.aft > 0.0) {
-    remarks.add("Clipping planes of views (-vo, -va) have no effect", name);
-  }
-  Camera camera{.name = camera_name(name, scene), .fov_degrees = view.horizontal};
+  Camera camera{.name = camera_name(name, scene)};
   Eigen::Affine3d to_world(Eigen::Translation3d(view.point));
   to_world.linear().col(1) = view.up;
   to_world.linear().col(2) = view.direction;
@@ -137,9 +222,34 @@ void add_radiance_camera(const RadianceView& view, const std::string& name,
   if (!place_camera(to_world, Eigen::Vector3d::UnitZ(), camera, remarks)) {
     fail("looks along its upright or nowhere; change -vd or -vu");
   }
-  set_size(view, std::tan(0.5 * view.horizontal * degree), std::tan(0.5 * view.vertical * degree),
-           camera);
+  set_projection(view, type->projection, camera);
+  if (const std::string what = projection_fault(camera); !what.empty()) fail("has " + what);
   scene.cameras.push_back(camera);
+}
+
+std::string radiance_view_options(const Camera& camera, double metres_per_unit) {
+  const Projection projection = camera.projection;
+  const auto* const type = std::ranges::find(view_types, projection, &ViewType::projection);
+  if (type == view_types.end() || !camera.distortion.is_none()) return {};
+  const bool is_parallel = projection == Projection::orthographic;
+  const PictureWindow& part = camera.window;
+  // Of the part that is rendered: its width on the plane, and the offset of its middle.
+  const double whole = is_parallel ? camera.view_width / metres_per_unit
+                                   : plane_length(projection, camera.fov_degrees, false);
+  const double width = whole * part.width();
+  const double height = width * camera.height / camera.width;
+  const double shift = (0.5 * (part.left + part.right) - 0.5 + camera.shift.x()) / part.width();
+  const double lift = (0.5 - 0.5 * (part.top + part.bottom) + camera.shift.y()) / part.height();
+  const Eigen::Vector3d at = camera.position / metres_per_unit;
+  const Eigen::Vector3d &d = camera.direction, &up = camera.up;
+  const double far_limit =
+      std::isfinite(camera.far_distance) ? camera.far_distance / metres_per_unit : 0.0;
+  return fmt::format(
+      "-vt{} -vp {:.9g} {:.9g} {:.9g} -vd {:.9g} {:.9g} {:.9g} -vu {:.9g} {:.9g} {:.9g} -vh {:.9g} "
+      "-vv {:.9g} -vo {:.9g} -va {:.9g} -vs {:.9g} -vl {:.9g}",
+      type->letter, at.x(), at.y(), at.z(), d.x(), d.y(), d.z(), up.x(), up.y(), up.z(),
+      span_of(projection, width, false), span_of(projection, height, true),
+      camera.near_distance / metres_per_unit, far_limit, shift, lift);
 }
 
 }  // namespace lightwell

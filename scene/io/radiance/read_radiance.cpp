@@ -180,6 +180,10 @@ class RadianceReader {
     // A flat scene gets a least extent, so that views keep a distance from it.
     const Eigen::Vector3d size =
         (zone.high - zone.low).cwiseMax(0.01 * (zone.high - zone.low).norm());
+    const bool is_fisheye = view.type == 'a' || view.type == 'h' || view.type == 's';
+    if (is_fisheye || view.type == 'c') view.horizontal = is_fisheye ? 180.0 : 360.0;
+    if (is_fisheye) view.vertical = 180.0;
+    if (view.type == 'l') view.horizontal = view.vertical = size.norm();
     const double distance = is_interior ? 0.45 : 2.0;
     view.point = 0.5 * (zone.low + zone.high) + distance * side.cwiseProduct(size);
     view.direction = -side.cwiseProduct(size);

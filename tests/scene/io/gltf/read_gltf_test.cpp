@@ -199,6 +199,19 @@ TEST_F(Gltf, CamerasLookAlongTheirMinusZ) {
   EXPECT_LT((camera.position - Eigen::Vector3d(1, 2, 3)).norm(), 1e-12);
 }
 
+TEST_F(Gltf, OrthographicCamerasHaveTheirWidth) {
+  const Scene scene = read(square_gltf(
+      R"(,"scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"camera":0,"scale":[2,2,2]}],
+      "cameras":[{"name":"plan","type":"orthographic","orthographic":{"xmag":3,"ymag":2,
+      "znear":0.5,"zfar":100}}])"));
+  const Camera& camera = scene.cameras.at(0);
+  EXPECT_EQ(camera.projection, Projection::orthographic);
+  EXPECT_DOUBLE_EQ(camera.view_width, 12.0);  // 2 xmag, scaled
+  EXPECT_DOUBLE_EQ(camera.near_distance, 1.0);
+  EXPECT_EQ(camera.width, 768);
+  EXPECT_EQ(camera.height, 512);
+}
+
 TEST_F(Gltf, PicturesAreNotMirrored) {
   const auto with_scale = [&](const std::string& scale) {
     return read(

@@ -116,6 +116,34 @@ TEST_F(Mitsuba, LookAtAndItsMatrixAreOneCamera) {
   expect_near(scene.cameras[0].position, {0, 0, 5});
 }
 
+TEST_F(Mitsuba, OrthographicSensorsAreTwoScaledUnitsWide) {
+  const Scene scene = read(square + R"(<sensor type="orthographic"><transform name="to_world">
+      <scale x="10" y="10"/><lookat origin="1,1,1" target="1,2,1" up="0,0,1"/></transform>
+      <float name="near_clip" value="0.5"/><film type="hdrfilm"><integer name="width" value="200"/>
+      <integer name="height" value="100"/></film></sensor>)");
+  const Camera& camera = scene.cameras.at(0);
+  EXPECT_EQ(camera.projection, Projection::orthographic);
+  EXPECT_DOUBLE_EQ(camera.view_width, 20.0);
+  EXPECT_DOUBLE_EQ(camera.near_distance, 0.5);
+  expect_near(camera.direction, {0, 1, 0});
+}
+
+TEST_F(Mitsuba, CropWindowsAndPrincipalPointsAreRead) {
+  const Scene scene = read(square + R"(<sensor type="perspective"><float name="fov" value="60"/>
+      <float name="principal_point_offset_x" value="0.1"/>
+      <float name="principal_point_offset_y" value="0.2"/>
+      <film type="hdrfilm"><integer name="width" value="200"/><integer name="height" value="100"/>
+      <integer name="crop_offset_x" value="50"/><integer name="crop_offset_y" value="20"/>
+      <integer name="crop_width" value="80"/><integer name="crop_height" value="60"/></film>
+      </sensor>)");
+  const Camera& camera = scene.cameras.at(0);
+  EXPECT_EQ(camera.width, 80);
+  EXPECT_EQ(camera.height, 60);
+  EXPECT_DOUBLE_EQ(camera.window.left, 0.25);
+  EXPECT_DOUBLE_EQ(camera.window.bottom, 0.8);
+  EXPECT_EQ(camera.shift, Eigen::Vector2d(0.1, -0.2));
+}
+
 // tan(h/2) / tan(v/2) = width / height; 50 mm before a film of diagonal sqrt(36^2 + 24^2) mm.
 TEST_F(Mitsuba, FieldsOfViewBecomeHorizontalOnes) {
   const auto tangent = [&](const std::string& properties) {

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "scene/errors.h"
+#include "scene/io/radiance/radiance_view.h"
 #include "scene/io/read_scene.h"
 #include "tests/scene/scene_questions.h"
 #include "tests/temporary_folder.h"
@@ -82,10 +83,78 @@ TEST_F(RadianceProjects, StandardViewsLookFromTheZonesSides) {
   expect_near(camera("view= Z\nUP= Y\n").direction, {0, 0, -1});  // the scene is flat in z
 }
 
-TEST_F(RadianceProjects, OtherProjectionsAreLeftOutByName) {
-  const Scene scene = read("view= fish -vth -vh 180 -vv 180\nview= plain -vd 0 0 -1 -vu 0 1 0\n");
-  ASSERT_EQ(scene.cameras.size(), 1u);
-  EXPECT_TRUE(has_note(scene, "were left out: 'fish'"));
+TEST_F(RadianceProjects, EveryTypeOfViewIsACamera) {
+  const std::string place = " -vp 1 2 3 -vd 0 1 0 -vu 0 0 1 ";
+  const auto view = [&](const std::string& options) {
+    return camera("RES= 400\nview = v " + place + options + "\n");
+  };
+  const double degree = std::numbers::pi / 180;
+  const Camera parallel = view("-vtl -vh 8 -vv 4 -vo 0.5 -va 20");
+  EXPECT_EQ(parallel.projection, Projection::orthographic);
+  EXPECT_DOUBLE_EQ(parallel.view_width, 8.0);
+  EXPECT_EQ(parallel.height, 200);
+  EXPECT_DOUBLE_EQ(parallel.near_distance, 0.5);
+  EXPECT_DOUBLE_EQ(parallel.far_distance, 20.0);
+  const Camera angular = view("-vta -vh 180 -vv 90");
+  EXPECT_EQ(angular.projection, Projection::equidistant);
+  EXPECT_DOUBLE_EQ(angular.fov_degrees, 180.0);
+  EXPECT_DOUBLE_EQ(angular.circle_degrees, 180.0);
+  EXPECT_EQ(angular.height, 200);
+  const Camera hemispherical = view("-vth -vh 180 -vv 60");
+  EXPECT_EQ(hemispherical.projection, Projection::hemispherical);
+  EXPECT_EQ(hemispherical.height, 200);  // sin 30 degrees of sin 90
+  const Camera planispheric = view("-vts -vh 180 -vv 120");
+  EXPECT_EQ(planispheric.projection, Projection::stereographic);
+  EXPECT_EQ(planispheric.height, std::lround(400 * std::tan(30 * degree)));
+  const Camera cylinder = view("-vtc -vh 360 -vv 90 -vs 0.25 -vl -0.5");
+  EXPECT_EQ(cylinder.projection, Projection::cylindrical);
+  EXPECT_EQ(cylinder.height, std::lround(400 / std::numbers::pi));
+  EXPECT_EQ(cylinder.shift, Eigen::Vector2d(0.25, -0.5));
+}
+
+TEST_F(RadianceProjects, ViewsOfPicturesAreReadAsTheCamerasThatMadeThem) {
+  for (const NamedProjection& kind : named_projections) {
+    Camera made{.position = {1, 2, 3},
+                .direction = Eigen::Vector3d(1, 2, -0.5).normalized(),
+                .width = 300,
+                .height = 300};
+    made.up = made.direction.cross(Eigen::Vector3d::UnitX()).normalized();
+    made = with_projection(made, kind.projection);
+    if (kind.projection == Projection::perspective) {
+      made.shift = {0.2, 0.1};
+      made.window = {.left = 0.1, .top = 0.2, .right = 0.6, .bottom = 0.7};
+      set_picture_size(300, 300, made);
+    }
+    made.near_distance = 0.25;
+    const std::string options = radiance_view_options(made, 1.0);
+    const bool has_view = kind.projection != Projection::equisolid &&
+                          kind.projection != Projection::equirectangular &&
+                          kind.projection != Projection::stereo_panorama &&
+                          kind.projection != Projection::cube_map;
+    EXPECT_EQ(!options.empty(), has_view) << kind.name;
+    if (!has_view) continue;
+    const Camera read_back =
+        camera("RES= " + std::to_string(made.width) + "\nview = v " + options + "\n");
+    EXPECT_EQ(read_back.projection, made.projection);
+    EXPECT_EQ(read_back.width, made.width);
+    EXPECT_EQ(read_back.height, made.height);
+    // Options have nine digits.
+    expect_near(read_back.position, made.position, 1e-8);
+    expect_near(read_back.direction, made.direction, 1e-8);
+    expect_near(read_back.up, made.up, 1e-8);
+    EXPECT_DOUBLE_EQ(read_back.near_distance, 0.25);
+    if (kind.projection == Projection::orthographic) {
+      EXPECT_NEAR(read_back.view_width, made.view_width, 1e-8);
+    } else if (kind.projection == Projection::perspective) {
+      // Half of the width of the whole, moved by its middle, 0.35 - 0.5 + 0.2, and upwards by 0.1
+      // less the 0.45 - 0.5 that it lies above the middle.
+      EXPECT_NEAR(std::tan(read_back.fov_degrees * std::numbers::pi / 360),
+                  0.5 * std::tan(made.fov_degrees * std::numbers::pi / 360), 1e-8);
+      EXPECT_LT((read_back.shift - Eigen::Vector2d(0.1, 0.3)).norm(), 1e-8);
+    } else {
+      EXPECT_NEAR(read_back.fov_degrees, made.fov_degrees, 1e-6);
+    }
+  }
 }
 
 TEST_F(RadianceProjects, ASceneTakesTheViewsOfTheFileBesideIt) {
@@ -124,6 +193,10 @@ TEST_F(RadianceProjects, PartsThatCannotBeUsedAreLeftOutWithTheirPlace) {
   noted("ZONE= I 0 1\nview= X\n", "write 'I x0 x1 y0 y1 z0 z1'");
   noted("view= v -vp 1 2\n", "the view's option '-vp' lacks a number");
   noted("view= v -vh 200\n", "spans 200 degrees");
+  noted("view= v -vth -vh 200\n", "lie between 0 and 180");
+  noted("view= v -vtl -vh 0\n", "is not wide or not high");
+  noted("view= v -vtx\n", "the unknown type '-vtx'");
+  noted("view= v -vo 3 -va 2 -vd 0 0 -1 -vu 0 1 0\n", "must lie behind the beginning");
   noted("view= v -vd 0 0 1\n", "looks along its upright");
   noted("view= v -vf none.vf\n", "no such file");
   noted("view= v -vf room.rad\n", "holds no view");
