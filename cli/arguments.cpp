@@ -20,13 +20,6 @@
 namespace lightwell {
 namespace {
 
-std::optional<double> parsed_number(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 CLI::Validator finite() {
   return CLI::Validator(
       [](std::string& text) -> std::string {
@@ -58,6 +51,13 @@ std::pair<int, int> parse_size(const std::string& text) {
 constexpr std::string_view progressive = "progressive";
 
 }  // namespace
+
+std::optional<double> parsed_number(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
 
 CLI::Validator whole_number(int least, int most) {
   return CLI::Validator(
@@ -351,9 +351,10 @@ PictureQuality RenderArguments::effective_quality() const {
 
 void RenderArguments::add_to(CLI::App& command) {
   const std::string group = "How pictures are made";
-  add_size(command, size);
+  add_size(command, projection.size);
   add_exposure(command, exposure_ev);
   for (const char* name : {"--size", "--exposure"}) command.get_option(name)->group(group);
+  projection.add_to(command, group);
   command
       .add_option("--quality", quality,
                   "draft, good (default) or final: shadow rays, photons and noise together; "
@@ -446,12 +447,8 @@ std::string RenderArguments::text() const {
   if (pass != "interpolate") text += fmt::format(" --photons {}", chosen.photons);
   if (depth != RenderOptions{}.max_depth) text += fmt::format(" --depth {}", depth);
   if (samples > 0) text += fmt::format(" --samples {}", samples);
+  text += projection.text();
   return text + fmt::format(" --noise {:g}%", 100.0 * chosen.noise);
-}
-
-Camera RenderArguments::sized(Camera camera) const {
-  if (size) std::tie(camera.width, camera.height) = *size;
-  return camera;
 }
 
 }  // namespace lightwell

@@ -10,6 +10,7 @@
 #include "cli/channels.h"
 #include "cli/film.h"
 #include "cli/look_from.h"
+#include "cli/projection.h"
 #include "mesh/build_patches.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"
@@ -56,7 +57,7 @@ struct PictureQuality {
 
 /// Options of the second pass.
 struct RenderArguments {
-  std::optional<std::pair<int, int>> size{};  ///< width and height in pixels; unset: the camera's
+  ProjectionArguments projection{};
   std::string pass = "auto";
   std::string quality = "good";
   std::optional<int> shadow_rays{};  ///< unset, like photons and noise: those of `quality`
@@ -73,8 +74,6 @@ struct RenderArguments {
   std::string text() const;
   /// The quality, with the options in place that are set themselves.
   PictureQuality effective_quality() const;
-  /// `camera` with the pixels of `size`, where `size` is set.
-  Camera sized(Camera camera) const;
 };
 
 /// Adds the arguments SCENE and SOLUTION, both required.
@@ -103,6 +102,9 @@ void refuse_beside(const CLI::App& command, const char* option,
 
 /// Accepts whole numbers from `least` to `most`.
 CLI::Validator whole_number(int least, int most);
+
+/// The number that all of a text is; empty if it is none.
+std::optional<double> parsed_number(const std::string& text);
 
 /// Accepts finite numbers above zero.
 CLI::Validator positive();

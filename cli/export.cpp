@@ -117,6 +117,21 @@ void write_file(const std::filesystem::path& file, const Exported& exported,
   report.add_phase("write_" + kind.substr(1), watch.seconds());
 }
 
+// Says which cameras the files cannot show as they are: perspective and orthographic cameras alone,
+// without shift.
+void note_cameras(const Scene& scene, const std::vector<std::string>& files, Console& console) {
+  const auto has = [&](const char* extension) {
+    return std::ranges::any_of(
+        files, [&](const std::string& file) { return lower_extension(file) == extension; });
+  };
+  if (!has(".html") && !has(".glb")) return;
+  for (const Camera& camera : scene.cameras) {
+    std::string loss = loss_in_window(camera);
+    if (loss.empty() && !camera.shift.isZero(0.0)) loss = "is shown without its shift";
+    if (!loss.empty()) console.say(fmt::format("note: camera '{}' {}", camera.name, loss));
+  }
+}
+
 int export_model(const ExportArguments& arguments, Console& console) {
   Report report(console.options());
   require_all_writable(arguments);
@@ -128,6 +143,7 @@ int export_model(const ExportArguments& arguments, Console& console) {
   const SolvedScene solved = arguments.scene.empty()
                                  ? read_alone(arguments.solution, console, report)
                                  : read_solution_step(arguments.solution, scene, console, report);
+  note_cameras(scene, arguments.outputs, console);
   const Stopwatch watch;
   Exported exported{scene, solved};
   for (const std::string& file : arguments.outputs) {

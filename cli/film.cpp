@@ -13,6 +13,7 @@
 #include "cli/white_balance.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
+#include "scene/io/radiance/radiance_view.h"
 #include "scene/io/text_file.h"
 #ifdef LIGHTWELL_VIEWER
 #include "viewer/window/legend.h"
@@ -85,13 +86,21 @@ ImageMetadata metadata(const Picture& picture, const FilmArguments& film, bool i
       {"cameraPosition", Eigen::Vector3d(camera.position / solution.metres_per_unit)},
       {"cameraDirection", camera.direction},
       {"cameraUp", camera.up},
-      {"cameraFov", camera.fov_degrees},
+      {"cameraProjection", std::string(named(camera.projection).name)},
       {"lengthUnit", solution.unit_name},
       {"renderOptions", picture.render_options},
       {"solveOptions", made.options},
       {"unit", solution.relative_units ? "relative radiance per band" : "W/(m^2 sr) per band"},
       {"toneMap", film.tones_text(picture.exposure_ev)},
       {"exposureScale", scale}};
+  if (camera.projection == Projection::orthographic) {
+    all.emplace_back("cameraViewWidth", camera.view_width / solution.metres_per_unit);
+  } else {
+    all.emplace_back("cameraFov", camera.fov_degrees);
+  }
+  if (const auto view = radiance_view_options(camera, solution.metres_per_unit); !view.empty()) {
+    all.emplace_back("VIEW", view);
+  }
   if (!solution.relative_units) {
     // Luminance of the pixel value 1, in a PNG white, cd/m^2.
     const double white = solution.bands.lumens_per_watt;
@@ -114,6 +123,15 @@ ImageMetadata metadata(const Picture& picture, const FilmArguments& film, bool i
     all.emplace_back("layerUnits", fmt::format("{}", fmt::join(units, "; ")));
   }
   return all;
+}
+
+// Lines of the header of a RADIANCE picture.
+std::vector<std::string> radiance_header(const Picture& picture) {
+  const RadiositySolution& solution = picture.solution;
+  std::vector<std::string> lines = {fmt::format("SOFTWARE= lightwell {}", LIGHTWELL_VERSION)};
+  const std::string view = radiance_view_options(picture.camera, solution.metres_per_unit);
+  if (!view.empty()) lines.push_back("VIEW= " + view);
+  return lines;
 }
 
 #ifdef LIGHTWELL_VIEWER
@@ -283,7 +301,10 @@ std::string FilmArguments::tones_text(double exposure_ev) const {
 void write_picture(const fs::path& file, const Picture& picture, const FilmArguments& film) {
   const Image& image = picture.image;
   const Bands& bands = picture.solution.bands;
-  if (lower_extension(file) != ".png") {
+  const std::string kind = lower_extension(file);
+  if (kind == ".hdr") {
+    write_hdr(file, image, bands, radiance_header(picture));
+  } else if (kind != ".png") {
     write_exr(file, image, bands, metadata(picture, film, false), film.exr);
   } else if (film.false_colour) {
     write_false_colour(file, picture, film);

@@ -58,7 +58,7 @@ struct Picture {
   std::optional<IncidentLight> incident{};  ///< light on what the camera sees
 };
 
-/// Writes the picture in the format of the file's extension, .exr or .png.
+/// Writes the picture in the format of the file's extension, .exr, .hdr or .png.
 void write_picture(const std::filesystem::path& file, const Picture& picture,
                    const FilmArguments& film);
 

@@ -177,6 +177,7 @@ Json scene_json(const Scene& scene) {
     cameras.push_back({{"name", camera.name},
                        {"width", camera.width},
                        {"height", camera.height},
+                       {"projection", named(camera.projection).name},
                        {"fov", camera.fov_degrees}});
   }
   Json facts = {{"kind", "scene"},

@@ -166,11 +166,10 @@ std::vector<LuxGrid> grids(const LightingArguments& arguments, const Scene& scen
 std::optional<ReportPicture> picture_of(const LightingArguments& arguments, const Scene& scene,
                                         const SolvedScene& solved, const Progress& progress) {
   if (arguments.picture == no_picture || scene.cameras.empty()) return {};
-  Camera camera =
-      arguments.picture.empty() ? scene.cameras.front() : choose_camera(scene, arguments.picture);
-  constexpr double width = 1000.0;  // pixels
-  camera.height = std::max(1, static_cast<int>(std::lround(width * camera.height / camera.width)));
-  camera.width = static_cast<int>(width);
+  constexpr int width = 1000;  // pixels
+  const Camera camera = resized(
+      arguments.picture.empty() ? scene.cameras.front() : choose_camera(scene, arguments.picture),
+      width);
   SceneRenderer renderer(scene, solved.mesh, solved.solution);
   const Image image = renderer.render(
       camera, {.pass = Pass::interpolate, .photons = 0, .run = {.progress = progress}});

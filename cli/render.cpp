@@ -31,7 +31,8 @@ int render_scene(const RenderCommandArguments& arguments, Console& console) {
   const std::vector<std::filesystem::path> files(arguments.outputs.begin(),
                                                  arguments.outputs.end());
   arguments.render.film.check(scene, files);
-  static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws for a bad camera
+  static_cast<void>(
+      CameraRays(arguments.render.projection.view(camera, scene)));  // throws for a bad camera
   for (const std::filesystem::path& file : files) require_writable(file);
   const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
   const InterruptEndsEarly on_interrupt;
@@ -58,12 +59,13 @@ Action add_render(CLI::App& command) {
       "mirrors and glass by ray tracing.");
   add_solved_scene(command, arguments->scene, arguments->solution);
   command
-      .add_option("-o,--output", arguments->outputs, "the picture, .exr or .png; may be repeated")
+      .add_option("-o,--output", arguments->outputs,
+                  "the picture, .exr, .png or RADIANCE's .hdr; may be repeated")
       ->required()
       ->type_name("FILE")
       ->type_size(1)
       ->allow_extra_args(false)
-      ->check(with_extension({".exr", ".png"}));
+      ->check(with_extension({".exr", ".png", ".hdr"}));
   command.add_option("--camera", arguments->camera, "which camera (default: the first)")
       ->type_name("NAME");
   arguments->render.add_to(command);

@@ -113,7 +113,9 @@ RunArguments looking_from_cameras(RunArguments arguments, const Scene& scene) {
 int run(const RunArguments& given, Console& console) {
   const TimeLimit time(given.seconds);
   Report report(console.options());
-  const Scene scene = read_scene_step(given.scene, console, report);
+  Scene scene = read_scene_step(given.scene, console, report);
+  // At once, so that --look-from spends effort on what the pictures show.
+  for (Camera& camera : scene.cameras) camera = given.render.projection.view(camera, scene);
   const InterruptEndsEarly on_interrupt;
   console.show_time_left(time.seconds_left());
   const RunArguments arguments = looking_from_cameras(given, scene);
@@ -125,7 +127,8 @@ int run(const RunArguments& given, Console& console) {
   for (const Camera& camera : scene.cameras) {
     outputs.pictures.push_back({folder / (camera.name + ".exr"), folder / (camera.name + ".png")});
     arguments.render.film.check(scene, outputs.pictures.back());
-    static_cast<void>(CameraRays(arguments.render.sized(camera)));  // throws for a bad camera
+    static_cast<void>(
+        CameraRays(arguments.render.projection.view(camera, scene)));  // throws for a bad camera
     for (const fs::path& picture : outputs.pictures.back()) require_writable(picture);
   }
   require_writable(outputs.solution);
@@ -159,7 +162,8 @@ Action add_run(CLI::App& command) {
   arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
   // Hidden, as rarely needed; 'render --help' and 'solve --help' show them.
-  for (const char* name : {"--depth", "--photons", "--samples", "--max-sweeps"}) {
+  for (const char* name :
+       {"--depth", "--photons", "--samples", "--max-sweeps", "--projection", "--near", "--shift"}) {
     command.get_option(name)->group("");
   }
   arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::hidden);

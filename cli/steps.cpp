@@ -281,7 +281,7 @@ bool render_step(RenderableScene& renderable, const PictureTask& task, Checkpoin
   options.run = {.progress = checkpoint.watched(console.progress()),
                  .journal = checkpoint.journal(),
                  .seconds_left = task.seconds_left};
-  const Camera view = asked.sized(camera);
+  const Camera view = asked.projection.view(camera, renderable.scene);
   PictureInTime rendered;
   try {
     rendered = render_in_time(renderable.renderer, view, asked, options);

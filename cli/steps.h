@@ -75,7 +75,7 @@ struct RenderableScene {
   SceneRenderer renderer;
 };
 
-/// A camera's picture and the files (.exr or .png) that it will be written to.
+/// A camera's picture and the files (.exr, .hdr or .png) that it will be written to.
 struct PictureTask {
   const Camera& camera;
   const RenderArguments& arguments;

@@ -71,7 +71,9 @@ Camera choose_view(const Scene& scene, const std::string& name, const fs::path& 
 }
 
 ViewOptions view_options(const ViewArguments& arguments, const Scene& scene) {
-  ViewOptions options{.cameras = scene.cameras,
+  std::vector<Camera> cameras = scene.cameras;
+  for (Camera& camera : cameras) camera = for_window(camera);
+  ViewOptions options{.cameras = cameras,
                       .exposure_ev = arguments.exposure_ev,
                       .white = arguments.white,
                       .materials = scene.materials,
@@ -98,7 +100,7 @@ ViewOptions view_options(const ViewArguments& arguments, const Scene& scene) {
   if (!arguments.solution.empty()) beside = arguments.solution;
   options.bookmark_file = beside.replace_extension(".views.json");
   if (!arguments.camera.empty()) {
-    options.camera = choose_view(scene, arguments.camera, options.bookmark_file);
+    options.camera = for_window(choose_view(scene, arguments.camera, options.bookmark_file));
   }
   // An offscreen picture has the size that 'render' would give it.
   if (!arguments.offscreen.empty() && !scene.cameras.empty()) {
@@ -181,6 +183,10 @@ int view(const ViewArguments& arguments, Console& console) {
   Report report(console.options());
   CleanUpReport clean_up;
   const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
+  for (const Camera& camera : scene.cameras) {
+    const std::string loss = loss_in_window(camera);
+    if (!loss.empty()) console.say(fmt::format("note: camera '{}' {}", camera.name, loss));
+  }
   ViewOptions options = view_options(arguments, scene);
   options.names = clean_up.names.get();
   const bool is_film = arguments.frames > 0 || arguments.turntable > 0;

@@ -68,7 +68,7 @@ TEST_F(Pictures, LayersComeIntoTheExr) {
   const Image some = read_exr(folder / "a.exr", ExrChannels::all);
   EXPECT_EQ(some.layers.names, (Words{"depth.Z", "normal.X", "normal.Y", "normal.Z", "patch.id"}));
   ASSERT_EQ(run(render({"-o", "all.exr", "--layers", "all"})).code, 0);
-  EXPECT_EQ(read_exr(folder / "all.exr", ExrChannels::all).layers.names.size(), 22u);
+  EXPECT_EQ(read_exr(folder / "all.exr", ExrChannels::all).layers.names.size(), 23u);
   EXPECT_TRUE((read_exr(folder / "all.exr").radiance == some.radiance).all());
 }
 
@@ -120,7 +120,7 @@ TEST_F(Pictures, WhatNeedsAUnitOfLightIsRefusedWhereThereIsNone) {
   }
   ASSERT_EQ(run(box + Words{"--layers", "all"}).code, 0);
   const auto names = read_exr(folder / "b.exr", ExrChannels::all).layers.names;
-  EXPECT_EQ(names.size(), 20u) << "all but luminance and illuminance";
+  EXPECT_EQ(names.size(), 21u) << "all but luminance and illuminance";
   EXPECT_EQ(std::count(names.begin(), names.end(), "luminance.Y"), 0);
 }
 
@@ -140,6 +140,50 @@ TEST_F(Pictures, PngSaysWhatItsWhiteIs) {
   const Ended wrong = run(render({"-o", "a.png", "--tone-map", "film"}));
   EXPECT_EQ(wrong.code, 2);
   EXPECT_TRUE(says(wrong.err, "Did you mean 'filmic'?")) << wrong.err;
+}
+
+TEST_F(Pictures, AnyCameraSeesInAnyProjection) {
+  ASSERT_EQ(run(render({"--projection", "fisheye:180", "--size", "20x20", "-o", "a.hdr", "-o",
+                        "a.exr", "-o", "a.png", "--layers", "coverage"}))
+                .code,
+            0);
+  const std::string hdr = content_of(folder / "a.hdr");
+  EXPECT_TRUE(says(hdr.substr(0, hdr.find("\n\n")), "\nVIEW= -vta -vp "));
+  EXPECT_TRUE(says(hdr, " -vh 180 -vv 180 -vo 0 -va 0 -vs 0 -vl 0\n"));
+  EXPECT_TRUE(says(content_of(folder / "a.png"), " -vh 180 -vv 180 "));
+  EXPECT_TRUE(says(content_of(folder / "a.png"), "--projection fisheye:180"));
+  const Image fisheye = read_exr(folder / "a.exr", ExrChannels::all);
+  EXPECT_EQ(fisheye.layers.names, Words{"A"});
+  EXPECT_EQ(fisheye.radiance.row(0).maxCoeff(), 0.0f);
+  EXPECT_EQ(fisheye.layers.values(0, 0), 0.0f);
+  for (const char* projection :
+       {"perspective:90", "equisolid", "hemispherical", "stereographic:200", "cylindrical:360",
+        "equirectangular", "stereo", "cube", "orthographic", "orthographic:3"}) {
+    const Words words = {"render",       "room.toml", "S.vtp", "--pass", "interpolate",
+                         "--projection", projection,  "-o",    "b.exr"};
+    const Ended ended = run(words);
+    EXPECT_EQ(ended.code, 0) << projection << ended.err;
+    EXPECT_GT(read_exr(folder / "b.exr").radiance.maxCoeff(), 0.0f) << projection;
+  }
+  ASSERT_EQ(run(render({"--shift", "-0.1,0.25", "--near", "0.1", "-o", "b.png"})).code, 0);
+  EXPECT_TRUE(says(content_of(folder / "b.png"), "-vo 0.1 -va 0 -vs -0.1 -vl 0.25"));
+}
+
+TEST_F(Pictures, ProjectionsThatCannotBeAreRefusedAtOnce) {
+  const auto refused = [&](const Words& options, int code, const std::string& why) {
+    const Ended ended = run(Words{"render", "room.toml", "missing.vtp", "-o", "a.png"} + options);
+    EXPECT_EQ(ended.code, code) << ended.err;
+    EXPECT_TRUE(says(ended.err, why)) << ended.err;
+  };
+  refused({"--projection", "fishey"}, 2, "Did you mean 'fisheye'?");
+  refused({"--projection", "fisheye:wide"}, 2, "write an angle in degrees after the colon");
+  refused({"--projection", "cube:90"}, 2, "write 'cube' alone");
+  refused({"--projection", "perspective:360"}, 3, "must lie between 0 and 180");
+  refused({"--projection", "equirectangular", "--size", "200x200"}, 3, "give at most 200 x 100");
+  refused({"--projection", "cube", "--size", "200x200"}, 3, "give 198 x 132");
+  refused({"--projection", "stereo", "--shift", "0,0.1"}, 3, "turn the camera instead");
+  refused({"--shift", "0.1"}, 2, "write two shares of the picture");
+  refused({"--near", "-1"}, 2, "a number above 0 is needed");
 }
 
 TEST_F(Pictures, ImpossibleSizesAndPlacesAreRefusedAtOnce) {
