@@ -250,7 +250,8 @@ void add_cameras(const SolvedScene& solved, const Scene& scene,
   for (const Camera& camera : cameras) {
     const double scale =
         metered_scale(caster, kinds, {irradiance, radiance}, bands, camera, sky ? &*sky : nullptr);
-    model.cameras.push_back({.camera = camera, .scale = scale * std::exp2(exposure_ev)});
+    model.cameras.push_back(
+        {.camera = for_window(camera), .scale = scale * std::exp2(exposure_ev)});
   }
 }
 

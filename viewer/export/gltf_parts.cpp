@@ -32,6 +32,17 @@ GltfJson camera_node(const BakedModel& model, const Camera& camera, int number) 
 
 GltfJson camera_lens(const Camera& camera, double scene_size) {
   const double aspect = static_cast<double>(camera.width) / camera.height;
+  if (camera.projection == Projection::orthographic) {
+    // zfar must be finite and beyond znear.
+    const double znear = camera.near_distance;
+    return {{"name", camera.name},
+            {"type", "orthographic"},
+            {"orthographic",
+             {{"xmag", 0.5 * camera.view_width},
+              {"ymag", 0.5 * camera.view_width / aspect},
+              {"znear", znear},
+              {"zfar", znear + 1e3 * scene_size}}}};
+  }
   const double half_width = std::tan(camera.fov_degrees * std::numbers::pi / 360.0);
   return {{"name", camera.name},
           {"type", "perspective"},

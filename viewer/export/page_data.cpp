@@ -184,8 +184,12 @@ Json cameras(const BakedModel& model, const Eigen::Vector3d& low) {
                       {"direction", vector(model.to_y_up * camera.direction)},
                       {"up", vector(model.to_y_up * camera.up)},
                       {"fov_degrees", camera.fov_degrees},
+                      {"near", camera.near_distance},
                       {"aspect", static_cast<double>(camera.width) / camera.height},
                       {"exposure", baked.scale}});
+    if (camera.projection == Projection::orthographic) {
+      result.back()["view_width"] = camera.view_width;
+    }
   }
   return result;
 }

@@ -43,8 +43,13 @@ double share_of_light(const Image& image) {
 
 Eigen::Vector3d guess_up_axis(const std::vector<Camera>& cameras, const Bounds& bounds) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (const Camera& camera : cameras) sum += camera.up;
-  if (!cameras.empty() && sum.norm() > 1e-6) {
+  // Plans and sky domes look along what is up.
+  for (const Camera& camera : cameras) {
+    const bool may_look_up =
+        camera.projection == Projection::orthographic || is_fisheye(camera.projection);
+    if (!may_look_up) sum += camera.up;
+  }
+  if (sum.norm() > 1e-6) {
     int axis = 0;
     sum.cwiseAbs().maxCoeff(&axis);
     return Eigen::Vector3d::Unit(axis) * (sum[axis] < 0.0 ? -1.0 : 1.0);
@@ -70,7 +75,11 @@ Camera fit_to_window(const Camera& camera, int width, int height) {
   Camera fitted = camera;
   fitted.width = width;
   fitted.height = height;
-  if (wider > 1.0) {
+  fitted.shift.x() /= std::max(1.0, wider);
+  fitted.shift.y() *= std::min(1.0, wider);
+  if (wider > 1.0 && camera.projection == Projection::orthographic) {
+    fitted.view_width *= wider;
+  } else if (wider > 1.0) {
     const double half_width = wider * std::tan(camera.fov_degrees * std::numbers::pi / 360.0);
     fitted.fov_degrees = std::atan(half_width) * 360.0 / std::numbers::pi;
   }

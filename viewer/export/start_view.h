@@ -10,8 +10,8 @@
 namespace lightwell {
 
 /// Upwards direction: the coordinate axis, or its opposite, nearest to the sum of the cameras' up
-/// vectors. Without cameras +y or +z, along which the scene is shorter, as rooms are wider than
-/// high; +y if equal.
+/// vectors, without orthographic cameras and fisheyes, which may look along it. Without any other
+/// +y or +z, along which the scene is shorter, as rooms are wider than high; +y if equal.
 Eigen::Vector3d guess_up_axis(const std::vector<Camera>& cameras, const Bounds& bounds);
 
 /// Camera outside of the scene along `direction`, with the bounding sphere in a picture of

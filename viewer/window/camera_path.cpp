@@ -37,11 +37,17 @@ bool straighten_camera(Camera& camera) {
 
 Json json_of(const Camera& camera) {
   const auto three = [](const Eigen::Vector3d& v) { return Json{v.x(), v.y(), v.z()}; };
-  return {{"position", three(camera.position)},
-          {"direction", three(camera.direction)},
-          {"up", three(camera.up)},
-          {"fov_degrees", camera.fov_degrees},
-          {"size", {camera.width, camera.height}}};
+  Json json = {{"position", three(camera.position)},
+               {"direction", three(camera.direction)},
+               {"up", three(camera.up)},
+               {"fov_degrees", camera.fov_degrees},
+               {"size", {camera.width, camera.height}}};
+  if (camera.projection == Projection::orthographic) {
+    json["view_width"] = camera.view_width;
+    json["near"] = camera.near_distance;
+  }
+  if (!camera.shift.isZero(0.0)) json["shift"] = {camera.shift.x(), camera.shift.y()};
+  return json;
 }
 
 Eigen::Vector3d vector_of(const Json& json, const char* name) {
@@ -68,6 +74,17 @@ Camera camera_of(const Json& json) {
   if (!(camera.fov_degrees > 0.0 && camera.fov_degrees < 180.0)) {
     throw InputError(
         fmt::format("'fov_degrees' is {}, and must be between 0 and 180", camera.fov_degrees));
+  }
+  if (json.contains("view_width")) {
+    camera.projection = Projection::orthographic;
+    camera.view_width = json.at("view_width").get<double>();
+    camera.near_distance = json.value("near", 0.0);
+  }
+  const auto shift = json.value("shift", std::vector<double>{0.0, 0.0});
+  if (shift.size() != 2) throw InputError("'shift' needs two numbers, to the right and upwards");
+  camera.shift = {shift[0], shift[1]};
+  if (const std::string what = projection_fault(camera); !what.empty()) {
+    throw InputError("it has " + what);
   }
   return camera;
 }
@@ -97,6 +114,7 @@ Camera CameraPath::at(double second) const {
   camera.position =
       hermite(cameras[i].position, slope(i), cameras[i + 1].position, slope(i + 1), h, s);
   camera.fov_degrees += s * (cameras[i + 1].fov_degrees - camera.fov_degrees);
+  camera.view_width += s * (cameras[i + 1].view_width - camera.view_width);
   const Eigen::Matrix3d axes =
       orientation(cameras[i]).slerp(s, orientation(cameras[i + 1])).normalized().toRotationMatrix();
   camera.up = axes.col(1);

@@ -105,6 +105,13 @@ vtkSmartPointer<vtkTextActor> make_label() {
   return text;
 }
 
+// The way on which a camera sees a point.
+Eigen::Vector3d sight_to(const Eigen::Vector3d& point, const Camera& camera) {
+  const Eigen::Vector3d way = point - camera.position;
+  if (camera.projection != Projection::orthographic) return way;
+  return way.dot(camera.direction) * camera.direction;
+}
+
 }  // namespace
 
 IsoluxLines::IsoluxLines()
@@ -186,7 +193,7 @@ void IsoluxLines::look_from(const ElementCaster& caster, const std::vector<Eleme
   points->SetDataTypeToDouble();
   vtkNew<vtkCellArray> lines;
   for (const Segment& segment : segments_) {
-    if (!(segment.normal.dot(camera.position - segment.from) > 0.0)) continue;
+    if (!(segment.normal.dot(sight_to(segment.from, camera)) < 0.0)) continue;
     const vtkIdType ends[2] = {points->InsertNextPoint(segment.from.data()),
                                points->InsertNextPoint(segment.to.data())};
     lines->InsertNextCell(2, ends);
@@ -197,7 +204,8 @@ void IsoluxLines::look_from(const ElementCaster& caster, const std::vector<Eleme
 
   std::vector<Ray> rays;
   for (const Label& label : labels_) {
-    rays.push_back({.origin = camera.position, .direction = label.place - camera.position});
+    const Eigen::Vector3d sight = sight_to(label.place, camera);
+    rays.push_back({.origin = label.place - sight, .direction = sight});
   }
   const std::vector<VisibleHit> seen = visible_hits(caster, kinds, rays, options);
   for (std::size_t i = 0; i < labels_.size(); ++i) {

@@ -335,12 +335,21 @@ void SolutionView::apply_camera() {
   const Eigen::Vector3d target = camera.position + size * camera.direction;
   eye->SetFocalPoint(target.data());
   eye->SetViewUp(camera.up.data());
-  eye->SetUseHorizontalViewAngle(true);
-  eye->SetViewAngle(camera.fov_degrees);
+  const bool is_parallel = camera.projection == Projection::orthographic;
+  eye->SetParallelProjection(is_parallel);
+  if (is_parallel) {
+    eye->SetParallelScale(0.5 * camera.view_width * camera.height /
+                          camera.width);  // half its height
+  } else {
+    eye->SetUseHorizontalViewAngle(true);
+    eye->SetViewAngle(camera.fov_degrees);
+  }
+  eye->SetWindowCenter(2.0 * camera.shift.x(), 2.0 * camera.shift.y());  // of -1 to 1
   // The depth range covers the bounding sphere. From inside, the near plane is as near as a depth
   // buffer of 24 bits affords.
-  const double to_center = (0.5 * (bounds_.low + bounds_.high) - camera.position).norm();
-  const double nearest = std::max(to_center - 0.51 * size, 5e-4 * size);
+  const Eigen::Vector3d way = 0.5 * (bounds_.low + bounds_.high) - camera.position;
+  const double to_center = is_parallel ? way.dot(camera.direction) : way.norm();
+  const double nearest = std::max({to_center - 0.51 * size, 5e-4 * size, camera.near_distance});
   const double farthest = std::max(to_center + 0.51 * size, 2.0 * nearest);
   // The resolution of a depth buffer near the eye depends on the near plane alone, so a far dome
   // costs nothing. At 10 times the farthest distance the dome is behind all surfaces up to 84

@@ -70,6 +70,27 @@ TEST(KeptViewsFile, ComesBackAsItWas) {
   EXPECT_EQ(read.path.cameras[3].position, views.path.cameras[3].position);
 }
 
+TEST(KeptViewsFile, KeepsOrthographicAndShiftedViews) {
+  const TemporaryFolder folder;
+  KeptViews views;
+  Camera plan = box_camera();
+  plan.projection = Projection::orthographic;
+  plan.view_width = 7.5;
+  plan.near_distance = 2.0;
+  plan.shift = {0.1, -0.2};
+  views.bookmarks[0] = plan;
+  write_views(folder / "v.json", views);
+  const Camera read = *read_views(folder / "v.json").bookmarks[0];
+  EXPECT_EQ(read.projection, Projection::orthographic);
+  EXPECT_EQ(read.view_width, 7.5);
+  EXPECT_EQ(read.near_distance, 2.0);
+  EXPECT_EQ(read.shift, plan.shift);
+  const auto bad =
+      folder.write("bad.json", R"({"bookmarks": {"1": {"position": [0,0,0], "direction": [1,0,0],
+                  "view_width": -1}}})");
+  EXPECT_TRUE(says(message_of<InputError>([&] { read_views(bad); }), "a view -1 m wide"));
+}
+
 TEST(KeptViewsFile, WhatIsWrongIsNamed) {
   const TemporaryFolder folder;
   const std::vector<std::pair<std::string, std::string>> cases = {

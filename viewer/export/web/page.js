@@ -165,6 +165,7 @@ class Page {
     const {canvas, camera, walker} = this;
     let depth = 1;  // of what is between two fingers
     const angle = () => camera.fov * Math.PI / 180 / canvas.clientHeight;
+    const height_at = (depth) => camera.span || 2 * depth * Math.tan(camera.fov * Math.PI / 360);
     watch_gestures(canvas, {
       captures: () => !this.locked.isLocked,
       hover: (place) => {
@@ -185,7 +186,7 @@ class Page {
           this.plan.zoom(ratio, x, y, canvas);
         }
         if (this.mode === 'walk') {
-          const step = 2 * depth * Math.tan(camera.fov * Math.PI / 360) / canvas.clientHeight;
+          const step = height_at(depth) / canvas.clientHeight;
           walker.shift(new Library.Vector3(-dx * step, dy * step, -depth * (1 - 1 / ratio)).applyQuaternion(camera.quaternion));
           depth /= ratio;
         }
@@ -279,6 +280,8 @@ class Page {
     const narrower = Math.min(this.camera.aspect, this.bookmark.aspect);
     const own = Math.atan(half_width / this.bookmark.aspect) * 360 / Math.PI;
     this.camera.fov = Math.min(Math.atan(half_width / narrower) * 360 / Math.PI, Math.max(own, tallest_view));
+    this.camera.span = (this.bookmark.view_width ?? 0) / narrower;
+    this.picture.cut = this.bookmark.near;
     this.camera.updateProjectionMatrix();
     this.due = true;
   }
@@ -427,7 +430,7 @@ class Page {
     const {camera} = this.picture;
     camera.updateMatrixWorld();
     const beyond = new Library.Vector3(place.x, place.y, 0.5).unproject(camera);
-    const from = this.mode === 'plan' ? new Library.Vector3(place.x, place.y, -1).unproject(camera) : camera.position.clone();
+    const from = camera.span > 0 ? new Library.Vector3(place.x, place.y, -1).unproject(camera) : camera.position.clone();
     return new Library.Ray(from, beyond.sub(from).normalize());
   }
 

@@ -162,7 +162,8 @@ class Picture {
     this.renderer = new Library.WebGLRenderer({canvas, antialias: true, alpha: false});
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio || 1, 2));
     this.scene = new Library.Scene();
-    this.own_camera = this.camera = new Library.PerspectiveCamera();
+    this.own_camera = this.camera = camera_with_span(0);
+    this.cut = 0;  // metres to the plane before which the own camera sees nothing
     this.looks_through = false;
     this.picture_came = () => {};  // for the owner to set: there is something to draw
     this.uniforms = {
@@ -320,9 +321,10 @@ class Picture {
 
   /** From inside, as near as a depth buffer of 24 bits affords. */
   fit_depth() {
-    const {camera} = this, size = new Library.Vector3().fromArray(this.model.about.size);
-    const diagonal = size.length(), to_center = camera.position.distanceTo(size.multiplyScalar(0.5));
-    camera.near = Math.max(to_center - 0.51 * diagonal, 5e-4 * diagonal);
+    const {camera} = this, size = new Library.Vector3().fromArray(this.model.about.size), diagonal = size.length();
+    const way = size.multiplyScalar(0.5).sub(camera.position);
+    const to_center = camera.span === 0 ? way.length() : way.dot(camera.getWorldDirection(new Library.Vector3()));
+    camera.near = Math.max(to_center - 0.51 * diagonal, 5e-4 * diagonal, this.cut);
     camera.far = Math.max(to_center + 0.51 * diagonal, 2 * camera.near);
     camera.updateProjectionMatrix();
   }

@@ -1,15 +1,15 @@
 // The plan: an orthographic view from above, cut below the ceiling.
 
-/** A camera of three.js with a parallel projection, which is `span` metres high. */
-function plan_camera() {
-  const camera = new Library.PerspectiveCamera();
-  camera.span = 1;
+/** A camera of three.js with a parallel projection `span` metres high, or a perspective where `span` is 0. */
+function camera_with_span(span) {
+  const camera = new Library.PerspectiveCamera(), set_perspective = camera.updateProjectionMatrix;
+  camera.span = span;
   camera.updateProjectionMatrix = function () {
+    if (this.span === 0) return set_perspective.call(this);
     const half = this.span / 2;
     this.projectionMatrix.makeOrthographic(-half * this.aspect, half * this.aspect, half, -half, this.near, this.far);
     this.projectionMatrixInverse.copy(this.projectionMatrix).invert();
   };
-  camera.quaternion.setFromEuler(new Library.Euler(-Math.PI / 2, 0, 0));
   return camera;
 }
 
@@ -18,7 +18,8 @@ class Plan {
   constructor(model, first_hit) {
     this.size = model.about.size;
     this.first_hit = first_hit;
-    this.camera = plan_camera();
+    this.camera = camera_with_span(1);
+    this.camera.quaternion.setFromEuler(new Library.Euler(-Math.PI / 2, 0, 0));
   }
 
   /** Shows all of the model below `top` pixels of the canvas, cut a little below the ceiling over the eye. */

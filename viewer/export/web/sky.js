@@ -5,7 +5,8 @@ out vec3 way;
 void main() {
   // Of this triangle over all of the picture, as far away as there is.
   vec4 beyond = inverse(projectionMatrix) * vec4(position.xy, 1.0, 1.0);
-  way = transpose(mat3(viewMatrix)) * (beyond.xyz / beyond.w);
+  bool parallel = projectionMatrix[3][3] == 1.0;
+  way = transpose(mat3(viewMatrix)) * (parallel ? vec3(0.0, 0.0, -1.0) : beyond.xyz / beyond.w);
   gl_Position = vec4(position.xy, 1.0, 1.0);
 }`;
 
