@@ -141,10 +141,11 @@ std::string shape_fault(const Camera& camera) {
   const double vertical = camera.fov_degrees * whole_height / whole_width;
   if (vertical <= 180.0 * (1.0 + edge_rounding)) return {};
   return fmt::format(
-      "a picture {:g} x {:g} pixels large{} for {} degrees is {:.6g} degrees high, and there are "
+      "a picture of {:g} x {:g} pixels that is {:g} degrees wide and {:.6g} high{}, where there "
+      "are "
       "180; give at most {:g} x {:g}",
-      whole_width, whole_height / per_eye, is_stereo ? ", half of it for each eye," : "",
-      camera.fov_degrees, vertical, whole_width,
+      whole_width, whole_height / per_eye, camera.fov_degrees, vertical,
+      is_stereo ? " for each eye" : "", whole_width,
       std::floor(whole_width * 180.0 / camera.fov_degrees / per_eye));
 }
 

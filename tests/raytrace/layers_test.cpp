@@ -80,7 +80,7 @@ TEST(Layers, LeaveThePictureAsItIs) {
   const Image without = lit.render(door);
   EXPECT_TRUE((with.radiance == without.radiance).all());
   EXPECT_TRUE(without.layers.is_empty());
-  EXPECT_EQ(with.layers.names.size(), 22u);
+  EXPECT_EQ(with.layers.names.size(), 23u);
 }
 
 TEST(Layers, AreInTheOrderOfTheListWhateverOrderTheyAreAskedIn) {

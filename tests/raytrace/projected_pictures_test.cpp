@@ -185,7 +185,7 @@ TEST(ProjectedPictures, ANearPlaneOpensTheRoom) {
               .width = 40,
               .height = 40,
               .projection = Projection::orthographic,
-              .view_width = 2.0};
+              .view_width = 1.8};
   const Image closed = lit.render(plan, {.pass = Pass::interpolate});
   EXPECT_EQ(closed.radiance.maxCoeff(), 0.0f);  // backs of the ceiling
   plan.near_distance = 2.5;
@@ -193,7 +193,7 @@ TEST(ProjectedPictures, ANearPlaneOpensTheRoom) {
   for (int y = 0; y < 40; ++y) {
     for (int x = 0; x < 40; ++x) {
       // Linear, so the mean over a pixel is the value at its centre.
-      const Eigen::Vector3d p((x + 0.5) / 20 - 1, 1 - (y + 0.5) / 20, -1);
+      const Eigen::Vector3d p(0.045 * (x - 19.5), 0.045 * (19.5 - y), -1);
       EXPECT_NEAR(open.radiance(40 * y + x, 0), field(p) / pi, 1e-4);
     }
   }
