@@ -15,6 +15,7 @@
 #include "cli/steps.h"
 #include "cli/white_balance.h"
 #include "radiosity/solution/solution_file.h"
+#include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -125,11 +126,13 @@ void note_cameras(const Scene& scene, const std::vector<std::string>& files, Con
         files, [&](const std::string& file) { return lower_extension(file) == extension; });
   };
   if (!has(".html") && !has(".glb")) return;
+  Remarks remarks;
   for (const Camera& camera : scene.cameras) {
     std::string loss = loss_in_window(camera);
-    if (loss.empty() && !camera.shift.isZero(0.0)) loss = "is shown without its shift";
-    if (!loss.empty()) console.say(fmt::format("note: camera '{}' {}", camera.name, loss));
+    if (loss.empty() && !camera.shift.isZero(0.0)) loss = "Cameras are shown without their shift";
+    if (!loss.empty()) remarks.mention(loss, camera.name);
   }
+  for (const std::string& sentence : remarks.sentences()) console.say("note: " + sentence);
 }
 
 int export_model(const ExportArguments& arguments, Console& console) {

@@ -17,6 +17,7 @@
 #include "radiosity/solution/relight.h"
 #include "scene/errors.h"
 #ifdef LIGHTWELL_VIEWER
+#include "scene/io/remarks.h"
 #include "viewer/window/camera_path.h"
 #include "viewer/window/view.h"
 #endif
@@ -183,10 +184,12 @@ int view(const ViewArguments& arguments, Console& console) {
   Report report(console.options());
   CleanUpReport clean_up;
   const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
+  Remarks remarks;
   for (const Camera& camera : scene.cameras) {
     const std::string loss = loss_in_window(camera);
-    if (!loss.empty()) console.say(fmt::format("note: camera '{}' {}", camera.name, loss));
+    if (!loss.empty()) remarks.mention(loss, camera.name);
   }
+  for (const std::string& sentence : remarks.sentences()) console.say("note: " + sentence);
   ViewOptions options = view_options(arguments, scene);
   options.names = clean_up.names.get();
   const bool is_film = arguments.frames > 0 || arguments.turntable > 0;

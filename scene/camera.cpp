@@ -261,12 +261,9 @@ Camera for_window(const Camera& camera) {
 }
 
 std::string loss_in_window(const Camera& camera) {
-  if (!is_flat(camera.projection)) {
-    return fmt::format("has the projection '{}' and is shown as a perspective",
-                       named(camera.projection).name);
-  }
-  if (!camera.distortion.is_none()) return "is shown without its distortion";
-  return is_whole(camera.window) ? "" : "is shown without its window";
+  if (!is_flat(camera.projection)) return "Cameras of other projections are shown as perspectives";
+  if (!camera.distortion.is_none()) return "Cameras are shown without their distortion";
+  return is_whole(camera.window) ? "" : "Cameras are shown without their window";
 }
 
 }  // namespace lightwell

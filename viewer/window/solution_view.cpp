@@ -371,10 +371,12 @@ std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, in
   std::vector<float> sums(count, 0.0f);
   vtkNew<vtkUnsignedCharArray> pixels;
   vtkCamera* eye = view.renderer()->GetActiveCamera();
+  const Eigen::Vector2d middle(eye->GetWindowCenter());
   for (int sample = 0; sample < samples_of_pixel; ++sample) {
     const Eigen::Vector2d offset = sample_offset(sample);
     // Window coordinates span 2 in x and in y.
-    eye->SetWindowCenter(2.0 * offset.x() / width, 2.0 * offset.y() / height);
+    eye->SetWindowCenter(middle.x() + 2.0 * offset.x() / width,
+                         middle.y() + 2.0 * offset.y() / height);
     window->Render();
     const int* drawn = window->GetActualSize();
     if (drawn[0] == width && drawn[1] == height) {
@@ -387,7 +389,7 @@ std::vector<std::uint8_t> draw_offscreen(const SolutionView& view, int width, in
     const unsigned char* bytes = pixels->GetPointer(0);
     for (std::size_t i = 0; i < count; ++i) sums[i] += linear[bytes[i]];
   }
-  eye->SetWindowCenter(0.0, 0.0);
+  eye->SetWindowCenter(middle.x(), middle.y());
   window->RemoveRenderer(view.renderer());
   return encode(sums, width, height, samples_of_pixel);
 }
