@@ -84,6 +84,33 @@ TEST(Snapshot, ShowsEveryWallWhereTheCameraSeesIt) {
   expect_pixel(picture.at(2, 75), {0, 0, 0}, "beside the box there is nothing");
 }
 
+/// Parallel rays see the back wall alone, 2 m of a picture 4 m wide, and no side walls.
+TEST(Snapshot, OrthographicCamerasSeeInParallel) {
+  const SolvedScene box = solved_box();
+  Camera camera = box_camera();
+  camera.projection = Projection::orthographic;
+  camera.view_width = 4.0;
+  const ViewOptions options = options_for(camera);
+  const Picture picture = draw(box, options);
+  expect_pixel(picture.at(100, 75), expected(box, options, white), "back wall");
+  expect_pixel(picture.at(54, 75), expected(box, options, white), "its left end");
+  expect_pixel(picture.at(146, 75), expected(box, options, white), "its right end");
+  expect_pixel(picture.at(45, 75), {0, 0, 0}, "beside the box there is nothing");
+}
+
+/// A lens shifted by a quarter of the width to the right and a fifth of the height upwards moves
+/// the picture by 50 pixels to the left and by 30 downwards.
+TEST(Snapshot, ShiftedLensesMoveThePicture) {
+  const SolvedScene box = solved_box();
+  Camera camera = box_camera();
+  camera.shift = {0.25, 0.2};
+  const ViewOptions options = options_for(camera);
+  const Picture picture = draw(box, options);
+  expect_pixel(picture.at(50, 105), expected(box, options, white), "back wall");
+  expect_pixel(picture.at(130, 105), expected(box, options, red), "world -x is on the right");
+  expect_pixel(picture.at(50, 35), expected(box, options, blue), "ceiling");
+}
+
 /// The halves of the textured back wall have the light of a white wall times the texture. sRGB is
 /// not a pure power, so the product of two encoded values has an error of up to 2 %.
 TEST(Snapshot, ShowsPicturesInTheirLight) {
