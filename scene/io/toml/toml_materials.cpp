@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <string_view>
 
 #include "scene/coat.h"
 #include "scene/errors.h"
@@ -161,8 +162,8 @@ void read_glass(const TomlTable& table, const TomlBands& bands, Material& materi
     dielectric.transmissivity = spectral(*transmissivity, bands, Quantity::share);
   }
   material.dielectric = dielectric;
-  for (const char* other :
-       {"reflectance", "specular", "roughness", "radiance", "exitance", "power"}) {
+  for (const char* other : {"reflectance", "specular", "roughness", "radiance", "exitance", "power",
+                            "luminance", "luminous_exitance", "lumens"}) {
     if (const auto value = table.find(other)) {
       value->fail(
           "contradicts 'glass': a clear surface reflects by Fresnel's law alone and emits "
@@ -235,8 +236,40 @@ void lay_given_coat(const TomlTable& table, const GivenCoat& given, Material& ma
   }
 }
 
+bool is_photometric(std::string_view key) {
+  return key == "luminance" || key == "luminous_exitance" || key == "lumens";
+}
+
+// The number of an emission's key: W of every band, or lumens in the hue of `colour`.
+Spectrum read_emitted(const TomlTable& table, const std::string& key, const TomlBands& bands) {
+  const TomlValue value = table.require(key);
+  const auto colour = table.find("colour");
+  if (!is_photometric(key)) {
+    if (colour) {
+      colour->fail(
+          fmt::format("goes with 'luminance', 'luminous_exitance' or 'lumens'; '{}' has a "
+                      "number for each band",
+                      key));
+    }
+    return spectral(value, bands, Quantity::emission);
+  }
+  if (!value.is_number()) {
+    value.fail(
+        "must be one number, as people see the light; give its hue by 'colour', or watts of each "
+        "band by 'radiance', 'exitance' or 'power'");
+  }
+  const Spectrum hue = read_toml_colour(table, bands);
+  return hue * static_cast<float>(value.number_at_least(0.0) / luminous(bands.bands, hue));
+}
+
 void read_emission(const TomlTable& table, const TomlBands& bands, TomlMaterial& result) {
-  const auto given = table.present({"radiance", "exitance", "power"});
+  if (const auto watts = table.find("watts")) {
+    watts->fail(
+        "is the electric power of a lamp; for a surface that shines give 'lumens', or 'power', the "
+        "watts of light in each band");
+  }
+  const auto given =
+      table.present({"radiance", "exitance", "power", "luminance", "luminous_exitance", "lumens"});
   if (given.size() > 1) {
     table.require(given[1]).fail(
         fmt::format("is a second statement of the emission, after '{}'; keep one", given[0]));
@@ -244,17 +277,24 @@ void read_emission(const TomlTable& table, const TomlBands& bands, TomlMaterial&
   Material& material = result.material;
   material.emission = constant_spectrum(bands.bands, 0.0f);
   if (!given.empty()) {
-    const TomlValue emission = table.require(given[0]);
-    const Spectrum x = spectral(emission, bands, Quantity::emission);
-    if (given[0] == "radiance") material.emission = static_cast<float>(std::numbers::pi) * x;
-    if (given[0] == "exitance") material.emission = x;
-    if (given[0] == "power") result.power = x;
-    if (!material.emission.isFinite().all()) emission.fail("is too large a number");
+    const std::string& key = given[0];
+    const Spectrum x = read_emitted(table, key, bands);
+    const bool is_per_angle = key == "radiance" || key == "luminance";
+    if (is_per_angle) material.emission = static_cast<float>(std::numbers::pi) * x;
+    if (key == "exitance" || key == "luminous_exitance") material.emission = x;
+    if (key == "power" || key == "lumens") result.power = x;
+    if (!material.emission.isFinite().all() || !x.isFinite().all()) {
+      table.require(key).fail("is too large a number");
+    }
+  } else if (const auto colour = table.find("colour")) {
+    colour->fail(
+        "is the hue of light; with it give 'luminance', 'luminous_exitance' or 'lumens', or, for "
+        "the hue of the surface, 'reflectance' alone");
   }
   if (const auto emits = table.find("emits")) {
     material.emits_both_sides = emits->one_of({"front", "both"}) == "both";
     if (given.empty()) {
-      emits->fail("needs an emission; give 'radiance', 'exitance' or 'power', or remove it");
+      emits->fail("needs an emission, such as 'lumens' or 'exitance'; give one, or remove it");
     }
     if (material.emits_both_sides && material.one_sided) {
       emits->fail("is 'both', but sides is 'one': the back cannot shine and be black");
@@ -315,11 +355,21 @@ Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands) {
   return spectral(value, bands, Quantity::emission);
 }
 
+Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands) {
+  const auto colour = table.find("colour");
+  if (!colour) return constant_spectrum(bands.bands, 1.0f);
+  const Spectrum values = read_toml_emission(*colour, bands);
+  if (!(luminous(bands.bands, values) > 0.0)) {
+    colour->fail("is black; give a colour that people see, or remove it");
+  }
+  return values;
+}
+
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures) {
-  const TomlTable table =
-      value.table({"reflectance", "specular", "roughness", "glass", "sides", "radiance", "exitance",
-                   "power", "emits", "texture", "mask", "coat"});
+  const TomlTable table = value.table(
+      {"reflectance", "specular", "roughness", "glass", "sides", "radiance", "exitance", "power",
+       "luminance", "luminous_exitance", "lumens", "colour", "watts", "emits", "texture", "mask", "coat"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);

@@ -22,6 +22,9 @@ TomlBands read_toml_bands(const TomlValue& value);
 
 /// Reads an emitted quantity, >= 0: a number, a number for each band, or a spectrum.
 Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands);
+/// Reads the key `colour`, whose ratios between bands count alone, of light that is given in
+/// lumens; without the key the same in every band.
+Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands);
 /// Reads a share in [0,1]: a number, a number for each band, or a spectrum.
 Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands);
 

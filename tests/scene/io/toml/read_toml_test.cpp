@@ -8,6 +8,7 @@
 
 #include "scene/coat.h"
 #include "scene/io/read_scene.h"
+#include "tests/scene/expected_messages.h"
 #include "tests/temporary_folder.h"
 
 namespace lightwell::read_toml_test {
@@ -188,6 +189,43 @@ TEST(ReadToml, MaterialsEmit) {
   expect_spectrum(material_of(s, "screen").emission, {0.5f, 1.0f, 1.5f});
   EXPECT_TRUE(material_of(s, "screen").emits_both_sides);
   EXPECT_FALSE(material_of(s, "tube").emits_both_sides);
+}
+
+/// What a square metre emits, lm/m^2.
+double lumens_of(const std::string& bands, const std::string& keys) {
+  const Scene s = read_text(bands + "[materials.white]\n" + keys + one_polygon);
+  return luminous(s.bands, s.materials[0].emission);
+}
+
+TEST(ReadToml, LightIsGivenAsPeopleSeeIt) {
+  for (const std::string bands :
+       {"", "[bands]\nlumens_per_watt = 179\n", "[bands]\nkind = \"spectral\"\ncount = 3\n"}) {
+    const std::string hue = "\ncolour = [1.0, 0.8, 0.5]\n";
+    // Floats have 7 digits, and sums of three have a few roundings.
+    EXPECT_NEAR(lumens_of(bands, "luminous_exitance = 500" + hue), 500.0, 1e-3);
+    EXPECT_NEAR(lumens_of(bands, "luminance = 500"), pi * 500.0, 1e-2);
+    EXPECT_NEAR(lumens_of(bands, "lumens = 500" + hue), 500.0, 1e-3);
+    EXPECT_NEAR(lumens_of(bands, "lumens = 500\nemits = \"both\""), 250.0, 1e-3);
+  }
+  const Scene s =
+      read_text("[materials.white]\nluminance = 10\ncolour = [2, 1, 0.5]\n" + one_polygon);
+  const Spectrum& M = s.materials[0].emission;
+  EXPECT_FLOAT_EQ(M[0], 2.0f * M[1]);
+  EXPECT_FLOAT_EQ(M[2], 0.5f * M[1]);
+}
+
+TEST(ReadToml, LightIsGivenOnce) {
+  const auto refuses = [](const std::string& keys, const char* words) {
+    test::expect_message([&] { read_text("[materials.white]\n" + keys + "\n" + one_polygon); },
+                         {"text.toml:", "'white'", words});
+  };
+  refuses("lumens = 5\nexitance = 5", "a second statement of the emission");
+  refuses("exitance = 5\ncolour = [1, 1, 1]", "a number for each band");
+  refuses("colour = [1, 1, 1]", "the hue of light");
+  refuses("lumens = [5, 5, 5]", "must be one number");
+  refuses("lumens = 5\ncolour = [0, 0, 0]", "is black");
+  refuses("watts = 5", "the electric power of a lamp");
+  refuses("glass = { ior = 1.5 }\nlumens = 5", "contradicts 'glass'");
 }
 
 TEST(ReadToml, PowerIsSpreadOverSpheresToo) {
