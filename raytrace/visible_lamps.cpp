@@ -1,12 +1,10 @@
 #include "raytrace/visible_lamps.h"
 
-#include <Eigen/Geometry>
-#include <cmath>
-#include <numbers>
+#include <algorithm>
 #include <variant>
 
 #include "raytrace/glare.h"
-#include "scene/lamp.h"
+#include "scene/lamp_faces.h"
 
 namespace lightwell {
 namespace {
@@ -31,21 +29,6 @@ void add_opening(const Lamp& lamp, int group, CastGeometry& geometry) {
 }
 
 }  // namespace
-
-std::vector<Eigen::Vector3d> opening_outline(const Lamp& lamp) {
-  const auto at = [&](double x, double y) {
-    return Eigen::Vector3d(lamp.position + 0.5 * lamp.opening.along_c0 * x * lamp.axes.col(0) +
-                           0.5 * lamp.opening.along_c90 * y * lamp.axes.col(1));
-  };
-  if (!lamp.opening.is_round) return {at(1, 1), at(-1, 1), at(-1, -1), at(1, -1)};
-  constexpr int sides = 48;
-  std::vector<Eigen::Vector3d> outline;
-  for (int i = 0; i < sides; ++i) {
-    const double turn = 2.0 * std::numbers::pi * i / sides;
-    outline.push_back(at(std::cos(turn), std::sin(turn)));
-  }
-  return outline;
-}
 
 VisibleLamps::VisibleLamps(const Scene& scene, const DirectLight& direct_light)
     : scene_(scene), intensity_(scene.lamps.size()) {

@@ -10,9 +10,6 @@
 
 namespace lightwell {
 
-/// Corners of a lamp's opening in order around it, m: 4, or 48 of an ellipse.
-std::vector<Eigen::Vector3d> opening_outline(const Lamp& lamp);
-
 /// The openings of luminaires as an eye sees them. Lamps are no surfaces: rays of the first pass do
 /// not meet them, and their light is direct light. In a picture the opening of a lamp is a flat
 /// face of even luminance, I over its area projected towards the eye, from either side, as for

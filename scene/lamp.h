@@ -39,6 +39,15 @@ struct LampOpening {
   bool is_point() const { return !(along_c0 > 0.0 || along_c90 > 0.0); }
 };
 
+/// Housing of a lamp, for the eye alone: light neither meets it nor leaves it. A box, or a cylinder
+/// about the axis, as lamp_faces() places it. 0 high: unknown.
+struct LampBody {
+  double along_c0 = 0.0, along_c90 = 0.0, height = 0.0;  ///< m
+  bool is_round = false;
+
+  bool is_known() const { return along_c0 > 0.0 && along_c90 > 0.0 && height > 0.0; }
+};
+
 /// A light source that is no surface: rays of light do not meet a lamp. Pictures show the opening
 /// of a lamp. The intensity in a direction is `intensity` times relative_intensity().
 struct Lamp {
@@ -50,6 +59,7 @@ struct Lamp {
   Spectrum intensity{};  ///< W/sr, >= 0; with a web, W/sr for each unit of its values
   IntensityShape shape{};
   LampOpening opening{};
+  LampBody body{};
   bool visible = true;  ///< pictures show the opening
 
   Eigen::Vector3d aim() const { return -axes.col(2); }

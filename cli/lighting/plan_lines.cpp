@@ -11,7 +11,7 @@
 #include <utility>
 #include <variant>
 
-#include "raytrace/visible_lamps.h"
+#include "scene/lamp_faces.h"
 
 namespace lightwell {
 namespace {

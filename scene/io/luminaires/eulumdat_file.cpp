@@ -127,7 +127,15 @@ const char* words_for(int symmetry) {
 
 void read_eulumdat_sizes(Lines& lines, LuminaireFile& result) {
   constexpr double mm = 0.001;
-  lines.skip(3, "the size of the luminaire");
+  // Sizes that are no numbers, or not above 0, are of no body; light does not need them.
+  const auto size = [&] {
+    return mm * lines.number_or_text("the size of the luminaire").value_or(0.0);
+  };
+  const double body_length = size(), body_width = size(), body_height = size();
+  result.body = {.along_c0 = body_width > 0.0 ? body_width : body_length,
+                 .along_c90 = body_length,
+                 .height = body_height,
+                 .is_round = !(body_width > 0.0)};
   const double length = mm * lines.number("the length of the luminous area");
   const double width = mm * lines.number("the width of the luminous area");
   if (!(length >= 0.0 && width >= 0.0)) lines.fail("the luminous area must not be below 0");

@@ -41,6 +41,7 @@ void place_luminaire(const LuminaireFile& luminaire, const Bands& bands, const S
   }
   lamp.shape = luminaire.web;
   lamp.opening = luminaire.opening;
+  lamp.body = luminaire.body;
   lamp.intensity = luminaire.is_radiometric
                        ? constant_spectrum(bands, 1.0f)
                        : Spectrum(colour / static_cast<float>(luminous(bands, colour)));

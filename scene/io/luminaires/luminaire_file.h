@@ -25,6 +25,7 @@ struct LuminaireFile {
   std::string symmetry{};       ///< in words
   LampOpening opening{};        ///< m
   double opening_height = 0.0;  ///< m; light leaves from the opening, none from the sides
+  LampBody body{};              ///< of EULUMDAT; IES files have none
   std::vector<std::string> notes{};  ///< assumptions and omissions: one sentence each
 
   double flux() const { return web ? web->integral() : 0.0; }
@@ -35,7 +36,7 @@ struct LuminaireFile {
 /// naming file, line, fault and remedy.
 LuminaireFile read_luminaire(const std::filesystem::path& path, int lamp_set = 1);
 
-/// Sets distribution, opening and intensity of `lamp` from a luminaire. The intensity is the
+/// Sets distribution, opening, body and intensity of `lamp` from a luminaire. The intensity is the
 /// spectrum of 1 cd with the hue of `colour` (the brightness of `colour` cancels); for radiometric
 /// files 1 in every band. Throws InputError if all intensities of the luminaire are 0.
 void place_luminaire(const LuminaireFile& luminaire, const Bands& bands, const Spectrum& colour,

@@ -80,14 +80,15 @@ void read_opening(const TomlTable& table, double metres_per_unit, Lamp& lamp) {
   }
 }
 
-Spectrum read_colour(const TomlTable& table, const TomlBands& bands) {
-  const auto colour = table.find("colour");
-  if (!colour) return constant_spectrum(bands.bands, 1.0f);
-  const Spectrum values = read_toml_emission(*colour, bands);
-  if (!(luminous(bands.bands, values) > 0.0)) {
-    colour->fail("is black; give a colour that people see, or remove it");
-  }
-  return values;
+void read_body(const TomlTable& table, double metres_per_unit, Lamp& lamp) {
+  const auto body = table.find("body");
+  if (!body) return;
+  const auto sizes = body->elements("size");
+  if (sizes.size() != 3) body->fail("must be three sizes [along C0, along C90, height]");
+  lamp.body = {.along_c0 = metres_per_unit * sizes[0].positive(),
+               .along_c90 = metres_per_unit * sizes[1].positive(),
+               .height = metres_per_unit * sizes[2].positive(),
+               .is_round = lamp.opening.is_round};
 }
 
 // Sets intensity, W/sr per unit of the shape, from exactly one of the four keys.
@@ -108,7 +109,7 @@ void read_strength(const TomlTable& table, const TomlBands& bands, Lamp& lamp) {
     }
     lamp.intensity = read_toml_emission(value, bands);
   } else {
-    const Spectrum colour = read_colour(table, bands);
+    const Spectrum colour = read_toml_colour(table, bands);
     lamp.intensity =
         colour * static_cast<float>(value.number_at_least(0.0) / luminous(bands.bands, colour));
   }
@@ -128,7 +129,7 @@ void read_measured(const TomlTable& table, const TomlBands& bands, Scene& scene,
     lamp_set = static_cast<int>(set->integer_within(1, 20));
   try {
     const LuminaireFile luminaire = read_luminaire(path, lamp_set);
-    place_luminaire(luminaire, bands.bands, read_colour(table, bands), lamp);
+    place_luminaire(luminaire, bands.bands, read_toml_colour(table, bands), lamp);
     if (luminaire.is_radiometric) scene.relative_units = true;
     if (const auto lumens = table.find("lumens")) {
       if (luminaire.is_radiometric) lumens->fail("is asked of a file that is not in candela");
@@ -148,10 +149,11 @@ void read_toml_lamp(const TomlValue& value, std::size_t number, const TomlBands&
                     Scene& scene) {
   const auto given = value.member("name");
   Lamp lamp{.name = given ? given->name() : fmt::format("lamp{}", number)};
-  const TomlTable table = value.renamed(fmt::format("lamp '{}'", lamp.name))
-                              .table({"name", "position", "aim", "look_at", "c0", "file",
-                                      "lamp_set", "cone", "intensity", "candela", "power", "lumens",
-                                      "colour", "factor", "opening", "round", "watts", "visible"});
+  const TomlTable table =
+      value.renamed(fmt::format("lamp '{}'", lamp.name))
+          .table({"name", "position", "aim", "look_at", "c0", "file", "lamp_set", "cone",
+                  "intensity", "candela", "power", "lumens", "colour", "factor", "opening", "round",
+                  "body", "watts", "visible"});
   const Eigen::Vector3d position = table.require("position").vector();
   lamp.position = scene.metres_per_unit * position;
   const bool is_measured = table.has("file");
@@ -166,6 +168,7 @@ void read_toml_lamp(const TomlValue& value, std::size_t number, const TomlBands&
   }
   lamp.axes = read_axes(table, position, is_measured || table.has("cone"));
   read_opening(table, scene.metres_per_unit, lamp);
+  read_body(table, scene.metres_per_unit, lamp);
   if (const auto factor = table.find("factor")) {
     lamp.intensity *= static_cast<float>(factor->number_at_least(0.0));
   }

@@ -113,6 +113,9 @@ TEST(Luminaires, OpeningsLieAlongTheirPlanes) {
   const LampOpening ldt = read_luminaire(data("sample1.ldt")).opening;
   EXPECT_NEAR(ldt.along_c90, 1.208, 1e-9);
   EXPECT_NEAR(ldt.along_c0, 0.105, 1e-9);
+  const LampBody body = read_luminaire(data("sample1.ldt")).body;
+  EXPECT_TRUE(body.is_known());
+  EXPECT_FALSE(read_luminaire(data("overhead.ies")).body.is_known());
   const LampOpening disc = read_luminaire(data("display.ies")).opening;
   EXPECT_TRUE(disc.is_round);
   EXPECT_NEAR(disc.along_c0, 0.12, 1e-9);
