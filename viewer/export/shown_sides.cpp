@@ -16,6 +16,8 @@ namespace lightwell {
 namespace {
 
 constexpr int rays_per_patch = 64, patch_grain = 64;
+/// What a ray meets instead of an element: nothing, or the black back of a one-sided surface.
+constexpr int way_out = -1, black_back = -2;
 
 /// Sight from a patch, and of a patch.
 struct PatchView {
@@ -26,16 +28,18 @@ struct PatchView {
 
 class SideChooser {
  public:
-  SideChooser(const SolvedScene& solved, const Scene& scene, const std::vector<ElementKind>& kinds)
+  SideChooser(const SolvedScene& solved, const Scene& scene, const ElementCaster& caster,
+              const std::vector<ElementKind>& kinds)
       : mesh_(solved.mesh),
         solution_(solved.solution),
         scene_(scene),
         kinds_(kinds),
-        caster_(mesh_),
+        caster_(caster),
+        met_(static_cast<std::size_t>(mesh_.patch_count())),
         view_(static_cast<std::size_t>(mesh_.patch_count())),
         lux_(
             element_lux(mesh_, luminous_rows(irradiance_with_all_on(solution_), solution_.bands))) {
-    for_each_patch([this](int p) { find_escaped(p); });
+    for_each_patch([this](int p) { cast(p); });
     limit_ = 1e-4 * mean_within();
     for_each_patch([this](int p) { look_from(p); });
   }
@@ -72,7 +76,8 @@ class SideChooser {
     return lux;
   }
 
-  std::array<ElementHit, rays_per_patch> cast(int patch) const {
+  /// Keeps what the rays of a patch meet, and the share that leaves the scene.
+  void cast(int patch) {
     static const SobolPoints sobol(rays_per_patch);
     const std::uint64_t key =
         random_key(static_cast<std::uint64_t>(patch), RandomPurpose::part_rays);
@@ -84,19 +89,16 @@ class SideChooser {
     }
     std::array<ElementHit, rays_per_patch> hits;
     caster_.closest_elements(rays, hits);
-    return hits;
-  }
-
-  void find_escaped(int patch) {
-    const auto hits = cast(patch);
-    const auto escaped = std::ranges::count(hits, -1, &ElementHit::facet);
-    view_[patch].escaped = static_cast<float>(escaped) / rays_per_patch;
+    std::vector<int>& met = met_[patch];
+    for (const ElementHit& hit : hits) {
+      met.push_back(hit.facet < 0 ? way_out : hit.element < 0 ? black_back : hit.element);
+    }
+    view_[patch].escaped = static_cast<float>(std::ranges::count(met, way_out)) / rays_per_patch;
   }
 
   void look_from(int patch) {
-    view_[patch].sees_light = std::ranges::any_of(cast(patch), [this](const ElementHit& hit) {
-      if (hit.facet < 0) return true;
-      return hit.element >= 0 && !is_dark(hit.element);
+    view_[patch].sees_light = std::ranges::any_of(met_[patch], [this](int element) {
+      return element == way_out || (element >= 0 && !is_dark(element));
     });
     constexpr int looks = 4;
     static const SobolPoints sobol(looks);
@@ -198,7 +200,8 @@ class SideChooser {
   const RadiositySolution& solution_;
   const Scene& scene_;
   const std::vector<ElementKind>& kinds_;
-  const ElementCaster caster_;
+  const ElementCaster& caster_;
+  std::vector<std::vector<int>> met_;  // by the rays of each patch
   std::vector<PatchView> view_;
   std::vector<float> lux_;  // of each element, the largest at its corners
   double limit_ = 0.0;      // lx, below which a side is dark
@@ -223,9 +226,10 @@ double half_gap(const PatchMesh& mesh) {
 }
 
 std::vector<SideUse> choose_sides(const SolvedScene& solved, const Scene& scene,
+                                  const ElementCaster& caster,
                                   const std::vector<ElementKind>& kinds, Sides sides) {
   if (sides == Sides::lit) return lit_sides(solved.mesh, kinds);
-  return SideChooser(solved, scene, kinds).choose(sides);
+  return SideChooser(solved, scene, caster, kinds).choose(sides);
 }
 
 }  // namespace lightwell

@@ -22,7 +22,8 @@ enum class SideUse : std::uint8_t { left_out, in_place, moved };
 /// than 5 m.
 double half_gap(const PatchMesh& mesh);
 
-/// Decides for each element whether a model of `sides` has it. `kinds` count a side as lit by a
+/// Decides for each element whether a model of `sides` has it. `caster` is of the solution's mesh.
+/// `kinds` count a side as lit by a
 /// channel that is off. For front and both:
 ///
 /// - A side is dark if its illuminance is below 1e-4 of the mean of the sides that are not outside.
@@ -36,6 +37,7 @@ double half_gap(const PatchMesh& mesh);
 /// Shares are those of 64 rays from each patch; panes of clear glass stop them, but no camera's
 /// view.
 std::vector<SideUse> choose_sides(const SolvedScene& solved, const Scene& scene,
+                                  const ElementCaster& caster,
                                   const std::vector<ElementKind>& kinds, Sides sides);
 
 }  // namespace lightwell
