@@ -1,5 +1,8 @@
 #include "viewer/export/baked_channels.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "viewer/export/appearance.h"
 #include "viewer/export/sky_grid.h"
 
@@ -148,6 +151,51 @@ std::vector<ElementKind> kinds_with_all_on(const SolvedScene& solved,
   SolvedScene all = unlit(solved);
   all.mesh.emission = s.full_emission;
   return element_kinds(all.mesh, irradiance_with_all_on(s), materials);
+}
+
+std::vector<BakedLampFace> bake_lamps(const SolvedScene& solved,
+                                      const std::vector<Material>& materials,
+                                      const DrawnLamps& lamps) {
+  const RadiositySolution& s = solved.solution;
+  std::vector<BakedLampFace> faces;
+  if (lamps.faces().empty()) return faces;
+  const auto rgb = [&](const BandArray& L, std::size_t f, const Spectrum& factor) {
+    const Spectrum row = L.row(static_cast<Eigen::Index>(f)).transpose() * factor;
+    return Eigen::Array3f(linear_rgb(s.bands, row).unaryExpr(&finite_or_black));
+  };
+  const BandArray L =
+      lamps.radiance(solved.mesh, shown_radiance(solved, materials), solved.mesh.source_scale);
+  for (std::size_t f = 0; f < lamps.faces().size(); ++f) {
+    const DrawnLamps::Face& face = lamps.faces()[f];
+    faces.push_back({.lamp = face.lamp,
+                     .outline = face.outline,
+                     .radiance = rgb(L, f, constant_spectrum(s.bands, 1.0f))});
+  }
+  SolvedScene alone = s.channels.empty() ? SolvedScene() : unlit(solved);
+  for (std::size_t c = 0; c < s.channels.size(); ++c) {
+    light_alone(s, c, alone);
+    BandArray scale =
+        BandArray::Zero(static_cast<Eigen::Index>(s.source_channel.size()), s.bands.count());
+    for (std::size_t i = 0; i < s.source_channel.size(); ++i) {
+      if (s.source_channel[i] == static_cast<int>(c))
+        scale.row(static_cast<Eigen::Index>(i)) = 1.0f;
+    }
+    const BandArray of_channel =
+        lamps.radiance(alone.mesh, shown_radiance(alone, materials), scale);
+    const Spectrum within = factor_within(s, static_cast<int>(c));
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      faces[f].by_channel.push_back(rgb(of_channel, f, within));
+    }
+  }
+  std::vector<BakedLampFace> lit;
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const auto has_light = [](const Eigen::Array3f& light) { return (light > 0.0f).any(); };
+    if (lamps.faces()[f].shines || has_light(faces[f].radiance) ||
+        std::ranges::any_of(faces[f].by_channel, has_light)) {
+      lit.push_back(std::move(faces[f]));
+    }
+  }
+  return lit;
 }
 
 std::vector<BakedChannel> bake_channels(const SolvedScene& solved,

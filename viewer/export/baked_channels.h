@@ -6,6 +6,7 @@
 
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_model.h"
+#include "viewer/export/drawn_lamps.h"
 
 namespace lightwell {
 
@@ -27,6 +28,12 @@ BandArray irradiance_with_all_on(const RadiositySolution& solution);
 
 /// Sky and sun of a scene; empty without a sky.
 std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene);
+
+/// Faces of luminaires with their light. A face of a body that no light falls on, of any channel,
+/// is left out.
+std::vector<BakedLampFace> bake_lamps(const SolvedScene& solved,
+                                      const std::vector<Material>& materials,
+                                      const DrawnLamps& lamps);
 
 /// Light of each channel at the mesh's vertices in `mesh_vertex`, in their order. Empty without
 /// channels.

@@ -234,10 +234,9 @@ void move_apart(const PatchMesh& mesh, const std::vector<SideUse>& use, BakedMod
   }
 }
 
-void add_cameras(const SolvedScene& solved, const Scene& scene,
+void add_cameras(const SolvedScene& solved, const Scene& scene, const ElementCaster& caster,
                  const std::vector<ElementKind>& kinds, const BandArray& radiance,
                  const Eigen::Vector3d& up_axis, double exposure_ev, BakedModel& model) {
-  const ElementCaster caster(solved.mesh);
   std::vector<Camera> cameras = scene.cameras;
   model.cameras_are_given = !cameras.empty();
   if (cameras.empty()) {
@@ -293,10 +292,11 @@ BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double expo
   check_input(solved, scene);
   const std::vector<ElementKind> kinds = kinds_with_all_on(solved, scene.materials);
   const BandArray radiance = shown_radiance(solved, scene.materials);
+  const ElementCaster caster(solved.mesh);
   BakedModel model;
   model.title = scene.title;
   const DrawnPictures drawn(scene, longest_picture);
-  const std::vector<SideUse> use = choose_sides(solved, scene, kinds, sides);
+  const std::vector<SideUse> use = choose_sides(solved, scene, caster, kinds, sides);
   model.mesh_vertex = add_parts(solved.mesh, scene, use, radiance, drawn, names, model);
   add_vertices(solved, radiance, model);
   add_bounds(solved, model);
@@ -304,9 +304,11 @@ BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double expo
   move_apart(solved.mesh, use, model);
   model.channels = bake_channels(solved, scene.materials, model.mesh_vertex);
   model.sky = bake_sky(solved, scene);
+  for (const Lamp& lamp : scene.lamps) model.lamp_names.push_back(lamp.name);
+  model.lamp_faces = bake_lamps(solved, scene.materials, DrawnLamps(scene, caster));
   const Eigen::Vector3d up_axis = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
   model.to_y_up = rotation_to_y_up(up_axis);
-  add_cameras(solved, scene, kinds, radiance, up_axis, exposure_ev, model);
+  add_cameras(solved, scene, caster, kinds, radiance, up_axis, exposure_ev, model);
   model.bands = solved.solution.bands;
   const double stops = std::exp2(exposure_ev);
   model.color_scale = stops * unclipped_scale(reflected_radiances(model, model.bands),

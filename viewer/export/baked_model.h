@@ -45,6 +45,14 @@ struct BakedCamera {
   double scale = 1.0;  ///< from radiance to display values (see exposure_scale)
 };
 
+/// A plane face of a luminaire (see DrawnLamps), of one colour.
+struct BakedLampFace {
+  int lamp = 0;                                      ///< index into BakedModel::lamp_names
+  std::vector<Eigen::Vector3d> outline{};            ///< convex; metres, the scene's axes
+  Eigen::Array3f radiance = Eigen::Array3f::Zero();  ///< as BakedModel::radiance
+  std::vector<Eigen::Array3f> by_channel{};          ///< as BakedChannel::radiance, one per channel
+};
+
 /// Light of one channel of the solution. The channels' light times `weight` sums to the model's.
 /// With spectral bands `weight` is the largest band of the channel's scale; the light includes the
 /// rest of the scale, scale / weight.
@@ -97,6 +105,9 @@ struct BakedModel {
   RgbArray picture_gain{};               ///< factor from `radiance` to that of a white texel
 
   std::vector<BakedChannel> channels{};  ///< the light above by channel; empty: not separated
+
+  std::vector<std::string> lamp_names{};    ///< of the scene's lamps
+  std::vector<BakedLampFace> lamp_faces{};  ///< in the order of lamps
 
   // Per face.
   /// Vertices, counter-clockwise seen from the face's side; [3] is -1 for a triangle. Two triangles

@@ -149,11 +149,13 @@ void write_gltf(const std::filesystem::path& path, const BakedModel& model) {
   GltfJson root;
   root["asset"] = gltf_asset(model);
   root["extensionsUsed"] = {"KHR_materials_unlit"};
-  add_nodes(model, meshes_of(model, buffer), root);
+  GltfJson meshes = meshes_of(model, buffer);
   for (const BakedMaterial& material : model.materials) {
     root["materials"].push_back(unlit_material(material));
   }
   add_gltf_pictures(model, buffer.buffer(), root);
+  add_lamps(model, buffer.buffer(), meshes, root);
+  add_nodes(model, std::move(meshes), root);
   write_glb(path, std::move(root), buffer.buffer());
 }
 

@@ -178,7 +178,7 @@ class LightmapBuffer {
   }
 
   const std::vector<Stretch>& stretches() const { return stretches_; }
-  const GltfBuffer& buffer() const { return buffer_; }
+  GltfBuffer& buffer() { return buffer_; }
 
   /// Adds an image and a texture for each atlas, with the atlas's number.
   void add_pictures(const std::vector<std::string>& pictures, GltfJson& root) {
@@ -263,6 +263,7 @@ void add_surfaces(const BakedModel& model, LightmapBuffer& buffer, GltfJson& roo
     if (is_new_mesh) meshes.push_back({{"name", part.name}, {"primitives", GltfJson::array()}});
     meshes[mesh->second]["primitives"].push_back(buffer.primitive(s, material->second));
   }
+  add_lamps(model, buffer.buffer(), meshes, root);
   add_nodes(model, std::move(meshes), root);
 }
 

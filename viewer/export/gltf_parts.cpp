@@ -90,8 +90,41 @@ void append_chunk_head(std::string& head, std::size_t length, const char* kind) 
   head.append(kind, 4);
 }
 
-Eigen::Vector3f turned_position(const BakedModel& model, int vertex) {
-  return (model.to_y_up * model.position[vertex]).cast<float>();
+Eigen::Vector3f turned(const BakedModel& model, const Eigen::Vector3d& place) {
+  return (model.to_y_up * place).cast<float>();
+}
+
+/// The luminaires' faces as triangles; faces share no corners.
+struct LampTriangles {
+  struct Lamp {
+    int number = 0;
+    std::size_t first_corner = 0, first_index = 0, index_count = 0;
+  };
+  std::vector<Lamp> lamps{};
+  std::vector<Eigen::Vector3d> corners{};
+  std::vector<Eigen::Array3f> radiance{};  // at corners
+  std::vector<std::uint32_t> indices{};    // from the lamp's first corner
+};
+
+LampTriangles triangles_of_lamps(const BakedModel& model) {
+  LampTriangles result;
+  for (const BakedLampFace& face : model.lamp_faces) {
+    if (result.lamps.empty() || result.lamps.back().number != face.lamp) {
+      result.lamps.push_back({.number = face.lamp,
+                              .first_corner = result.corners.size(),
+                              .first_index = result.indices.size()});
+    }
+    LampTriangles::Lamp& lamp = result.lamps.back();
+    const auto first = static_cast<std::uint32_t>(result.corners.size() - lamp.first_corner);
+    const auto count = static_cast<std::uint32_t>(face.outline.size());
+    for (std::uint32_t c = 1; c + 1 < count; ++c) {
+      for (const std::uint32_t corner : {0u, c, c + 1}) result.indices.push_back(first + corner);
+    }
+    result.corners.insert(result.corners.end(), face.outline.begin(), face.outline.end());
+    result.radiance.insert(result.radiance.end(), count, face.radiance);
+    lamp.index_count = result.indices.size() - lamp.first_index;
+  }
+  return result;
 }
 
 }  // namespace
@@ -119,21 +152,63 @@ int GltfBuffer::add_accessor(int view, int component, const char* type, std::siz
 
 int GltfBuffer::add_positions(int view, const BakedModel& model, std::span<const int> vertices,
                               std::size_t first) {
+  std::vector<Eigen::Vector3d> places;
+  places.reserve(vertices.size());
+  for (const int v : vertices) places.push_back(model.position[v]);
+  return add_positions(view, model, places, first);
+}
+
+int GltfBuffer::add_positions(int view, const BakedModel& model,
+                              std::span<const Eigen::Vector3d> places, std::size_t first) {
   Eigen::Array3f low = Eigen::Array3f::Constant(std::numeric_limits<float>::infinity());
   Eigen::Array3f high = -low;
-  for (const int v : vertices) {
-    const Eigen::Array3f p = turned_position(model, v);
+  for (const Eigen::Vector3d& place : places) {
+    const Eigen::Array3f p = turned(model, place);
     low = low.min(p);
     high = high.max(p);
   }
-  const int number = add_accessor(view, gltf_float, "VEC3", 12, first, vertices.size());
+  const int number = add_accessor(view, gltf_float, "VEC3", 12, first, places.size());
   accessors_.back()["min"] = {low[0], low[1], low[2]};
   accessors_.back()["max"] = {high[0], high[1], high[2]};
   return number;
 }
 
 void append_position(std::string& bytes, const BakedModel& model, int vertex) {
-  for (const float x : turned_position(model, vertex)) append_bytes(bytes, x);
+  for (const float x : turned(model, model.position[vertex])) append_bytes(bytes, x);
+}
+
+void add_lamps(const BakedModel& model, GltfBuffer& buffer, GltfJson& meshes, GltfJson& root) {
+  if (model.lamp_faces.empty()) return;
+  const LampTriangles triangles = triangles_of_lamps(model);
+  for (const Eigen::Vector3d& corner : triangles.corners) {
+    for (const float x : turned(model, corner)) append_bytes(buffer.bytes(), x);
+  }
+  const int positions = buffer.end_view("positions of luminaires", gltf_vertex_data, 12);
+  const auto scale = static_cast<float>(model.color_scale);
+  for (const Eigen::Array3f& L : triangles.radiance) {
+    for (const float l : L) append_bytes(buffer.bytes(), std::clamp(l * scale, 0.0f, 1.0f));
+  }
+  const int colors = buffer.end_view("colors of luminaires", gltf_vertex_data, 12);
+  for (const std::uint32_t index : triangles.indices) append_bytes(buffer.bytes(), index);
+  const int indices = buffer.end_view("indices of luminaires", gltf_index_data, 0);
+
+  const auto material = root.contains("materials") ? root["materials"].size() : 0;
+  root["materials"].push_back(unlit_material({.name = "luminaires"}));
+  for (std::size_t i = 0; i < triangles.lamps.size(); ++i) {
+    const LampTriangles::Lamp& lamp = triangles.lamps[i];
+    const std::size_t end = i + 1 < triangles.lamps.size() ? triangles.lamps[i + 1].first_corner
+                                                           : triangles.corners.size();
+    const std::size_t first = lamp.first_corner, count = end - first;
+    const std::span<const Eigen::Vector3d> corners(&triangles.corners[first], count);
+    GltfJson attributes = {{"POSITION", buffer.add_positions(positions, model, corners, first)}};
+    attributes["COLOR_0"] = buffer.add_accessor(colors, gltf_float, "VEC3", 12, first, count);
+    const int of_lamp = buffer.add_accessor(indices, gltf_unsigned_int, "SCALAR", 4,
+                                            lamp.first_index, lamp.index_count);
+    GltfJson primitive = {
+        {"attributes", std::move(attributes)}, {"indices", of_lamp}, {"material", material}};
+    meshes.push_back({{"name", model.lamp_names[static_cast<std::size_t>(lamp.number)]},
+                      {"primitives", GltfJson::array({std::move(primitive)})}});
+  }
 }
 
 GltfJson unlit_material(const BakedMaterial& material) {

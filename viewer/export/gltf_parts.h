@@ -33,6 +33,9 @@ class GltfBuffer {
   /// the accessor's number. The view holds three floats a vertex; item `first` is vertices[0].
   int add_positions(int view, const BakedModel& model, std::span<const int> vertices,
                     std::size_t first);
+  /// The same for places of the scene's axes.
+  int add_positions(int view, const BakedModel& model, std::span<const Eigen::Vector3d> places,
+                    std::size_t first);
   /// Bytes since the last view ended.
   std::size_t pending() const { return bytes_.size() - begin_; }
 
@@ -55,6 +58,10 @@ GltfJson unlit_material(const BakedMaterial& material);
 /// The JSON object `asset`. Its extras give the exposure, and the radiosity and the luminance of
 /// colour 1.
 GltfJson gltf_asset(const BakedModel& model);
+
+/// Adds a mesh for each luminaire that is drawn, called after it, with the colours of its faces,
+/// and one material for all to `root`. Materials that come later change no number.
+void add_lamps(const BakedModel& model, GltfBuffer& buffer, GltfJson& meshes, GltfJson& root);
 
 /// Adds scene, nodes, meshes and the scene's cameras to `root`: a node for each mesh.
 void add_nodes(const BakedModel& model, GltfJson meshes, GltfJson& root);

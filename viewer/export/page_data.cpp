@@ -150,6 +150,42 @@ void append_sky(const BakedModel& model, PageData& page) {
   page.about["sky"] = std::move(about);
 }
 
+/// Appends the luminaires' triangles. Faces share no corners; radiance is that of each basis.
+void append_lamps(const BakedModel& model, const Box& box, PageData& page) {
+  if (model.lamp_faces.empty()) return;
+  std::string& bytes = page.bytes;
+  Json about = {{"positions", bytes.size()}};
+  std::uint32_t corners = 0;
+  std::vector<std::uint32_t> triangles;
+  for (const BakedLampFace& face : model.lamp_faces) {
+    for (const Eigen::Vector3d& p : face.outline) {
+      const Eigen::Vector3d place = model.to_y_up * p - box.low;
+      for (const double x : place) append_bytes(bytes, static_cast<float>(x));
+    }
+    const auto count = static_cast<std::uint32_t>(face.outline.size());
+    for (std::uint32_t c = 1; c + 1 < count; ++c) {
+      for (const std::uint32_t corner : {0u, c, c + 1}) triangles.push_back(corners + corner);
+    }
+    corners += count;
+  }
+  about["corner_count"] = corners;
+  about["triangles"] = bytes.size();
+  about["triangle_count"] = triangles.size() / 3;
+  for (const std::uint32_t corner : triangles) append_bytes(bytes, corner);
+  Json radiance = Json::array();
+  for (std::size_t c = 0; c < std::max<std::size_t>(1, model.channels.size()); ++c) {
+    radiance.push_back(bytes.size());
+    for (const BakedLampFace& face : model.lamp_faces) {
+      const Eigen::Array3f& L = model.channels.empty() ? face.radiance : face.by_channel[c];
+      for (std::size_t corner = 0; corner < face.outline.size(); ++corner) {
+        for (const float l : L) append_bytes(bytes, l);
+      }
+    }
+  }
+  about["radiance"] = std::move(radiance);
+  page.about["lamps"] = std::move(about);
+}
+
 Json parts(const BakedModel& model, const Eigen::Vector3d& low) {
   Json result = Json::array();
   for (const BakedPart& part : model.parts) {
@@ -257,6 +293,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range, const WhitePo
   }
   append_pictures(model, page);
   append_sky(model, page);
+  append_lamps(model, box, page);
   page.about["parts"] = parts(model, box.low);
   page.about["materials"] = materials(model);
   page.about["cameras"] = cameras(model, box.low);

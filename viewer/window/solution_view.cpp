@@ -87,6 +87,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       spheres_(fine_spheres(solved.mesh)),
       actor_(solved.mesh, spheres_, kinds_, radiance_, drawn_),
       sky_(scene_ ? effective_sky(*scene_, solved.mesh) : std::nullopt),
+      drawn_lamps_(scene_ ? DrawnLamps(*scene_, caster_) : DrawnLamps()),
       renderer_(vtkSmartPointer<vtkRenderer>::New()),
       legend_(text_scale_of(options)),
       isolux_levels_(options.isolux) {
@@ -104,6 +105,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
   if (!drawn_.all().empty()) picture_gain_ = picture_gains(solved.mesh, drawn_);
   actor_.add_to(renderer_);
   if (sky_) outside_.emplace(*sky_).add_to(renderer_);
+  if (!drawn_lamps_.faces().empty()) lamps_.emplace(drawn_lamps_).add_to(renderer_);
   isolux_.add_to(renderer_);
   legend_.add_to(renderer_);
   renderer_->SetBackground(0.0, 0.0, 0.0);
@@ -227,7 +229,25 @@ void SolutionView::light_arrived() {
   apply_isolux();
 }
 
+void SolutionView::apply_lamps() {
+  if (!lamps_) return;
+  // Lamps have neither irradiance nor interpolation error.
+  const bool is_luminance = look_.illuminance && look_.measure == Measure::luminance;
+  lamps_->show(!look_.interpolation_error && (!look_.illuminance || is_luminance));
+  const Bands& bands = solved_->solution.bands;
+  const BandArray L = drawn_lamps_.radiance(solved_->mesh, radiance_, solved_->mesh.source_scale);
+  std::vector<char> is_drawn;
+  for (std::size_t f = 0; f < drawn_lamps_.faces().size(); ++f) {
+    const bool is_lit = (L.row(static_cast<Eigen::Index>(f)) > 0.0f).any();
+    is_drawn.push_back(is_lit || drawn_lamps_.faces()[f].shines ? 1 : 0);
+  }
+  lamps_->set_colors(is_luminance ? false_colors(luminous_rows(L, bands), measured_range())
+                                  : display_colors(L, bands, display_scale(look_)),
+                     is_drawn);
+}
+
 void SolutionView::apply_colors() {
+  apply_lamps();
   // The sky has neither irradiance nor interpolation error.
   if (outside_) outside_->show(!look_.interpolation_error && !look_.illuminance);
   if (look_.interpolation_error) return actor_.set_colors(error_colors(*solved_), {});

@@ -9,6 +9,7 @@
 #include "viewer/export/appearance.h"
 #include "viewer/export/start_view.h"
 #include "viewer/window/isolux.h"
+#include "viewer/window/lamp_actor.h"
 #include "viewer/window/legend_actor.h"
 #include "viewer/window/sky_actor.h"
 #include "viewer/window/solution_actor.h"
@@ -89,6 +90,7 @@ class SolutionView {
  private:
   void apply_camera();
   void apply_colors();
+  void apply_lamps();
   void apply_legend();
   void apply_isolux();
   /// Values of a quantity at vertices, in its unit, and the range of those in view.
@@ -125,6 +127,8 @@ class SolutionView {
   SolutionActor actor_;
   std::optional<Sky> sky_;
   std::optional<SkyActor> outside_;
+  DrawnLamps drawn_lamps_;
+  std::optional<LampActor> lamps_;  ///< empty: none is drawn
   vtkSmartPointer<vtkRenderer> renderer_;
   LegendActor legend_;
   std::vector<double> isolux_levels_;  ///< levels of the options; empty: see isolux_levels()

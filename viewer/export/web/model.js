@@ -54,6 +54,7 @@ class Model {
     // Bound of the error of illuminance per face, lx, for the light as it was solved.
     this.within = about.lux_within && this.unpack_halves(about.lux_within, about.face_count, halves);
     about.element_count = about.face_count;
+    this.lamps = about.lamps && this.unpack_lamps(about.lamps);
     split_spheres(this);
     this.radiance = new Float32Array(3 * about.vertex_count);
     this.illuminance = new Float32Array(3 * about.vertex_count);
@@ -77,6 +78,17 @@ class Model {
       positions[3 * v + 2] = step * (high >>> 10 & 0x1fffff);
     }
     return positions;
+  }
+
+  /** Triangles of luminaires, with the radiance of their corners in each basis, and the sum of all bases. */
+  unpack_lamps(about) {
+    const {buffer} = this.bytes, n = 3 * about.corner_count;
+    return {
+      positions: new Float32Array(buffer, about.positions, n),
+      triangles: new Uint32Array(buffer, about.triangles, 3 * about.triangle_count),
+      bases: about.radiance.map((offset) => new Float32Array(buffer, offset, n)),
+      radiance: new Float32Array(n),
+    };
   }
 
   unpack_halves({offset, scale}, count, halves) {
@@ -115,10 +127,12 @@ class Model {
 
   /** Adds the bases up with their weights. */
   mix() {
-    const L = this.radiance.fill(0), E = this.illuminance.fill(0);
-    for (const {weight: [r, g, b], radiance, illuminance} of this.bases) {
+    const L = this.radiance.fill(0), E = this.illuminance.fill(0), of_lamps = this.lamps?.radiance.fill(0);
+    for (const [basis, {weight: [r, g, b], radiance, illuminance}] of this.bases.entries()) {
       if (r === 0 && g === 0 && b === 0) continue;
-      for (const [sum, values] of [[L, radiance], [E, illuminance]]) {
+      const sums = [[L, radiance], [E, illuminance]];
+      if (of_lamps) sums.push([of_lamps, this.lamps.bases[basis]]);
+      for (const [sum, values] of sums) {
         for (let i = 0; i < sum.length; i += 3) {
           sum[i] += r * values[i];
           sum[i + 1] += g * values[i + 1];

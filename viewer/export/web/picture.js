@@ -208,11 +208,27 @@ class Picture {
     const mesh = new Library.Mesh(this.geometry, this.materials);
     mesh.frustumCulled = false;
     this.scene.add(mesh);
+    if (model.lamps) this.scene.add(this.lamps = this.make_lamps());
     if (model.about.sky) {
       this.sky = new SkyPicture(model, this.uniforms);
       this.scene.add(this.sky.mesh);
     }
     this.look_through(false);
+  }
+
+  /** Luminaires have radiance, but no illuminance. */
+  make_lamps() {
+    const {positions, radiance, triangles} = this.model.lamps, geometry = new Library.BufferGeometry();
+    geometry.setAttribute('position', new Library.BufferAttribute(positions, 3));
+    geometry.setAttribute('radiance', new Library.BufferAttribute(radiance, 3));
+    geometry.setIndex(new Library.BufferAttribute(triangles, 1));
+    const mesh = new Library.Mesh(geometry, this.make_material(1));
+    mesh.frustumCulled = false;
+    return mesh;
+  }
+
+  show_lamps(on) {
+    if (this.lamps) this.lamps.visible = on;
   }
 
   /** Of faces without and with a black other side. Texels come when they are decoded. */
@@ -253,6 +269,7 @@ class Picture {
   /** Of 'illuminance' or 'luminance' in a range; null: light. */
   set_false_colors(measure, range) {
     this.uniforms.shows.value = measure === null ? 0 : measure === 'illuminance' ? 1 : 2;
+    this.show_lamps(measure !== 'illuminance');
     if (measure === null) return;
     this.uniforms.range.value = [range.low, range.high];
     this.uniforms.logarithmic.value = range.logarithmic;
@@ -276,6 +293,7 @@ class Picture {
   light_changed() {
     this.geometry.attributes.radiance.needsUpdate = true;
     this.geometry.attributes.illuminance.needsUpdate = true;
+    if (this.lamps) this.lamps.geometry.attributes.radiance.needsUpdate = true;
     this.sky?.light_changed();
   }
 
@@ -336,6 +354,7 @@ class Picture {
     const target = new Library.WebGLRenderTarget(width, height, {type: Library.FloatType});
     const pixels = new Float32Array(4 * width * height), shown = this.uniforms.shows.value;
     const outlined = this.outlines?.visible;
+    this.show_lamps(false);
     this.uniforms.shows.value = 3;
     this.glass.visible = false;  // a veil is not to be measured
     this.show_outlines(false);
@@ -347,6 +366,7 @@ class Picture {
     this.renderer.setRenderTarget(null);
     target.dispose();
     this.uniforms.shows.value = shown;
+    this.show_lamps(shown !== 1);
     this.glass.visible = true;
     this.show_outlines(Boolean(outlined));
     return {pixels, width, height};
