@@ -36,6 +36,33 @@ bool is_even_over(const PatchMesh& mesh, const BandArray& E, int element) {
   return most > 0.0f && most - least <= DomeOnMesh::even * most;
 }
 
+/// Irradiance of all vertices, mean of the bands, over the area of the elements.
+double mean_irradiance(const PatchMesh& mesh, const BandArray& E) {
+  const Eigen::ArrayXf at = E.rowwise().mean();
+  double sum = 0.0;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    double corners = 0.0;
+    for (int c = 0; c < mesh.corner_count(e); ++c) corners += double{at[mesh.corners[e][c]]};
+    sum += mesh.element_area[e] * corners / mesh.corner_count(e);
+  }
+  return sum;
+}
+
+/// Factor of the relative error of the dome's light since the solve: errors are relative to the
+/// mean irradiance, of which the dome may now be more or less.
+float growth_of_error(const PatchMesh& mesh, const RadiositySolution& solution, int dome) {
+  if (solution.channels.empty()) return 1.0f;
+  BandArray solved = BandArray::Zero(solution.direct_irradiance.rows(), solution.bands.count());
+  for (const LightChannel& channel : solution.channels) {
+    solved += channel.direct_irradiance + channel.indirect_irradiance;
+  }
+  const double now = mean_irradiance(mesh, solution.irradiance());
+  if (!(now > 0.0)) return 1.0f;
+  const auto channel = static_cast<std::size_t>(solution.source_channel[dome]);
+  const double of_dome = double{solution.channels[channel].scale.mean()};
+  return static_cast<float>(of_dome * mean_irradiance(mesh, solved) / now);
+}
+
 }  // namespace
 
 DomeOnMesh dome_on_mesh(const PatchMesh& mesh, const DirectLight& direct_light,
@@ -43,9 +70,10 @@ DomeOnMesh dome_on_mesh(const PatchMesh& mesh, const DirectLight& direct_light,
   if (solution.interpolation_error.size() != mesh.element_count()) return {};
   DomeOnMesh dome{.irradiance = irradiance_of_dome(mesh, direct_light, solution)};
   if (dome.irradiance.size() == 0) return {};
+  const float growth = growth_of_error(mesh, solution, direct_light.dome()->number);
   dome.fine.resize(static_cast<std::size_t>(mesh.element_count()));
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const float error = solution.interpolation_error[e];
+    const float error = growth * solution.interpolation_error[e];
     const bool is_fine =
         error <= DomeOnMesh::small_error ||
         (error <= DomeOnMesh::most_error && is_even_over(mesh, dome.irradiance, e));

@@ -16,8 +16,8 @@ struct DomeOnMesh {
   /// Per element, 1 where interpolation is as good as shadow rays: where the estimated error of
   /// interpolated light is at most `small_error`. Up to `most_error` where the dome's light reaches
   /// the corners and hardly differs between them, since the error is then mostly one of other
-  /// light. The estimates are those of the light as solved, also where lamps have been dimmed
-  /// since.
+  /// light. The estimates are those of the light as solved. After relight() they are taken as
+  /// errors of the dome's light alone, relative to the mean irradiance as relit.
   std::vector<char> fine{};
 
   /// Relative RMS error, about the noise of the shadow rays of a pixel.

@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numbers>
 
 #include "radiosity/solution/relight.h"
 #include "radiosity/solve.h"
+#include "raytrace/dome_on_mesh.h"
 #include "raytrace/render.h"
 #include "tests/raytrace/lit_scene.h"
 
@@ -179,6 +182,31 @@ TEST(DaylightPictures, ASkyThatIsSwitchedOffLeavesTheLamp) {
   const Image direct = apart.picture(Pass::direct), automatic = apart.picture(Pass::automatic);
   // Nothing is left that the two passes compute in different ways.
   EXPECT_TRUE((automatic.radiance == direct.radiance).all());
+}
+
+// Errors are relative to the mean irradiance. Of light that is dimmed as a whole they stay; where
+// the lamp is off, the sky's error is a greater share of what is left, and where the sky is dim, a
+// smaller one.
+TEST(DaylightPictures, ErrorsOfTheSkyFollowTheLightAsRelit) {
+  const Solved apart(true);
+  const auto sky = static_cast<std::size_t>(find_channel(apart.solved.solution, "sky"));
+  const auto fine = [&](float of_sky, float of_lamp) {
+    SolvedScene relit = apart.solved;
+    std::vector<Spectrum> scales = effective_scales(relit.solution);
+    for (std::size_t c = 0; c < scales.size(); ++c) {
+      scales[c] = constant_spectrum(relit.solution.bands, c == sky ? of_sky : of_lamp);
+    }
+    relight(relit, scales);
+    // As if the mesh had been made coarser: errors about the limit.
+    relit.solution.interpolation_error *= 4.0f;
+    return std::ranges::count(
+        dome_on_mesh(relit.mesh, DirectLight(apart.scene, relit.mesh), relit.solution).fine, 1);
+  };
+  const auto as_solved = fine(1.0f, 1.0f);
+  EXPECT_GT(as_solved, 0);
+  EXPECT_LE(std::abs(fine(0.5f, 0.5f) - as_solved), as_solved / 100) << "roundings at the limit";
+  EXPECT_LT(fine(1.0f, 0.0f), as_solved);
+  EXPECT_GE(fine(0.1f, 1.0f), as_solved);
 }
 
 }  // namespace

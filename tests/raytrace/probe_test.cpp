@@ -2,10 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "scene/errors.h"
+#include "scene/io/read_scene.h"
 #include "tests/raytrace/lit_scene.h"
 #include "tests/temporary_folder.h"
 
@@ -150,6 +153,60 @@ TEST(ProbeIrradiance, BelowAStackOfTwoFloorsSeesNeither) {
                       .build());
   const BandArray E = gathered(lit, {{{0.1, 0.2, 0}, up}}, 1024);
   EXPECT_NEAR(E(0, 0), pi_f, 1e-3 * pi_f);  // the lamp fills the hemisphere to (1/100)^2
+}
+
+/// Illuminance at a point of the floor of a scene file, lx.
+double lux_at(const std::string& text, const Eigen::Vector3d& position) {
+  const TemporaryFolder folder;
+  const Scene scene = read_scene(folder.write("scene.toml", text));
+  const SolvedScene solved = solve_scene(scene, options_for_probes());
+  const ElementCaster caster(solved.mesh);
+  const DirectLight direct_light(scene, solved.mesh);
+  const std::array<Probe, 1> probe{Probe{position, up}};
+  const BandArray E =
+      probe_irradiance(scene, caster, direct_light, solved.solution, probe, {.rays = 64});
+  return luminous(scene.bands, E.row(0).transpose());
+}
+
+/// E under the middle of a square panel of even luminance L, side a and height h:
+/// 4 L (s / r) atan(s / r) with s = a / 2 and r^2 = s^2 + h^2. In a closed room that emits M
+/// everywhere, E = M / (1 - rho). Direct light is a closed form, and the room's light is the same
+/// in every direction; what remains is rounding to float.
+TEST(ProbeIrradiance, LightGivenAsPeopleSeeItIsLux) {
+  const std::string panel = R"(
+[materials.dark]
+[materials.panel]
+)";
+  const std::string geometry = R"(
+[[surfaces]]
+material = "panel"
+polygon = [[-0.5, -0.5, 2], [-0.5, 0.5, 2], [0.5, 0.5, 2], [0.5, -0.5, 2]]
+[[surfaces]]
+material = "dark"
+polygon = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+)";
+  const double r = std::sqrt(0.25 + 4.0), of_unit = 4.0 * (0.5 / r) * std::atan(0.5 / r);
+  for (const std::string bands :
+       {"", "[bands]\nlumens_per_watt = 179\n", "[bands]\nkind = \"spectral\"\ncount = 5\n"}) {
+    const std::string head = bands + panel;
+    const double under_1000 = lux_at(head + "luminance = 1000\n" + geometry, {0, 0, 0});
+    EXPECT_NEAR(under_1000, 1000.0 * of_unit, 1e-4 * under_1000) << bands;
+    // An area of 1 m^2 that emits pi lm has L = 1.
+    const std::string pi_lumens = std::to_string(std::numbers::pi);
+    for (const std::string key : {"lumens", "luminous_exitance"}) {
+      const double lux = lux_at(head + key + " = " + pi_lumens + "\n" + geometry, {0, 0, 0});
+      EXPECT_NEAR(lux, of_unit, 1e-4 * of_unit) << key;
+    }
+    const std::string closed = R"(
+[materials.wall]
+reflectance = 0.5
+luminous_exitance = 100
+[[surfaces]]
+material = "wall"
+box = { min = [0, 0, 0], max = [2, 2, 2], inward = true }
+)";
+    EXPECT_NEAR(lux_at(bands + closed, {0.7, 0.4, 0}), 200.0, 0.02) << bands;
+  }
 }
 
 }  // namespace
