@@ -136,7 +136,7 @@ Json channels_json(const RadiositySolution& solution) {
     if (solution.relative_units) {
       json["power"] = watts;
     } else {
-      json["watts"] = watts;
+      json["watts_radiated"] = watts;
       json["lumens"] = luminous(solution.bands, flux);
     }
     json["scale"] = std::vector<float>(channel.scale.begin(), channel.scale.end());

@@ -59,7 +59,7 @@ Json emitters_json(const Scene& scene) {
     if (scene.relative_units) {
       emitter["power"] = area * exitance;
     } else {
-      emitter["watts"] = area * exitance;
+      emitter["watts_radiated"] = area * exitance;
       emitter["lumens"] = area * luminous(scene.bands, material.emission);
     }
     emitters.push_back(std::move(emitter));
@@ -102,10 +102,13 @@ Json lamps_json(const Scene& scene) {
     if (!lamp.opening.is_point()) {
       json["opening"] = {lamp.opening.along_c0, lamp.opening.along_c90};
     }
+    if (lamp.body.is_known()) {
+      json["body"] = {lamp.body.along_c0, lamp.body.along_c90, lamp.body.height};
+    }
     if (scene.relative_units) {
       json["power"] = flux.cast<double>().sum();
     } else {
-      json["watts"] = flux.cast<double>().sum();
+      json["watts_radiated"] = flux.cast<double>().sum();
       json["lumens"] = luminous(scene.bands, flux);
     }
     lamps.push_back(std::move(json));
@@ -222,6 +225,12 @@ Json luminaire_json(const LuminaireFile& luminaire) {
     facts["opening"] = {{"along_c0", opening.along_c0},
                         {"along_c90", opening.along_c90},
                         {"is", opening.is_round ? "round" : "rectangle"}};
+  }
+  if (const LampBody& body = luminaire.body; body.is_known()) {
+    facts["body"] = {{"along_c0", body.along_c0},
+                     {"along_c90", body.along_c90},
+                     {"height", body.height},
+                     {"is", body.is_round ? "cylinder" : "box"}};
   }
   if (luminaire.is_radiometric) {
     facts["watts_radiated"] = luminaire.flux();

@@ -66,9 +66,9 @@ std::string channel_text(const Json& channels) {
   for (const Json& channel : channels) {
     const auto scale = channel["scale"].get<std::vector<double>>();
     const bool is_even = std::ranges::all_of(scale, [&](double s) { return s == scale[0]; });
-    const bool is_in_watts = channel.contains("watts");
+    const bool is_in_watts = channel.contains("watts_radiated");
     std::string part = fmt::format("{} {:.4g}{}", channel["name"].get<std::string>(),
-                                   channel[is_in_watts ? "watts" : "power"].get<double>(),
+                                   channel[is_in_watts ? "watts_radiated" : "power"].get<double>(),
                                    is_in_watts ? " W" : "");
     if (!is_even) part += fmt::format(" (scale {:.3g})", fmt::join(scale, " "));
     if (is_even && scale[0] != 1.0) part += fmt::format(" (scale {:.3g})", scale[0]);

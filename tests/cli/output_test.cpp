@@ -162,7 +162,7 @@ TEST_F(Output, ProbeSolvesWhatItHasNoSolutionOf) {
 TEST_F(Output, InfoTellsPowerInWattsAndLumens) {
   const auto json = run_json({"info", "room.toml"});
   ASSERT_EQ(json["emitters"].size(), 1u);
-  EXPECT_NEAR(json["emitters"][0]["watts"].get<double>(), 30.0, 1e-4);
+  EXPECT_NEAR(json["emitters"][0]["watts_radiated"].get<double>(), 30.0, 1e-4);
   // Rec. 709 luminance of (12, 10, 8) W at 683 lm/W.
   const double lumens = 683.0 * (0.2126 * 12 + 0.7152 * 10 + 0.0722 * 8);
   EXPECT_NEAR(json["emitters"][0]["lumens"].get<double>(), lumens, 1e-3 * lumens);
@@ -177,7 +177,7 @@ TEST_F(Output, InfoCallsNothingLuxWhereTheFileNamesNoUnit) {
   EXPECT_EQ(json["light"], "relative");
   ASSERT_EQ(json["emitters"].size(), 1u);
   const auto& lamp = json["emitters"][0];
-  EXPECT_FALSE(lamp.contains("lumens") || lamp.contains("watts"));
+  EXPECT_FALSE(lamp.contains("lumens") || lamp.contains("watts_radiated"));
   EXPECT_NEAR(lamp["area"].get<double>(), 6.0, 1e-12);
   EXPECT_NEAR(lamp["power"].get<double>(), 6.0 * 6.0 * 3.14159265, 1e-4);  // float exitance
   EXPECT_EQ(json["quality"]["triangles"], 12);

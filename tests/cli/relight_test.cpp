@@ -83,13 +83,13 @@ TEST_F(RelightCommand, InfoListsChannelsWithTheirFluxAndScale) {
   // Half of 690 W/m2 (sum of the bands) on 0.04 m2. Exitances, scales and colours are floats with a
   // relative rounding error of 6e-8; a few of them are multiplied and added.
   constexpr double rounding = 1e-6;
-  EXPECT_NEAR(desk["watts"].get<double>(), 13.8, rounding * 13.8);
+  EXPECT_NEAR(desk["watts_radiated"].get<double>(), 13.8, rounding * 13.8);
   // A colour keeps the lumens and changes the watts.
   EXPECT_NEAR(ceiling["lumens"].get<double>() / before["channels"][1]["lumens"].get<double>(), 1.0,
               rounding);
-  EXPECT_GT(std::abs(ceiling["watts"].get<double>() - 30.0), 1.0);
+  EXPECT_GT(std::abs(ceiling["watts_radiated"].get<double>() - 30.0), 1.0);
   EXPECT_NEAR(after["energy"]["emitted"].get<double>(),
-              desk["watts"].get<double>() + ceiling["watts"].get<double>(), rounding * 40.0);
+              desk["watts_radiated"].get<double>() + ceiling["watts"].get<double>(), rounding * 40.0);
   EXPECT_EQ(before["scene_hash"], after["scene_hash"]);
 }
 
