@@ -15,6 +15,7 @@
 #include "radiosity/refine/illuminance_bound.h"
 #include "raytrace/display.h"
 #include "scene/errors.h"
+#include "scene/io/numbered_names.h"
 #include "scene/rotation_between.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_channels.h"
@@ -304,7 +305,9 @@ BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double expo
   move_apart(solved.mesh, use, model);
   model.channels = bake_channels(solved, scene.materials, model.mesh_vertex);
   model.sky = bake_sky(solved, scene);
-  for (const Lamp& lamp : scene.lamps) model.lamp_names.push_back(lamp.name);
+  NumberedNames names_in_use;  // programs join objects of one name
+  for (const Surface& surface : scene.surfaces) names_in_use.unique(surface.name);
+  for (const Lamp& lamp : scene.lamps) model.lamp_names.push_back(names_in_use.unique(lamp.name));
   model.lamp_faces = bake_lamps(solved, scene.materials, DrawnLamps(scene, caster));
   const Eigen::Vector3d up_axis = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
   model.to_y_up = rotation_to_y_up(up_axis);

@@ -106,7 +106,8 @@ struct BakedModel {
 
   std::vector<BakedChannel> channels{};  ///< the light above by channel; empty: not separated
 
-  std::vector<std::string> lamp_names{};    ///< of the scene's lamps
+  /// Of the scene's lamps; numbered where another lamp or a surface has that name.
+  std::vector<std::string> lamp_names{};
   std::vector<BakedLampFace> lamp_faces{};  ///< in the order of lamps
 
   // Per face.
