@@ -89,7 +89,7 @@ TEST_F(RelightCommand, InfoListsChannelsWithTheirFluxAndScale) {
               rounding);
   EXPECT_GT(std::abs(ceiling["watts_radiated"].get<double>() - 30.0), 1.0);
   EXPECT_NEAR(after["energy"]["emitted"].get<double>(),
-              desk["watts_radiated"].get<double>() + ceiling["watts"].get<double>(),
+              desk["watts_radiated"].get<double>() + ceiling["watts_radiated"].get<double>(),
               rounding * 40.0);
   EXPECT_EQ(before["scene_hash"], after["scene_hash"]);
 }
