@@ -4,14 +4,15 @@
   PYTHON bench/real_rooms.py LIGHTWELL FOLDER SIZE SAMPLES SCENE.xml... [-- OPTION...]
 
 PYTHON is a Python 3.11 with Mitsuba 3 and numpy (PyPI: mitsuba, numpy). LIGHTWELL is the program; `OPTION...` go to `lightwell run`. FOLDER
-gets copies of the scenes, pictures and reports. SIZE is WxH; the scene's camera keeps its field of view across. Plastics are read as matt in
-both programs, since Lightwell reads them so: their diffuse reflectance stays, their gloss goes. The references are two pictures of SAMPLES
-paths a pixel each.
+gets copies of the scenes, pictures and reports. SIZE is WxH; the scene's camera keeps its field of view across. The references are two
+pictures of SAMPLES paths a pixel each. With `--matt` before LIGHTWELL plastics are read as matt in both programs: their diffuse reflectance
+stays, their gloss goes. (Mitsuba's rough plastics lose some percent of the light, Lightwell's none.)
 
 Errors are those of means over squares of 8 x 8 pixels, luminance, relative to the mean of the references: sqrt(mean (P - A)(P - B)), which the
 noise of the references A and B does not raise; and the median of |P / reference - 1|. Squares above eight times the median of the
 reference are left out: they show lamps. Mitsuba's own error is sqrt(mean (A - B)^2 / 2). `equal` is the processor time of Mitsuba to
-Lightwell's error over Lightwell's: a path tracer's error falls as 1 / sqrt(time).
+Lightwell's error over Lightwell's: a path tracer's error falls as 1 / sqrt(time). `its own picture` compares with TungstenRender.exr, if the
+scene's folder has one: bias and median of means over squares of a 32nd of the width.
 """
 import json
 import pathlib
@@ -23,8 +24,8 @@ import sys
 import numpy as np
 
 
-def matt_copy(scene, folder):
-    """The scene with diffuse materials in place of plastics, beside links to its other files."""
+def readable_copy(scene, folder, is_matt):
+    """The scene as both programs read it, with diffuse materials in place of plastics if `is_matt`, beside links to its other files."""
     folder.mkdir(parents=True, exist_ok=True)
     for file in scene.parent.iterdir():
         link = folder / file.name
@@ -33,7 +34,7 @@ def matt_copy(scene, folder):
     lines, in_plastic = [], False
     of_gloss = re.compile(r'name="(alpha|distribution|nonlinear|(int|ext)_?ior|specular_?reflectance)"', re.IGNORECASE)
     for line in scene.read_text().splitlines():
-        if "<bsdf" in line:
+        if "<bsdf" in line and is_matt:
             in_plastic = re.search(r'type="(rough)?plastic"', line) is not None
         if in_plastic and of_gloss.search(line):
             continue
@@ -74,6 +75,24 @@ def luminance_of_squares(picture):
     return squares @ np.array([0.2126, 0.7152, 0.0722])
 
 
+def beside_its_own(mi, picture, file):
+    """Bias and median of a picture beside the reference that came with the scene, as text."""
+    if not file.exists():
+        return "-"
+    reference = np.array(mi.Bitmap(str(file)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32), dtype=np.float64)
+    columns = 32
+
+    def squares(of):
+        side = of.shape[1] // columns
+        rows = of.shape[0] // side
+        return of[:rows * side, :columns * side].reshape(rows, side, columns, side, 3).mean((1, 3, 4))
+
+    ours, theirs = squares(picture), squares(reference)
+    rows = min(len(ours), len(theirs))
+    ours, theirs = ours[:rows], theirs[:rows]
+    return f"{100.0 * (ours.mean() / theirs.mean() - 1.0):+.1f} %, {100.0 * np.median(np.abs(ours / theirs - 1.0)):.1f} %"
+
+
 def lightwell_picture(mi, program, file, folder, size, options):
     """The picture of the first camera, processor seconds, and the report."""
     start = seconds(resource.RUSAGE_CHILDREN)
@@ -85,6 +104,8 @@ def lightwell_picture(mi, program, file, folder, size, options):
 
 
 def main(arguments):
+    is_matt = arguments[:1] == ["--matt"]
+    arguments = arguments[1:] if is_matt else arguments
     if len(arguments) < 5:
         sys.exit(__doc__)
     options = arguments[arguments.index("--") + 1:] if "--" in arguments else []
@@ -92,12 +113,12 @@ def main(arguments):
     import mitsuba as mi
     mi.set_variant("scalar_rgb")
     width, height = (int(n) for n in size.split("x"))
-    print("| scene | CPU s | MB | elements | bias | error | median | Mitsuba: CPU s | error | equal |")
-    print("|---|---|---|---|---|---|---|---|---|---|")
+    print("| scene | CPU s | MB | elements | bias | error | median | Mitsuba: CPU s | error | equal | its own picture |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|")
     for scene in (pathlib.Path(s) for s in scenes):
         name = scene.parent.name
         home = pathlib.Path(folder) / name
-        file = matt_copy(scene, home / "scene")
+        file = readable_copy(scene, home / "scene", is_matt)
         ours, spent, report = lightwell_picture(mi, program, file, home / "lightwell", size, options)
         pairs = [mitsuba_picture(mi, file, width, height, int(samples), seed) for seed in (1, 2)]
         a, b = (luminance_of_squares(picture) for picture, _ in pairs)
@@ -111,7 +132,8 @@ def main(arguments):
         equal = their_seconds * (theirs / max(error, 1e-12)) ** 2 / spent
         print(f"| {name} | {spent:.0f} | {report['peak_memory_mb']:.0f} | {report['elements']} | "
               f"{100.0 * (p[shown].mean() / mean - 1.0):+.1f} % | {100.0 * error:.1f} % | {100.0 * median:.1f} % | "
-              f"{their_seconds:.0f} | {100.0 * theirs:.1f} % | {equal:.2g} |", flush=True)
+              f"{their_seconds:.0f} | {100.0 * theirs:.1f} % | {equal:.2g} | "
+              f"{beside_its_own(mi, ours, scene.parent / 'TungstenRender.exr')} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include "scene/optics.h"
 #include "scene/sampling.h"
@@ -42,24 +45,42 @@ Material lone_coat(const Material& material) {
   return coat;
 }
 
+// The bases that were made before, by index and roughness: a solve asks for each of them hundreds of
+// times, and the table of a rough coat takes milliseconds.
+std::optional<CoatedBase> known_base(const std::pair<float, float>& coat,
+                                     const CoatedBase* made = nullptr) {
+  static std::mutex mutex;
+  static std::map<std::pair<float, float>, CoatedBase> known;
+  const std::lock_guard lock(mutex);
+  if (made) known.emplace(coat, *made);
+  const auto found = known.find(coat);
+  return found == known.end() ? std::nullopt : std::optional(found->second);
+}
+
 }  // namespace
 
 CoatedBase::CoatedBase(const Material& material) {
   if (!material.coat) throw std::invalid_argument("a base needs a coat");
+  const std::pair key(material.coat->index_of_refraction, material.specular_roughness);
+  if (const auto known = known_base(key)) {
+    *this = *known;
+    return;
+  }
   index_ = double{material.coat->index_of_refraction};
   if (!(material.specular_roughness > 0.0f)) {
     mean_ = diffuse_fresnel(index_);
-    return;
+  } else {
+    const Material coat = lone_coat(material);
+    std::array<float, steps_> rough{};
+    for (std::size_t i = 0; i < steps_; ++i) {
+      const double cosine = (static_cast<double>(i) + 0.5) / steps_;
+      const double A = mirrored_by_lobe(coat, cosine, i);
+      rough[i] = static_cast<float>(A);
+      mean_ += 2.0 * cosine * A / steps_;
+    }
+    rough_ = rough;
   }
-  const Material coat = lone_coat(material);
-  std::array<float, steps_> rough{};
-  for (std::size_t i = 0; i < steps_; ++i) {
-    const double cosine = (static_cast<double>(i) + 0.5) / steps_;
-    const double A = mirrored_by_lobe(coat, cosine, i);
-    rough[i] = static_cast<float>(A);
-    mean_ += 2.0 * cosine * A / steps_;
-  }
-  rough_ = rough;
+  known_base(key, this);
 }
 
 double CoatedBase::mirrored(double cosine) const {

@@ -152,6 +152,7 @@ void check_coat(const Scene& scene, const Material& m) {
 void check_material(const Scene& scene, const Material& m) {
   check_share(scene, m, "reflectance", m.reflectance);
   check_share(scene, m, "specular reflectance", m.specular);
+  check_roughness(scene, m, m.specular_roughness);
   check_coat(scene, m);
   constexpr float rounding = 1e-5f;  // decimals of a file that should add up to 1
   const Spectrum mirrored = mean_mirrored(m);
@@ -165,7 +166,6 @@ void check_material(const Scene& scene, const Material& m) {
                m.name, m.reflectance[k], mirrored[k], sum, scene.bands.names[k]));
     }
   }
-  check_roughness(scene, m, m.specular_roughness);
   if (m.dielectric) {
     check_dielectric(scene, m, *m.dielectric);
     if ((m.reflectance > 0.0f).any() || (m.specular > 0.0f).any()) {

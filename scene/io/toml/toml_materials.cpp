@@ -367,9 +367,10 @@ Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands) {
 
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures) {
-  const TomlTable table = value.table(
-      {"reflectance", "specular", "roughness", "glass", "sides", "radiance", "exitance", "power",
-       "luminance", "luminous_exitance", "lumens", "colour", "watts", "emits", "texture", "mask", "coat"});
+  const TomlTable table =
+      value.table({"reflectance", "specular", "roughness", "glass", "sides", "radiance", "exitance",
+                   "power", "luminance", "luminous_exitance", "lumens", "colour", "watts", "emits",
+                   "texture", "mask", "coat"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
