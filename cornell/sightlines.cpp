@@ -33,7 +33,7 @@ void Sightlines::follow(const Ray& ray, double weight, int bounces, double least
   const Surface& surface = scene_.surfaces[at.surface];
   const Material& material = scene_.materials[surface.material];
   const Eigen::Vector3d position = ray.origin + hit.t * ray.direction;
-  if (!material.is_specular()) {
+  if (!material.is_specular() || material.coat) {
     show({at.surface, hit.facet, position, weight, bounces});
     return;
   }

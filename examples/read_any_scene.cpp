@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "scene/coat.h"
 #include "scene/io/read_scene.h"
 
 using namespace lightwell;
@@ -15,7 +16,7 @@ int main(int argc, char** argv) try {
 
   bool conserves_energy = true;
   for (const Material& material : scene.materials) {
-    const Spectrum reflected = material.reflectance + material.specular;  // diffuse and mirrored
+    const Spectrum reflected = material.reflectance + mean_mirrored(material);
     std::printf("material %-16s reflects", material.name.c_str());
     for (const float rho : reflected) std::printf(" %.3f", rho);
     std::printf("%s\n", material.dielectric ? ", clear" : "");

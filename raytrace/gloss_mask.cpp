@@ -21,9 +21,17 @@ GlossMask::GlossMask(const CameraRays& rays, const RayTree& tree, int width, int
   gloss_.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows));
   for (int y = first; y < end; ++y) {
     for (int x = 0; x < width; ++x) {
-      const auto top = static_cast<std::size_t>((y - first) * columns + x);
-      const auto bottom = top + static_cast<std::size_t>(columns);
-      const bool any = corners[top] || corners[top + 1] || corners[bottom] || corners[bottom + 1];
+      // A corner at the end of a panel lies in the next one, but this pixel's ray does not.
+      const int panel = rays.panel_at(x + 0.5, y + 0.5);
+      const auto is_glossy = [&](int column, int row) {
+        if (rays.panel_at(column, row) == panel) {
+          return corners[static_cast<std::size_t>((row - first) * columns + column)] != 0;
+        }
+        const auto ray = rays.ray_at(column, row, panel);
+        return ray && tree.sees_gloss(*ray);
+      };
+      const bool any =
+          is_glossy(x, y) || is_glossy(x + 1, y) || is_glossy(x, y + 1) || is_glossy(x + 1, y + 1);
       gloss_[slot(x, y)] = any ? 1 : 0;
     }
   }

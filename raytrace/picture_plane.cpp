@@ -274,7 +274,7 @@ double PicturePlane::solid_angle_density(const Eigen::Vector2d& place) const {
       break;
   }
   const double theta = place.norm();
-  return theta > 0.0 ? std::sin(theta) / theta : 1.0;
+  return theta > 0.0 ? std::max(0.0, std::sin(theta) / theta) : 1.0;
 }
 
 }  // namespace lightwell

@@ -6,7 +6,6 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
-#include <utility>
 
 #include "radiosity/gather/final_gather.h"
 #include "scene/optics.h"
@@ -359,14 +358,6 @@ bool RayTree::goes_on_at_coat(const SurfaceInteraction& interaction, Branch& bra
   return true;
 }
 
-// Light of lamps that a branch finds by chance, behind a rough coat and another surface.
-Spectrum RayTree::limited(const Branch& branch, Spectrum seen, const TreeState& state) {
-  if (branch.behind_coat < 2 || branch.is_sharp) return seen;
-  const float found = seen.mean();
-  if (found > state.most_by_chance) seen *= state.most_by_chance / found;
-  return seen;
-}
-
 // A number in [0,1) of a branch, `purpose` 0 or 1.
 double RayTree::roulette(const Branch& branch, int purpose, const TreeState& state) {
   return random_uniform(random_key(state.key, branch.node, RandomPurpose::ray_tree_roulette,
@@ -486,9 +477,11 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   }
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
   if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, state);
-  Spectrum seen = branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
-  if (direct_light_.owns(hit.facet, hit.from_back)) seen = limited(branch, std::move(seen), state);
-  state.result.radiance += seen;
+  if (is_by_chance(branch, state) && direct_light_.owns(hit.facet, hit.from_back)) {
+    *state.by_chance += branch.weight * one_over_pi * M;
+    M.setZero();
+  }
+  state.result.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
   if (with_layers_) note_layers(branch, hit, M, rho, E, state);
 }
 

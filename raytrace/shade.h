@@ -3,7 +3,6 @@
 #include <array>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -65,7 +64,8 @@ struct SpecularSegment {
 /// of the material:
 /// - diffuse: L = (M + rho E) / pi;
 /// - mirror: specular * L(reflected), with a coat times Fresnel's reflectance;
-/// - base under a coat: L = M / pi + rho g(out) / pi int L(in) g(in) cos, see CoatedBase;
+/// - base under a coat: L = (M + rho g(out) E) / pi, with each lamp's part of E times g(in), see
+///   CoatedBase; light of sky and surfaces counts as even;
 /// - clear dielectric: R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R;
 /// - rough mirror or dielectric: the mean over some directions of its lobe, see sample_scattering.
 ///
@@ -93,8 +93,9 @@ struct SpecularSegment {
 /// What a coat shows of another coat's reflection is less than a hundredth of the light far from
 /// grazing; such branches end by Russian roulette.
 ///
-/// A lamp by way of a rough coat and further surfaces is found by chance only, as a few bright
-/// pixels. One sample of the coat's lobe adds at most twice the light of the coated surface by it.
+/// A lamp by way of a rough coat and further surfaces is found by chance only, which would show as
+/// a few bright pixels. The light of lamps in one sample of the coat's lobe is limited to four
+/// times the mean of the other samples, and twice what the lobe finds besides.
 ///
 /// Behind a coat that mirrors less than a quarter of the light, or blurs it, diffuse surfaces show
 /// the solution's irradiance: shadow rays there would cost more than those of the coated surface.
@@ -207,8 +208,9 @@ class RayTree {
     const ChainTurns* turns = nullptr;  ///< the one path to follow; null: all
     std::optional<int> number{};  ///< number among many samples of one key; none: a sample alone
     std::uint64_t gloss_key = 0;  ///< the same for all samples of one key
-    /// Most radiance, mean of the bands, that one sample of a coat's lobe may find by chance.
-    float most_by_chance = std::numeric_limits<float>::infinity();
+    /// Gets the light of lamps that a sample of a coat's lobe finds by chance; null: such light
+    /// counts as all other.
+    Spectrum* by_chance = nullptr;
   };
 
   RaySample outline(const Ray& ray) const;
@@ -237,7 +239,13 @@ class RayTree {
   const RoughLobe& lobe(int material, bool from_back) const;
   bool goes_on_at_coat(const SurfaceInteraction& interaction, Branch& branch,
                        const TreeState& state) const;
-  static Spectrum limited(const Branch& branch, Spectrum seen, const TreeState& state);
+  static bool is_by_chance(const Branch& branch, const TreeState& state) {
+    constexpr int straight_from_the_coat = 1;
+    return state.by_chance && branch.behind_coat > straight_from_the_coat && !branch.is_sharp;
+  }
+  void add_reflected(const Branch& branch, const Spectrum& seen, TreeState& state) const;
+  void add_found_by_chance(std::vector<Spectrum>& found, const Spectrum& other,
+                           TreeState& state) const;
   void grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
             const ElementHit& hit, const ShadingPoint& at, TreeState& state) const;
   static double roulette(const Branch& branch, int purpose, const TreeState& state);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <utility>
+#include <vector>
 
 #include "raytrace/shade.h"
 #include "scene/optics.h"
@@ -46,12 +46,10 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
   if (!state.shades) return;
   const bool is_first = branch.is_sharp && !state.number && !state.lamps_alone;
   const int count = is_first ? lobe_samples(interaction, branch, state) : 1;
-  const float before = state.most_by_chance;
-  if (is_coat) {
-    constexpr float times = 2.0f;
-    state.most_by_chance =
-        std::min(before, times * state.result.radiance.mean() / static_cast<float>(count));
-  }
+  // Samples of a coat that lies behind another one belong to a sample of that.
+  const bool collects = is_coat && count > 1 && !state.by_chance;
+  std::vector<Spectrum> found;
+  const Spectrum before = collects ? state.result.radiance : Spectrum();
   const int first = state.number.value_or(0);
   const std::uint64_t key = random_key(state.gloss_key, branch.node, RandomPurpose::gloss,
                                        static_cast<std::uint64_t>(first / gloss_point_count));
@@ -88,9 +86,47 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
     Branch spread = branch;
     spread.is_sharp = false;
     spread.bright = view.is_empty() ? nullptr : &view;
+    if (collects) {
+      state.by_chance = &found.emplace_back(Spectrum::Zero(scene_.bands.count()));
+    }
     grow(spread, node, sample, hit, at, state);
+    if (collects) state.by_chance = nullptr;
   }
-  state.most_by_chance = before;
+  if (collects) add_found_by_chance(found, state.result.radiance - before, state);
+}
+
+// Adds the light of lamps that the samples of a coat's lobe found by chance, each limited by what
+// the others found. `other` is the light that the whole lobe found besides.
+void RayTree::add_found_by_chance(std::vector<Spectrum>& found, const Spectrum& other,
+                                  TreeState& state) const {
+  constexpr float of_the_others = 4.0f, of_other_light = 2.0f;
+  float all = 0.0f;
+  for (const Spectrum& light : found) all += light.mean();
+  if (!(all > 0.0f)) return;
+  Spectrum sum = Spectrum::Zero(other.size());
+  for (const Spectrum& light : found) {
+    const float own = light.mean();
+    const float mean_of_others = (all - own) / static_cast<float>(found.size() - 1);
+    const float most = of_the_others * mean_of_others + of_other_light * other.mean();
+    sum += own > most ? Spectrum(light * (most / own)) : light;
+  }
+  state.result.radiance += sum;
+  if (with_layers_) {
+    state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
+        linear_rgb(scene_.bands, sum);
+  }
+}
+
+// Adds light of a lamp off a rough surface.
+void RayTree::add_reflected(const Branch& branch, const Spectrum& seen, TreeState& state) const {
+  if (is_by_chance(branch, state)) {
+    *state.by_chance += seen;
+    return;
+  }
+  state.result.radiance += seen;
+  if (!with_layers_) return;
+  state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
+      linear_rgb(scene_.bands, seen);
 }
 
 const RoughLobe& RayTree::lobe(int material, bool from_back) const {
@@ -128,12 +164,7 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
     media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, facets_[lamp->emitter->facet].material, false, lamp->distance);
   }
-  seen = limited(branch, std::move(seen), state);
-  state.result.radiance += seen;
-  if (with_layers_) {
-    state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
-        linear_rgb(scene_.bands, seen);
-  }
+  add_reflected(branch, seen, state);
 }
 
 // Adds light of a source that is no surface off a rough surface. No direction of the lobe meets
@@ -179,12 +210,7 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
     media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, -1, false, source_sample.distance);
   }
-  seen = limited(branch, std::move(seen), state);
-  state.result.radiance += seen;
-  if (with_layers_) {
-    state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
-        linear_rgb(scene_.bands, seen);
-  }
+  add_reflected(branch, seen, state);
 }
 
 // Adds light of a bright patch off a rough mirror by an aimed direction, weighted as in add_lamp().

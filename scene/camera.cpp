@@ -241,10 +241,22 @@ Camera with_projection(const Camera& camera, Projection projection) {
   return result;
 }
 
+namespace {
+
+// The whole picture that the camera's window is a part of.
+Camera without_window(const Camera& camera) {
+  Camera whole = camera;
+  whole.width = std::max(1, static_cast<int>(std::lround(camera.width / camera.window.width())));
+  whole.height = std::max(1, static_cast<int>(std::lround(camera.height / camera.window.height())));
+  whole.window = {};
+  return whole;
+}
+
+}  // namespace
+
 Camera as_perspective(const Camera& camera) {
   constexpr double widest = 90.0;
-  Camera result = with_projection(camera, Projection::perspective);
-  result.window = {};
+  Camera result = without_window(with_projection(camera, Projection::perspective));
   result.distortion = {};
   if (camera.projection != Projection::perspective) {
     result.shift.setZero();
@@ -255,9 +267,7 @@ Camera as_perspective(const Camera& camera) {
 
 Camera for_window(const Camera& camera) {
   if (camera.projection != Projection::orthographic) return as_perspective(camera);
-  Camera result = camera;
-  result.window = {};
-  return result;
+  return without_window(camera);
 }
 
 std::string loss_in_window(const Camera& camera) {

@@ -45,24 +45,40 @@ Material lone_coat(const Material& material) {
   return coat;
 }
 
-// The bases that were made before, by index and roughness: a solve asks for each of them hundreds of
-// times, and the table of a rough coat takes milliseconds.
-std::optional<CoatedBase> known_base(const std::pair<float, float>& coat,
-                                     const CoatedBase* made = nullptr) {
-  static std::mutex mutex;
-  static std::map<std::pair<float, float>, CoatedBase> known;
-  const std::lock_guard lock(mutex);
-  if (made) known.emplace(coat, *made);
-  const auto found = known.find(coat);
-  return found == known.end() ? std::nullopt : std::optional(found->second);
+// Bases by index and roughness. A solve asks for each of them hundreds of times, and the table of a
+// rough coat takes milliseconds.
+class KnownBases {
+ public:
+  using Key = std::pair<float, float>;
+  std::optional<CoatedBase> find(const Key& key) {
+    const std::lock_guard lock(mutex_);
+    const auto found = known_.find(key);
+    return found == known_.end() ? std::nullopt : std::optional(found->second);
+  }
+  void keep(const Key& key, const CoatedBase& base) {
+    const std::lock_guard lock(mutex_);
+    known_.emplace(key, base);
+  }
+
+ private:
+  std::mutex mutex_{};
+  std::map<Key, CoatedBase> known_{};
+};
+
+KnownBases& known_bases() {
+  static KnownBases known;
+  return known;
 }
 
 }  // namespace
 
 CoatedBase::CoatedBase(const Material& material) {
   if (!material.coat) throw std::invalid_argument("a base needs a coat");
-  const std::pair key(material.coat->index_of_refraction, material.specular_roughness);
-  if (const auto known = known_base(key)) {
+  const KnownBases::Key key(material.coat->index_of_refraction, material.specular_roughness);
+  if (!std::isfinite(key.first) || !std::isfinite(key.second)) {
+    throw std::invalid_argument("a coat needs a finite index and roughness");
+  }
+  if (const auto known = known_bases().find(key)) {
     *this = *known;
     return;
   }
@@ -80,7 +96,7 @@ CoatedBase::CoatedBase(const Material& material) {
     }
     rough_ = rough;
   }
-  known_base(key, this);
+  known_bases().keep(key, *this);
 }
 
 double CoatedBase::mirrored(double cosine) const {

@@ -18,7 +18,7 @@ namespace lightwell {
 /// specular-matte BRDF model"). Base and coat together reflect all light where the base is white.
 class CoatedBase {
  public:
-  /// `material` has a coat. Throws std::invalid_argument if it has none.
+  /// `material` has a coat of a finite index and roughness; std::invalid_argument otherwise.
   explicit CoatedBase(const Material& material);
 
   /// g, >= 0: light that the base gets or gives at `cosine`, [0,1], to the normal, over that at all

@@ -45,7 +45,8 @@ std::vector<BoxTree::Box> boxes_of(const std::vector<FacetPlane>& planes) {
 std::vector<double> light_key(const Surface& surface, const Material& material) {
   if (material.is_emitter() || material.dielectric || material.texture || material.mask) return {};
   std::vector<double> key{static_cast<double>(surface.motion), material.one_sided ? 1.0 : 0.0,
-                          static_cast<double>(material.specular_roughness)};
+                          static_cast<double>(material.specular_roughness),
+                          material.coat ? double{material.coat->index_of_refraction} : 0.0};
   for (const Spectrum* spectrum : {&material.reflectance, &material.specular}) {
     key.push_back(static_cast<double>(spectrum->size()));
     key.insert(key.end(), spectrum->begin(), spectrum->end());

@@ -418,24 +418,35 @@ double DirectLight::base_factor(int light, const SurfacePoint& at, const CoatedB
   return all > 0.0 ? sum / all : 1.0;
 }
 
-double DirectLight::base_gain(const SurfacePoint& at, const CoatedBase& base) const {
-  if (dome()) return 1.0;
+// Light per channel that a base gets at a point, with its factor and without, unoccluded.
+Eigen::ArrayX2d DirectLight::light_at_base(const SurfacePoint& at, const CoatedBase& base) const {
+  Eigen::ArrayX2d sum = Eigen::ArrayX2d::Zero(channel_count_, 2);
+  if (dome() && dome()->is_on()) return sum;
   constexpr int most = 64;
-  const int step = (light_count() + most - 1) / most;
+  const int step = std::max(1, (light_count() + most - 1) / most);
   const auto emitter_count = static_cast<int>(emitters_.size());
-  double sum = 0.0, all = 0.0;
   for (int i = 0; i < light_count(); i += step) {
-    const Spectrum& light =
-        i < emitter_count ? emitters_[i].exitance : free_sources_[i - emitter_count].light;
-    const double F = i < emitter_count ? unoccluded_form_factor(emitters_[i], at)
-                                       : unoccluded_kernel(free_sources_[i - emitter_count],
-                                                           at.position, at.normal);
+    const Emitter* emitter = i < emitter_count ? &emitters_[i] : nullptr;
+    const FreeSource* source = emitter ? nullptr : &free_sources_[i - emitter_count];
+    const double F = emitter ? unoccluded_form_factor(*emitter, at)
+                             : unoccluded_kernel(*source, at.position, at.normal);
+    const Spectrum& light = emitter ? emitter->exitance : source->light;
     const double E = F * static_cast<double>(light.mean());
     if (!(E > 0.0)) continue;
-    sum += E * base_factor(i, at, base);
-    all += E;
+    const int channel = emitter ? first_column(emitter->facet) / bands_ : source->channel;
+    sum.row(channel) += Eigen::Array2d(E * base_factor(i, at, base), E).transpose();
   }
-  return all > 0.0 ? sum / all : 1.0;
+  return sum;
+}
+
+double DirectLight::base_gain(const SurfacePoint& at, const CoatedBase& base) const {
+  const Eigen::Array2d all = light_at_base(at, base).colwise().sum();
+  return all[1] > 0.0 ? all[0] / all[1] : 1.0;
+}
+
+Eigen::ArrayXd DirectLight::base_gains(const SurfacePoint& at, const CoatedBase& base) const {
+  const Eigen::ArrayX2d sum = light_at_base(at, base);
+  return (sum.col(1) > 0.0).select(sum.col(0) / sum.col(1), 1.0);
 }
 
 template <class Add>

@@ -156,6 +156,8 @@ class DirectLight {
   /// of CoatedBase::factor() over emitters and lamps, by their unoccluded light. Of more than 64
   /// lights some stand for all. 1 under a sky, whose light is not known here.
   double base_gain(const SurfacePoint& at, const CoatedBase& base) const;
+  /// The same for the light of each channel.
+  Eigen::ArrayXd base_gains(const SurfacePoint& at, const CoatedBase& base) const;
 
   /// Adds the irradiance of each channel to the channel's columns of E, which has column_count()
   /// of them.
@@ -165,6 +167,7 @@ class DirectLight {
  private:
   int first_light(Lights lights) const;
   double base_factor(int light, const SurfacePoint& at, const CoatedBase& base) const;
+  Eigen::ArrayX2d light_at_base(const SurfacePoint& at, const CoatedBase& base) const;
   SkyGlow dome_glow(const ElementCaster& caster, const LightQuery& query, double full,
                     std::uint64_t key) const;
   template <class Add>

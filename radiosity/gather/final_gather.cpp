@@ -426,21 +426,25 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
 
 namespace {
 
-// Per vertex, what a coated base gets of direct light beyond its irradiance, as a share of the
-// latter; empty without coats.
-Eigen::ArrayXf direct_gains(const PatchMesh& mesh, const DirectLight& direct_light,
-                            const std::vector<int>& patch) {
+// What coated bases get of the direct light of `channels` channels beyond its irradiance, as a
+// share of the latter, vertices x channels; empty without coats.
+BandArray direct_gains(const PatchMesh& mesh, const DirectLight& direct_light,
+                       const std::vector<int>& patch, Eigen::Index channels) {
   if (!direct_light.has_coats()) return {};
-  Eigen::ArrayXf gains = Eigen::ArrayXf::Zero(mesh.vertex_count());
+  BandArray gains = BandArray::Zero(mesh.vertex_count(), channels);
   const VertexGatherPoints points(mesh);
   constexpr int grain = 256;
   parallel_for(mesh.vertex_count(), grain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
       const CoatedBase* base = direct_light.base_of(mesh.material[patch[v]]);
       if (!base) continue;
-      const GatherPoint at = points[v];
-      gains[v] = static_cast<float>(
-          direct_light.base_gain({at.position, at.normal, at.facet}, *base) - 1.0);
+      const GatherPoint point = points[v];
+      const SurfacePoint at{point.position, point.normal, point.facet};
+      if (channels == direct_light.channel_count()) {
+        gains.row(v) = (direct_light.base_gains(at, *base) - 1.0).cast<float>().transpose();
+      } else {
+        gains.row(v).setConstant(static_cast<float>(direct_light.base_gain(at, *base) - 1.0));
+      }
     }
   });
   return gains;
@@ -453,17 +457,17 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
                                const Eigen::Ref<const BandArray>& direct) {
   const std::vector<int> patch = vertex_patches(mesh);
   const BandArray rho = vertex_reflectance(mesh);
-  Eigen::ArrayXf gains;
-  if (direct.rows() > 0) gains = direct_gains(mesh, direct_light, patch);
   const Eigen::Index bands = mesh.reflectance.cols();
+  BandArray gains;
+  if (direct.rows() > 0) gains = direct_gains(mesh, direct_light, patch, direct.cols() / bands);
   BandArray B(irradiance.rows(), irradiance.cols());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int p = patch[v], facet = mesh.facet[mesh.first_element[p]];
-    const float gain = gains.size() > 0 ? gains[v] : 0.0f;
     for (Eigen::Index k = 0; k < B.cols(); k += bands) {
       B.row(v).segment(k, bands) = rho.row(v) * irradiance.row(v).segment(k, bands);
-      if (gain != 0.0f) {
-        B.row(v).segment(k, bands) += gain * rho.row(v) * direct.row(v).segment(k, bands);
+      if (gains.size() > 0 && gains(v, k / bands) != 0.0f) {
+        B.row(v).segment(k, bands) +=
+            gains(v, k / bands) * rho.row(v) * direct.row(v).segment(k, bands);
       }
     }
     if (direct_light.owns(facet, mesh.is_back[p] != 0)) continue;

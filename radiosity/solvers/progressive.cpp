@@ -14,9 +14,8 @@
 
 #include "radiosity/form_factors/ray_cast_rows.h"
 #include "radiosity/journal/journal_phase.h"
-#include "radiosity/solvers/mirrored_by_coats.h"
+#include "radiosity/solvers/mirrored_light.h"
 #include "radiosity/solvers/solve_channels.h"
-#include "scene/coat.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -84,7 +83,6 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
                                            const FreeLight& free_light)
     : scene_(scene),
       mesh_(mesh),
-      mirrored_(mean_mirrored(scene.materials)),
       rows_(std::move(rows)),
       options_(options),
       channels_(channels),
@@ -106,34 +104,22 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
   reflections_ = (1.0 / (1.0 - (reflected / mesh.area.sum()).min(most_reflected))).cast<float>();
 }
 
-// What coats mirror of the light of lamps and sky over mean_mirrored() of it, per column.
-Spectrum ProgressiveRadiosity::mirrored_by_coats(const FreeLight& free_light) const {
-  MirroredByCoats mirrored(unshot_.cols());
-  const Eigen::Index bands = mesh_.emission.cols();
-  for (int i = 0; i < mesh_.patch_count(); ++i) {
-    const auto m = static_cast<std::size_t>(mesh_.material[i]);
-    const Eigen::ArrayXd E =
-        mesh_.area[i] * free_light.irradiance.row(i).transpose().cast<double>();
-    mirrored.arrive(E, mirrored_[m].replicate(E.size() / bands, 1).cast<double>(),
-                    scene_.materials[m].coat.has_value());
-  }
-  mirrored.beyond += free_light.absorbed + free_light.escaped - free_light.emitted;
-  return mirrored.of_mean();
-}
-
 void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
   const Eigen::Index bands = mesh_.emission.cols();
-  const Spectrum of_mean = mirrored_by_coats(free_light);
+  MirroredLight mirrored(scene_, unshot_.cols());
+  for (int i = 0; mirrored.has_coats() && i < mesh_.patch_count(); ++i) {
+    mirrored.arrive(mesh_.area[i] * free_light.irradiance.row(i).transpose().cast<double>(),
+                    mesh_.material[i]);
+  }
+  mirrored.lose(free_light.absorbed + free_light.escaped - free_light.emitted);
+  mirrored.settle();
   for (int i = 0; i < mesh_.patch_count(); ++i) {
-    const auto m = static_cast<std::size_t>(mesh_.material[i]);
-    Spectrum specular = mirrored_[m].replicate(unshot_.cols() / bands, 1);
-    if (scene_.materials[m].coat) specular *= of_mean;
     for (Eigen::Index k = 0; k < unshot_.cols(); ++k) {
       const float E = free_light.irradiance(i, k), rho = mesh_.reflectance(i, k % bands);
       radiosity_(i, k) += rho * E;
       unshot_(i, k) += rho * E;
       energy_(absorbed_row, k) +=
-          mesh_.area[i] * static_cast<double>(E * (1.0f - rho - specular[k]));
+          mesh_.area[i] * double{E} * mirrored.kept(mesh_.material[i], k, rho);
     }
   }
   free_energy_ = free_energy(free_light);
@@ -248,34 +234,30 @@ int ProgressiveRadiosity::rays_of(int patch) const {
   return static_cast<int>(std::bit_floor(rays));
 }
 
-// What coats mirror of a row's light over mean_mirrored() of it, per band.
-Spectrum ProgressiveRadiosity::mirrored_by_coats(const EstimatedRow& row) const {
-  MirroredByCoats mirrored(row.absorbed.size());
-  const auto arrive = [&](int j, const Spectrum& share) {
-    const auto m = static_cast<std::size_t>(mesh_.material[j]);
-    mirrored.arrive(share.cast<double>(), mirrored_[m].cast<double>(),
-                    scene_.materials[m].coat.has_value());
-  };
+// What surfaces mirror of the light of a row, per unit of what was sent.
+MirroredLight ProgressiveRadiosity::mirrored_of(const EstimatedRow& row) const {
+  MirroredLight mirrored(scene_, mesh_.emission.cols());
+  if (!mirrored.has_coats()) return mirrored;
+  const Eigen::Index bands = mesh_.emission.cols();
   for (const auto& [j, share] : row.shares) {
-    arrive(j, Spectrum::Constant(row.absorbed.size(), share));
+    mirrored.arrive(Eigen::ArrayXd::Constant(bands, double{share}), mesh_.material[j]);
   }
   for (std::size_t s = 0; s < row.specular_patch.size(); ++s) {
-    arrive(row.specular_patch[s], row.specular_share.row(static_cast<Eigen::Index>(s)).transpose());
+    mirrored.arrive(row.specular_share.row(static_cast<Eigen::Index>(s)).transpose().cast<double>(),
+                    mesh_.material[row.specular_patch[s]]);
   }
-  mirrored.beyond += (row.specular_escaped + row.absorbed + row.cut).cast<double>() + row.escaped +
-                     row.specular - 1.0;
-  return mirrored.of_mean();
+  mirrored.lose((row.specular_escaped + row.absorbed + row.cut).cast<double>() + row.escaped +
+                row.specular - 1.0);
+  mirrored.settle();
+  return mirrored;
 }
 
 void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
   const Eigen::ArrayXd watts = mesh_.area[shot.patch] * shot.radiosity.cast<double>();
   const Eigen::Index columns = unshot_.cols(), bands = mesh_.emission.cols();
-  const Spectrum of_mean = mirrored_by_coats(row);
+  const MirroredLight mirrored = mirrored_of(row);
   // share_of(band): share of the shot light that arrives at patch j.
   const auto arrive = [&](int j, auto&& share_of) {
-    const int m = mesh_.material[j];
-    Spectrum specular = mirrored_[static_cast<std::size_t>(m)];
-    if (scene_.materials[m].coat) specular *= of_mean;
     for (Eigen::Index k = 0; k < columns; ++k) {
       const Eigen::Index band = k % bands;
       const double arriving = watts[k] * static_cast<double>(share_of(band));
@@ -283,7 +265,7 @@ void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
       const float sent_on = rho * static_cast<float>(arriving / mesh_.area[j]);
       radiosity_(j, k) += sent_on;
       unshot_(j, k) += sent_on;
-      energy_(absorbed_row, k) += arriving * static_cast<double>(1.0f - rho - specular[band]);
+      energy_(absorbed_row, k) += arriving * mirrored.kept(mesh_.material[j], band, rho);
     }
   };
   for (const auto& [j, share] : row.shares) {

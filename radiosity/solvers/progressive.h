@@ -15,6 +15,8 @@
 
 namespace lightwell {
 
+class MirroredLight;
+
 class JournalPhase;
 
 /// A shooting patch, and its number of rays where rows are sampled by rays.
@@ -109,13 +111,11 @@ class ProgressiveRadiosity {
   BandEnergy energy_by_column() const;
   std::vector<int> choose(int most) const;
   int rays_of(int patch) const;
-  Spectrum mirrored_by_coats(const EstimatedRow& row) const;
-  Spectrum mirrored_by_coats(const FreeLight& free_light) const;
+  MirroredLight mirrored_of(const EstimatedRow& row) const;
   void receive(const Shot& shot, const EstimatedRow& row);
 
   const Scene& scene_;
   const PatchMesh& mesh_;
-  std::vector<Spectrum> mirrored_;  // of each material, share of even light
   ShotRows rows_;
   ProgressiveOptions options_;
   EmitterChannels channels_;

@@ -1,8 +1,8 @@
 #include "radiosity/solvers/solve_channels.h"
-#include "radiosity/solvers/mirrored_by_coats.h"
-#include "scene/coat.h"
 
 #include <algorithm>
+
+#include "radiosity/solvers/mirrored_light.h"
 
 namespace lightwell {
 namespace {
@@ -112,47 +112,31 @@ void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors
   solution.residual = largest > 0.0 ? residual / largest : 0.0;
 }
 
-namespace {
-
-// MirroredByCoats of all light.
-Spectrum mirrored_by_coats(const Scene& scene, const PatchMesh& mesh,
-                           const FormFactors& form_factors, const BandArray& B, const BandArray& E,
-                           const FreeLight& free_light) {
-  const std::vector<Spectrum> share = mean_mirrored(scene.materials);
-  MirroredByCoats mirrored(B.cols());
-  for (int i = 0; i < mesh.patch_count(); ++i) {
-    const auto m = static_cast<std::size_t>(mesh.material[i]);
-    const Spectrum B_i = B.row(i).transpose();
-    const Spectrum lost =
-        (form_factors.absorbed_by_specular(i) + form_factors.escaped(i) - 1.0f) * B_i;
-    mirrored.beyond += mesh.area[i] * lost.cast<double>();
-    mirrored.arrive(mesh.area[i] * E.row(i).transpose().cast<double>(), share[m].cast<double>(),
-                    scene.materials[m].coat.has_value());
-  }
-  if (!free_light.empty()) {
-    mirrored.beyond += free_light.absorbed + free_light.escaped - free_light.emitted;
-  }
-  return mirrored.of_mean();
-}
-
-}  // namespace
-
 BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFactors& form_factors,
                        const BandArray& B, const FreeLight& free_light) {
   BandArray E = gather(form_factors, B);
   if (!free_light.empty()) E += free_light.irradiance;
-  BandEnergy energy = BandEnergy::Zero(4, B.cols());
-  std::vector<Spectrum> mirrored = mean_mirrored(scene.materials);
-  const Spectrum of_mean = mirrored_by_coats(scene, mesh, form_factors, B, E, free_light);
-  for (std::size_t m = 0; m < mirrored.size(); ++m) {
-    if (scene.materials[m].coat) mirrored[m] *= of_mean;
+  MirroredLight mirrored(scene, B.cols());
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    const Spectrum lost = (form_factors.absorbed_by_specular(i) + form_factors.escaped(i) - 1.0f) *
+                          B.row(i).transpose();
+    mirrored.lose(mesh.area[i] * lost.cast<double>());
+    mirrored.arrive(mesh.area[i] * E.row(i).transpose().cast<double>(), mesh.material[i]);
   }
+  if (!free_light.empty()) {
+    mirrored.lose(free_light.absorbed + free_light.escaped - free_light.emitted);
+  }
+  mirrored.settle();
+  BandEnergy energy = BandEnergy::Zero(4, B.cols());
   for (int i = 0; i < mesh.patch_count(); ++i) {
     const double A = mesh.area[i];
     const Spectrum B_i = B.row(i).transpose(), E_i = E.row(i).transpose();
     const Spectrum M_i = mesh.emission.row(i).transpose(),
                    rho = mesh.reflectance.row(i).transpose();
-    const Spectrum kept = 1.0f - rho - mirrored[static_cast<std::size_t>(mesh.material[i])];
+    Spectrum kept(B.cols());
+    for (Eigen::Index k = 0; k < kept.size(); ++k) {
+      kept[k] = static_cast<float>(mirrored.kept(mesh.material[i], k, rho[k]));
+    }
     const auto add = [&](int row, const Spectrum& per_area) {
       energy.row(row) += A * per_area.cast<double>().transpose();
     };

@@ -302,6 +302,20 @@ TEST(BuildPatches, AutomaticSizeMakesAboutTheAskedNumberOfPatches) {
   }
 }
 
+// A coat mirrors a little light beside what its diffuse base gives, so a coated room needs the
+// patches of a matt one.
+TEST(BuildPatches, CoatsLeaveTheAutomaticSizeAsItIs) {
+  Scene scene = empty_scene();
+  add_box(scene, "room", {0, 0, 0}, {4, 5, 3}, true, 1);
+  const double matt = cut_size(scene, {}).patch_size;
+  for (Material& material : scene.materials) {
+    material.coat = Coat{};
+    material.specular.setOnes();
+    material.reflectance *= 0.5f;
+  }
+  EXPECT_EQ(cut_size(scene, {}).patch_size, matt);
+}
+
 Scene moved(Scene scene, double scale, const Eigen::Matrix3d& turn, const Vector3d& shift) {
   for (Surface& surface : scene.surfaces) {
     for (Vector3d& v : std::get<PolygonMesh>(surface.shape).vertices) {

@@ -29,7 +29,7 @@ BandArray layer(const Image& image, Layer which) {
   return image.layers.values.middleCols(first - all.begin(), std::ssize(names));
 }
 
-/// A room with a lamp, a mirroring block and a glass sphere.
+/// A room with a lamp, a mirroring block, a glass sphere and a lacquered mat.
 struct Furnished : TracedScene {
   explicit Furnished(const Bands& bands)
       : TracedScene(SceneBuilder(bands)
@@ -39,6 +39,8 @@ struct Furnished : TracedScene {
                         .box({.reflectance = 0.3f, .specular = 0.4f, .one_sided = true},
                              {0.3, 0, 1.2}, {0.8, 1, 1.6}, false)
                         .sphere({.index_of_refraction = 1.5f}, {1.4, 0.4, 0.9}, 0.4)
+                        .square({.reflectance = 0.3f, .roughness = 0.2f, .coat = 1.5f},
+                                {1, 0.01, 0.6}, {0, 1, 0}, 0.5)
                         .build()) {
     set_direct([](const Eigen::Vector3d& p) { return static_cast<float>(1.0 - 0.2 * p.y()); });
     set_indirect([](const Eigen::Vector3d& p) { return static_cast<float>(0.2 + 0.1 * p.y()); });

@@ -120,6 +120,29 @@ TEST(Projections, AWindowAndASizeShowTheSame) {
   }
 }
 
+TEST(Projections, WindowsDrawTheWholePictureOfAPart) {
+  Camera part = askew(Projection::perspective, 512, 384);
+  part.window = {.left = 0.25, .top = 0.5, .right = 0.75, .bottom = 0.75};
+  set_picture_size(512, 384, part);
+  const Camera shown = for_window(part);
+  EXPECT_EQ(shown.width, 512);
+  EXPECT_EQ(shown.height, 384);
+  EXPECT_EQ(shown.window.right, 1.0);
+  EXPECT_EQ(shown.fov_degrees, part.fov_degrees);
+}
+
+// A pixel at the rim of a fisheye that sees all around has its centre beyond the circle.
+TEST(Projections, ConesAtTheRimOfAFisheyeAreFinite) {
+  Camera camera = askew(Projection::equidistant, 31, 31);
+  camera.fov_degrees = 360.0;
+  const CameraRays rays(camera);
+  for (int y = 0; y < 31; ++y) {
+    for (int x = 0; x < 31; ++x) {
+      EXPECT_TRUE(std::isfinite(rays.cone(x + 0.5, y + 0.5, 0).spread)) << x << ", " << y;
+    }
+  }
+}
+
 TEST(Projections, FisheyesFollowTheirFormula) {
   const auto expected = [](Projection projection, double theta) {
     if (projection == Projection::equidistant) return theta / (pi / 2);

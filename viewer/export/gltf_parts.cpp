@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "viewer/export/appearance.h"
+#include "viewer/export/fan.h"
 
 namespace lightwell {
 namespace {
@@ -117,9 +118,7 @@ LampTriangles triangles_of_lamps(const BakedModel& model) {
     LampTriangles::Lamp& lamp = result.lamps.back();
     const auto first = static_cast<std::uint32_t>(result.corners.size() - lamp.first_corner);
     const auto count = static_cast<std::uint32_t>(face.outline.size());
-    for (std::uint32_t c = 1; c + 1 < count; ++c) {
-      for (const std::uint32_t corner : {0u, c, c + 1}) result.indices.push_back(first + corner);
-    }
+    append_fan(first, count, result.indices);
     result.corners.insert(result.corners.end(), face.outline.begin(), face.outline.end());
     result.radiance.insert(result.radiance.end(), count, face.radiance);
     lamp.index_count = result.indices.size() - lamp.first_index;

@@ -10,6 +10,7 @@
 
 #include "raytrace/encode_png.h"
 #include "viewer/export/baked_channels.h"
+#include "viewer/export/fan.h"
 #include "viewer/export/write_whole.h"
 
 namespace lightwell {
@@ -163,9 +164,7 @@ void append_lamps(const BakedModel& model, const Box& box, PageData& page) {
       for (const double x : place) append_bytes(bytes, static_cast<float>(x));
     }
     const auto count = static_cast<std::uint32_t>(face.outline.size());
-    for (std::uint32_t c = 1; c + 1 < count; ++c) {
-      for (const std::uint32_t corner : {0u, c, c + 1}) triangles.push_back(corners + corner);
-    }
+    append_fan(corners, count, triangles);
     corners += count;
   }
   about["corner_count"] = corners;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <numbers>
 
+#include "scene/coat.h"
 #include "scene/io/default_material.h"
 #include "scene/io/glossy.h"
 #include "scene/io/mitsuba/mitsuba_presets.h"
@@ -327,6 +328,26 @@ Material MitsubaMaterials::two_sided(const MitsubaNode& bsdf, Pixels pixels) {
   return material;
 }
 
+// Adds what a part of a blend mirrors. Of a coat and a mirror, or of two coats that differ, the one
+// that mirrors more stays.
+void MitsubaMaterials::add_gloss(const Material& part, float weight, const MitsubaNode& bsdf,
+                                 Material& sum) {
+  if (!part.is_specular()) return;
+  const auto index = [](const Material& m) { return m.coat ? m.coat->index_of_refraction : 0.0f; };
+  const bool is_alike = !sum.is_specular() || index(sum) == index(part);
+  if (!is_alike) {
+    remarks_.add("Blends of different coats, or of coats and mirrors, kept the brighter one",
+                 bsdf.label());
+    const float added = weight * mean_mirrored(part).mean();
+    if (added <= mean_mirrored(sum).mean()) return;
+    sum.specular.setZero();
+    sum.specular_roughness = 0.0f;
+  }
+  sum.coat = part.coat;
+  sum.specular += weight * part.specular;
+  sum.specular_roughness = std::max(sum.specular_roughness, part.specular_roughness);
+}
+
 Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
   const auto inner = tree_.children(bsdf, "bsdf");
   if (inner.empty()) bsdf.fail("holds no BSDF");
@@ -356,12 +377,10 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
       continue;
     }
     sum.reflectance += weights[i] * part.reflectance;
-    sum.specular += weights[i] * part.specular;
-    sum.specular_roughness = std::max(sum.specular_roughness, part.specular_roughness);
-    if (part.coat) sum.coat = part.coat;
+    add_gloss(part, weights[i], bsdf, sum);
   }
   // The weights of a mixture may add up to more than 1; the reflectance must not exceed 1.
-  const Spectrum excess = (sum.reflectance + sum.specular).max(1.0f);
+  const Spectrum excess = (sum.reflectance + mean_mirrored(sum)).max(1.0f);
   sum.reflectance /= excess;
   sum.specular /= excess;
   return sum;

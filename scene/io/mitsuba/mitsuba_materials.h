@@ -33,6 +33,7 @@ class MitsubaMaterials {
   Material dielectric(const MitsubaNode& bsdf, Pixels pixels);
   Material plastic(const MitsubaNode& bsdf, Pixels pixels);
   Material coated(const MitsubaNode& bsdf, Material material, Pixels pixels);
+  void add_gloss(const Material& part, float weight, const MitsubaNode& bsdf, Material& sum);
   Material highlighted(const MitsubaNode& bsdf, Pixels pixels);
   Material principled(const MitsubaNode& bsdf, Pixels pixels);
   Material wrapped(const MitsubaNode& bsdf, Pixels pixels);

@@ -394,7 +394,8 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
   }
   const std::optional<GivenCoat> coat = read_coat(table, bands, material);
   read_glass(table, bands, material);
-  read_toml_pictures(table, bands, pictures, material);
+  const bool has_reflectance = table.has("reflectance") || (coat && coat->has_base);
+  read_toml_pictures(table, bands, pictures, has_reflectance, material);
   if (coat) lay_given_coat(table, *coat, material);
   read_emission(table, bands, result);
   return result;

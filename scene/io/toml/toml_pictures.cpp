@@ -52,7 +52,7 @@ Laid read_laid(const TomlValue& value, PictureCode code, bool is_mask, PictureFi
 }  // namespace
 
 void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureFiles& pictures,
-                        Material& material) {
+                        bool has_reflectance, Material& material) {
   if (const auto texture = table.find("texture")) {
     if (material.dielectric) {
       texture->fail("contradicts 'glass': a clear surface has no colour of its own; remove one");
@@ -60,10 +60,7 @@ void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureF
     if (!bands.bands.wavelengths_nm.empty()) {
       texture->fail("is red, green and blue, but the scene's bands are wavelengths; remove it");
     }
-    // A coat gives its base's reflectance.
-    if (!table.has("reflectance") && !(material.reflectance > 0.0f).any()) {
-      material.reflectance = Spectrum::Ones(3) - material.specular;
-    }
+    if (!has_reflectance) material.reflectance = Spectrum::Ones(3) - material.specular;
     Laid laid = read_laid(*texture, PictureCode::srgb, false, pictures);
     laid.image.picture = laid.picture.color;
     material.texture = {.image = laid.image, .factor = material.reflectance};

@@ -8,8 +8,8 @@ namespace lightwell {
 
 /// Reads the keys `texture` and `mask` of a [materials.NAME] table: a file's name, or a table {
 /// file, wrap, filter } (and `cutoff` for a mask). A texture multiplies the material's reflectance,
-/// which is 1 where the table gives none. Throws InputError naming file, line, key and remedy.
+/// which is 1 unless `has_reflectance`. Throws InputError naming file, line, key and remedy.
 void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureFiles& pictures,
-                        Material& material);
+                        bool has_reflectance, Material& material);
 
 }  // namespace lightwell

@@ -43,6 +43,20 @@ Scene squares(int n, int material = 0) {
   return scene;
 }
 
+// A black mirror beside a black lacquer, whose Material::specular is that of the mirror, and beside
+// a lacquer of another index.
+TEST(JoinedSurfaces, CoatsAreJoinedWithTheirLikeAlone) {
+  Scene scene = squares(3);
+  Material mirror = scene.materials[0];
+  mirror.reflectance.setZero();
+  mirror.specular.setOnes();
+  scene.materials.assign(3, mirror);
+  scene.materials[1].coat = Coat{.index_of_refraction = 1.5f};
+  scene.materials[2].coat = Coat{.index_of_refraction = 1.6f};
+  for (int s = 0; s < 9; ++s) scene.surfaces[static_cast<std::size_t>(s)].material = s / 3;
+  EXPECT_EQ(facet_count(merge_planar_regions(scene)), 3);
+}
+
 // A square, the same square under another name that begins at another corner, the square turned
 // over, and one of another material.
 TEST(JoinedSurfaces, PolygonsThatLieOnEqualOnesGo) {

@@ -310,6 +310,23 @@ TEST_F(Mitsuba, CoatingsCoverDiffuseSurfaces) {
   EXPECT_FLOAT_EQ(gold.specular[0], 1.0f);
 }
 
+TEST_F(Mitsuba, BlendsKeepTheBrighterGloss) {
+  const std::string plastic =
+      R"(<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.8"/></bsdf>)";
+  const Material alone = material(plastic);
+  const Material twice = material(R"(<bsdf type="blendbsdf"><float name="weight" value="0.5"/>)" +
+                                  plastic + plastic + "</bsdf>");
+  ASSERT_TRUE(twice.coat);
+  EXPECT_FLOAT_EQ(twice.reflectance[0], alone.reflectance[0]);
+  EXPECT_FLOAT_EQ(twice.specular[0], 1.0f);
+  const Material with_metal = material(
+      R"(<bsdf type="blendbsdf"><float name="weight" value="0.5"/><bsdf type="conductor">
+      <string name="material" value="none"/></bsdf>)" +
+      plastic + "</bsdf>");
+  EXPECT_FALSE(with_metal.coat);
+  EXPECT_FLOAT_EQ(with_metal.specular[0], 0.5f);
+}
+
 TEST_F(Mitsuba, HighlightsOfPhongAndWardAreKept) {
   const Material phong =
       material(R"(<bsdf type="phong"><rgb name="diffuse_reflectance" value="0.5"/>

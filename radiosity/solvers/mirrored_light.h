@@ -1,0 +1,67 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <vector>
+
+#include "scene/coat.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// What surfaces mirror of the light that arrives at them, for energy balances. Mirrors mirror
+/// their share. Coats mirror less of steep light and more of grazing light than mean_mirrored():
+/// the light that arrived or was lost beyond what was sent, and which no mirror sent on, is theirs.
+class MirroredLight {
+ public:
+  MirroredLight(const Scene& scene, Eigen::Index columns)
+      : beyond_(Eigen::ArrayXd::Zero(columns)), by_coats_(beyond_) {
+    for (const Material& material : scene.materials) {
+      shares_.push_back(
+          mean_mirrored(material).cast<double>().replicate(columns / scene.bands.count(), 1));
+      is_coat_.push_back(material.coat.has_value());
+      has_coats_ = has_coats_ || material.coat;
+    }
+  }
+
+  /// True if there are coats, whose light is to be counted before kept() is right.
+  bool has_coats() const { return has_coats_; }
+
+  /// Counts light, W per column, that arrives at a surface of a material.
+  void arrive(const Eigen::ArrayXd& light, int material) {
+    const auto m = static_cast<std::size_t>(material);
+    beyond_ += light;
+    if (is_coat_[m]) {
+      by_coats_ += light * shares_[m];
+    } else {
+      beyond_ -= light * shares_[m];
+    }
+  }
+  /// Counts light that was lost on its way; negative: light that was sent.
+  void lose(const Eigen::ArrayXd& light) { beyond_ += light; }
+
+  /// Sets what coats mirror by the light counted so far: between F(0) and all of grazing light, a
+  /// third and eleven times F of even light at an index of 1.5.
+  void settle() {
+    constexpr double least = 0.25, most = 12.0;
+    const Eigen::ArrayXd of_mean =
+        (by_coats_ > 0.0).select((beyond_ / by_coats_).max(least).min(most), 1.0);
+    for (std::size_t m = 0; m < shares_.size(); ++m) {
+      if (is_coat_[m]) shares_[m] *= of_mean;
+    }
+  }
+  /// Share of a column's arriving light, [0,1], that a surface of a material keeps if it reflects
+  /// the share `rho` diffusely.
+  double kept(int material, Eigen::Index column, float rho) const {
+    const double mirrored = shares_[static_cast<std::size_t>(material)][column];
+    return std::max(0.0, 1.0 - double{rho} - mirrored);
+  }
+
+ private:
+  std::vector<Eigen::ArrayXd> shares_{};
+  std::vector<char> is_coat_{};
+  bool has_coats_ = false;
+  Eigen::ArrayXd beyond_, by_coats_;
+};
+
+}  // namespace lightwell
