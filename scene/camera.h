@@ -143,7 +143,7 @@ Camera as_perspective(const Camera& camera);
 /// Returns the camera nearest to one for windows, which draw perspective and orthographic pictures
 /// alone: as_perspective() of other projections.
 Camera for_window(const Camera& camera);
-/// Returns what for_window() leaves out ("is shown as a perspective ..."); empty: nothing.
+/// Returns what for_window() leaves out, as a sentence about several such cameras; empty: nothing.
 std::string loss_in_window(const Camera& camera);
 
 }  // namespace lightwell
