@@ -14,7 +14,7 @@
 
 #include "radiosity/form_factors/ray_cast_rows.h"
 #include "radiosity/journal/journal_phase.h"
-#include "radiosity/solvers/mirrored_light.h"
+#include "radiosity/solvers/mirrored_shares.h"
 #include "radiosity/solvers/solve_channels.h"
 #include "scene/parallel.h"
 
@@ -106,7 +106,7 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
 
 void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
   const Eigen::Index bands = mesh_.emission.cols();
-  MirroredLight mirrored(scene_, unshot_.cols());
+  MirroredShares mirrored(scene_, unshot_.cols());
   for (int i = 0; mirrored.has_coats() && i < mesh_.patch_count(); ++i) {
     mirrored.arrive(mesh_.area[i] * free_light.irradiance.row(i).transpose().cast<double>(),
                     mesh_.material[i]);
@@ -235,8 +235,8 @@ int ProgressiveRadiosity::rays_of(int patch) const {
 }
 
 // What surfaces mirror of the light of a row, per unit of what was sent.
-MirroredLight ProgressiveRadiosity::mirrored_of(const EstimatedRow& row) const {
-  MirroredLight mirrored(scene_, mesh_.emission.cols());
+MirroredShares ProgressiveRadiosity::mirrored_of(const EstimatedRow& row) const {
+  MirroredShares mirrored(scene_, mesh_.emission.cols());
   if (!mirrored.has_coats()) return mirrored;
   const Eigen::Index bands = mesh_.emission.cols();
   for (const auto& [j, share] : row.shares) {
@@ -255,7 +255,7 @@ MirroredLight ProgressiveRadiosity::mirrored_of(const EstimatedRow& row) const {
 void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
   const Eigen::ArrayXd watts = mesh_.area[shot.patch] * shot.radiosity.cast<double>();
   const Eigen::Index columns = unshot_.cols(), bands = mesh_.emission.cols();
-  const MirroredLight mirrored = mirrored_of(row);
+  const MirroredShares mirrored = mirrored_of(row);
   // share_of(band): share of the shot light that arrives at patch j.
   const auto arrive = [&](int j, auto&& share_of) {
     for (Eigen::Index k = 0; k < columns; ++k) {

@@ -15,7 +15,7 @@
 
 namespace lightwell {
 
-class MirroredLight;
+class MirroredShares;
 
 class JournalPhase;
 
@@ -111,7 +111,7 @@ class ProgressiveRadiosity {
   BandEnergy energy_by_column() const;
   std::vector<int> choose(int most) const;
   int rays_of(int patch) const;
-  MirroredLight mirrored_of(const EstimatedRow& row) const;
+  MirroredShares mirrored_of(const EstimatedRow& row) const;
   void receive(const Shot& shot, const EstimatedRow& row);
 
   const Scene& scene_;

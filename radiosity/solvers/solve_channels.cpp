@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "radiosity/solvers/mirrored_light.h"
+#include "radiosity/solvers/mirrored_shares.h"
 
 namespace lightwell {
 namespace {
@@ -116,7 +116,7 @@ BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFact
                        const BandArray& B, const FreeLight& free_light) {
   BandArray E = gather(form_factors, B);
   if (!free_light.empty()) E += free_light.irradiance;
-  MirroredLight mirrored(scene, B.cols());
+  MirroredShares mirrored(scene, B.cols());
   for (int i = 0; i < mesh.patch_count(); ++i) {
     const Spectrum lost = (form_factors.absorbed_by_specular(i) + form_factors.escaped(i) - 1.0f) *
                           B.row(i).transpose();

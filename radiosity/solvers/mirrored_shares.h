@@ -12,9 +12,9 @@ namespace lightwell {
 /// What surfaces mirror of the light that arrives at them, for energy balances. Mirrors mirror
 /// their share. Coats mirror less of steep light and more of grazing light than mean_mirrored():
 /// the light that arrived or was lost beyond what was sent, and which no mirror sent on, is theirs.
-class MirroredLight {
+class MirroredShares {
  public:
-  MirroredLight(const Scene& scene, Eigen::Index columns)
+  MirroredShares(const Scene& scene, Eigen::Index columns)
       : beyond_(Eigen::ArrayXd::Zero(columns)), by_coats_(beyond_) {
     for (const Material& material : scene.materials) {
       shares_.push_back(
