@@ -503,7 +503,8 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   if (options_.pass == Pass::interpolate || is_dim) {
     Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
                .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
-    if (base) {
+    // What is dim takes direct light as even: closed forms of all lights cost more than the ray.
+    if (base && !is_dim) {
       E.direct_at_coat = E.direct;
       E.direct *=
           static_cast<float>(direct_light_.base_gain({at.position, normal, hit.facet}, *base));
