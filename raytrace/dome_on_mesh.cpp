@@ -36,8 +36,8 @@ bool is_even_over(const PatchMesh& mesh, const BandArray& E, int element) {
   return most > 0.0f && most - least <= DomeOnMesh::even * most;
 }
 
-/// Irradiance of all vertices, mean of the bands, over the area of the elements.
-double mean_irradiance(const PatchMesh& mesh, const BandArray& E) {
+/// Power that arrives on all elements, W, mean of the bands, of irradiance at the vertices.
+double arriving_power(const PatchMesh& mesh, const BandArray& E) {
   const Eigen::ArrayXf at = E.rowwise().mean();
   double sum = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -56,11 +56,11 @@ float growth_of_error(const PatchMesh& mesh, const RadiositySolution& solution, 
   for (const LightChannel& channel : solution.channels) {
     solved += channel.direct_irradiance + channel.indirect_irradiance;
   }
-  const double now = mean_irradiance(mesh, solution.irradiance());
+  const double now = arriving_power(mesh, solution.irradiance());
   if (!(now > 0.0)) return 1.0f;
   const auto channel = static_cast<std::size_t>(solution.source_channel[dome]);
   const double of_dome = double{solution.channels[channel].scale.mean()};
-  return static_cast<float>(of_dome * mean_irradiance(mesh, solved) / now);
+  return static_cast<float>(of_dome * arriving_power(mesh, solved) / now);
 }
 
 }  // namespace

@@ -345,13 +345,20 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
   follow(branch, state);
 }
 
-// Ends most branches that meet a coat behind another, and strengthens the rest.
+// Largest share of any band that a surface mirrors of the interaction's light.
+float RayTree::mirrored_share(const SurfaceInteraction& interaction) {
+  return scattering_weight(interaction,
+                           {.direction = reflect(interaction.direction, interaction.normal)})
+      .maxCoeff();
+}
+
+// Ends most branches that meet a coat behind another, and strengthens the rest. One in six goes on
+// of those that meet the second coat steeply, with a quarter of the first coat's weight.
 bool RayTree::goes_on_at_coat(const SurfaceInteraction& interaction, Branch& branch,
                               const TreeState& state) const {
   if (!interaction.material.coat || branch.behind_coat == 0 || !state.shades) return true;
-  const ScatteringSample mirrored{.direction = reflect(interaction.direction, interaction.normal)};
-  constexpr float times = 4.0f;
-  const float chance = times * scattering_weight(interaction, mirrored).maxCoeff();
+  constexpr float left_weight = 0.25f;
+  const float chance = mirrored_share(interaction) / left_weight;
   if (chance >= 1.0f) return true;
   if (!(roulette(branch, 1, state) < static_cast<double>(chance))) return false;
   branch.weight /= chance;
@@ -503,7 +510,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   if (options_.pass == Pass::interpolate || is_dim) {
     Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
                .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
-    // What is dim takes direct light as even: closed forms of all lights cost more than the ray.
+    // Closed forms of all lights cost more than the ray, so a dim hit takes direct light as even.
     if (base && !is_dim) {
       E.direct_at_coat = E.direct;
       E.direct *=

@@ -90,8 +90,8 @@ struct SpecularSegment {
 /// 2021, "Hacking the Shadow Terminator"); since the start lies before the facet, no light comes
 /// through the facet.
 ///
-/// What a coat shows of another coat's reflection is less than a hundredth of the light far from
-/// grazing; such branches end by Russian roulette.
+/// Branches that meet a coat behind another coat end by Russian roulette: far from grazing they
+/// have less than a hundredth of the light.
 ///
 /// A lamp by way of a rough coat and further surfaces is found by chance only, which would show as
 /// a few bright pixels. The light of lamps in one sample of the coat's lobe is limited to four
@@ -237,6 +237,7 @@ class RayTree {
   float share_of_bright(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   Spectrum emission(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   const RoughLobe& lobe(int material, bool from_back) const;
+  static float mirrored_share(const SurfaceInteraction& interaction);
   bool goes_on_at_coat(const SurfaceInteraction& interaction, Branch& branch,
                        const TreeState& state) const;
   static bool is_by_chance(const Branch& branch, const TreeState& state) {
@@ -244,7 +245,7 @@ class RayTree {
     return state.by_chance && branch.behind_coat > straight_from_the_coat && !branch.is_sharp;
   }
   void add_reflected(const Branch& branch, const Spectrum& seen, TreeState& state) const;
-  void add_found_by_chance(std::vector<Spectrum>& found, const Spectrum& other,
+  void add_found_by_chance(const std::vector<Spectrum>& found, const Spectrum& other,
                            TreeState& state) const;
   void grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
             const ElementHit& hit, const ShadingPoint& at, TreeState& state) const;

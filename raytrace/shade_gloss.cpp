@@ -22,18 +22,19 @@ bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d
 
 }  // namespace
 
-// Directions of a rough surface's lobe. Those of a coat have no other samples of the pixel beside
-// them; as many suffice as their share of the light asks for.
+// Number of directions of a rough surface's lobe. A coat gets all of them where it mirrors an
+// eighth of the light; fewer than four would not limit each other's light of lamps, and more than
+// four times as many are worth it for no share. (A picture sees a coat once, a rough mirror in many
+// samples.)
 int RayTree::lobe_samples(const SurfaceInteraction& interaction, const Branch& branch,
                           const TreeState& state) const {
-  double wanted = double{state.effort} * options_.glossy_rays;
+  const double of_mirrors = double{state.effort} * options_.glossy_rays;
+  double wanted = of_mirrors;
   if (interaction.material.coat) {
-    constexpr double fewest = 4.0, more = 8.0, most = 4.0;
-    const ScatteringSample mirrored{.direction =
-                                        reflect(interaction.direction, interaction.normal)};
-    const Spectrum share = branch.weight * scattering_weight(interaction, mirrored);
-    wanted = std::clamp(more * static_cast<double>(share.maxCoeff()) * wanted, fewest,
-                        std::max(fewest, most * wanted));
+    constexpr double fewest = 4.0, most = 4.0, whole_share = 1.0 / 8.0;
+    const double share = double{branch.weight.maxCoeff()} * double{mirrored_share(interaction)};
+    wanted =
+        std::clamp(share / whole_share * of_mirrors, fewest, std::max(fewest, most * of_mirrors));
   }
   return std::max(1, static_cast<int>(std::lround(wanted)));
 }
@@ -97,8 +98,10 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
 
 // Adds the light of lamps that the samples of a coat's lobe found by chance, each limited by what
 // the others found. `other` is the light that the whole lobe found besides.
-void RayTree::add_found_by_chance(std::vector<Spectrum>& found, const Spectrum& other,
+void RayTree::add_found_by_chance(const std::vector<Spectrum>& found, const Spectrum& other,
                                   TreeState& state) const {
+  // A highlight's edge, of which one sample in four finds the lamp, stays; a single bright sample
+  // of a dark lobe goes.
   constexpr float of_the_others = 4.0f, of_other_light = 2.0f;
   float all = 0.0f;
   for (const Spectrum& light : found) all += light.mean();

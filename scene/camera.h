@@ -9,7 +9,7 @@
 
 namespace lightwell {
 
-/// How directions, or parallel rays, are spread over a picture. Theta is the angle from the view
+/// The spread of directions, or of parallel rays, over a picture. Theta is the angle from the view
 /// direction; a fisheye shows a direction at the distance f r(theta) from the picture's middle.
 enum class Projection {
   perspective,      ///< straight lines stay straight

@@ -69,6 +69,8 @@ enum class RandomPurpose : std::uint64_t {
   pixel_gather_aims = 0x6a80,
   // Parts of a scene; (patch, purpose), (key, purpose, ray) or (node, purpose, round).
   part_rays = 0x9a47,
+  side_rays = 0x51de,
+  lamp_face_rays = 0x1a3f,
   part_vectors = 0x9a48,
   pixel_gather_portals = 0x6a81,
   // Light at points by way of mirrors and glass; (point, purpose, replica), (key, purpose, number).
@@ -133,6 +135,8 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::pixel_gather_paths:
     case RandomPurpose::pixel_gather_aims:
     case RandomPurpose::part_rays:
+    case RandomPurpose::side_rays:
+    case RandomPurpose::lamp_face_rays:
     case RandomPurpose::part_vectors:
     case RandomPurpose::pixel_gather_portals:
     case RandomPurpose::specular_light:

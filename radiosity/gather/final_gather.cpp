@@ -426,8 +426,8 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
 
 namespace {
 
-// What coated bases get of the direct light of `channels` channels beyond its irradiance, as a
-// share of the latter, vertices x channels; empty without coats.
+// Gains of coated bases, vertices x channels: the direct light that a base gets beyond its
+// irradiance, as a share of the irradiance. Empty without coats.
 BandArray direct_gains(const PatchMesh& mesh, const DirectLight& direct_light,
                        const std::vector<int>& patch, Eigen::Index channels) {
   if (!direct_light.has_coats()) return {};

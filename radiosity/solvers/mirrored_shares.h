@@ -9,9 +9,9 @@
 
 namespace lightwell {
 
-/// What surfaces mirror of the light that arrives at them, for energy balances. Mirrors mirror
-/// their share. Coats mirror less of steep light and more of grazing light than mean_mirrored():
-/// the light that arrived or was lost beyond what was sent, and which no mirror sent on, is theirs.
+/// Shares, [0,1], of arriving light that surfaces mirror, for energy balances. Mirrors have theirs.
+/// Coats mirror less of steep light and more of grazing light than mean_mirrored(): the light that
+/// arrived or was lost beyond what was sent, and which no mirror sent on, is theirs.
 class MirroredShares {
  public:
   MirroredShares(const Scene& scene, Eigen::Index columns)

@@ -234,7 +234,7 @@ int ProgressiveRadiosity::rays_of(int patch) const {
   return static_cast<int>(std::bit_floor(rays));
 }
 
-// What surfaces mirror of the light of a row, per unit of what was sent.
+// Shares that surfaces mirror of the light of a row.
 MirroredShares ProgressiveRadiosity::mirrored_of(const EstimatedRow& row) const {
   MirroredShares mirrored(scene_, mesh_.emission.cols());
   if (!mirrored.has_coats()) return mirrored;

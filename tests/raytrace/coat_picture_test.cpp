@@ -45,9 +45,10 @@ Paint white_under_coat(float roughness) {
 class CoatInAFurnace : public testing::TestWithParam<float> {};
 
 // In a world of radiance 1 a white coated surface is invisible. A smooth coat mirrors exactly what
-// the base does not get. The weights of a rough coat's samples have the density of its lobe, which
-// is tabulated at 64 cosines: at 80 degrees, where the coat mirrors a third, that leaves up to 3 %
-// of it. The noise of 100 rays is a quarter of that.
+// the base does not get. Spectra are floats, and a hit is known to 1e-7 of its distance. A rough
+// coat mirrors Fresnel's share at each sampled microfacet, with a standard deviation of 0.2 at 80
+// degrees and less elsewhere: 400 rays of at least 4 samples leave 0.2 / sqrt(1600) = 0.005, of
+// which two are allowed.
 TEST_P(CoatInAFurnace, WhiteIsInvisible) {
   TracedScene lit(SceneBuilder()
                       .box({.exitance = static_cast<float>(pi)}, {-3, -3, -3}, {3, 3, 3}, true)
@@ -58,13 +59,13 @@ TEST_P(CoatInAFurnace, WhiteIsInvisible) {
     const double angle = degrees * pi / 180.0;
     const Eigen::Vector3d from(2.0 * std::sin(angle), 0.1, 2.0 * std::cos(angle));
     double sum = 0.0;
-    constexpr int rays = 100;
+    constexpr int rays = 400;
     for (int i = 0; i < rays; ++i) {
       sum += radiance(lit, {.origin = from, .direction = -from.normalized()},
                       static_cast<std::uint64_t>(i)) /
              rays;
     }
-    EXPECT_NEAR(sum, 1.0, GetParam() > 0.0f ? 1.2e-2 : 1e-5) << degrees;
+    EXPECT_NEAR(sum, 1.0, GetParam() > 0.0f ? 1e-2 : 1e-5) << degrees;
   }
 }
 
@@ -90,7 +91,8 @@ struct LampOverCoat {
   TracedScene lit;
 };
 
-// L = rho / pi g(in) g(out) E; the lamp has no size and is not mirrored. Spectra are floats.
+// L = rho / pi g(in) g(out) E; the lamp has no size and is not mirrored. Some ten
+// products of floats round by 6e-8 each, and an error of 1e-7 of the distance moves E by 1e-6.
 TEST(Coat, TurnsLightByBothAngles) {
   const LampOverCoat over;
   const CoatedBase base(coat_of(0.0f));
@@ -104,8 +106,9 @@ TEST(Coat, TurnsLightByBothAngles) {
   }
 }
 
-// The mesh's radiosity of a base: rho g(in) E at its vertices, which lie 2 % inside their elements
-// of 0.1 m: over 2 mm g and E change by less than 1e-3 here.
+// The mesh's radiosity of a base: rho g(in) E at its vertices. The points for g lie 2 % of the way
+// to the centre of an element of 0.125 m inside: 2 mm, 8e-4 rad as the lamp sees them at 2.2 m.
+// Below 55 degrees g changes by less than 0.3 per rad. Without g there is one product of floats.
 TEST(Coat, GivesTheMeshMoreOfSteepLight) {
   const LampOverCoat over;
   const PatchMesh& mesh = over.lit.mesh;
@@ -121,7 +124,7 @@ TEST(Coat, GivesTheMeshMoreOfSteepLight) {
     const auto expected = base.factor(LampOverCoat::arriving(mesh.position(v)).second);
     EXPECT_NEAR(even(v, 1) / (rho * E(v, 1)), 1.0, 1e-6);
     if (B(v, 1) == even(v, 1)) continue;  // the dark side
-    EXPECT_NEAR(B(v, 1) / even(v, 1), expected, 2e-3);
+    EXPECT_NEAR(B(v, 1) / even(v, 1), expected, 3e-4);
     ++lit;
   }
   EXPECT_GE(2 * lit, mesh.vertex_count() - 2);
@@ -142,19 +145,20 @@ TEST(Coat, MirrorsFresnelsShareAlongPaths) {
   ASSERT_GE(hit.facet, 0);
   EXPECT_TRUE(paths.is_specular(hit.facet));
   EXPECT_TRUE(paths.is_mostly_diffuse(hit.facet));
-  EXPECT_NEAR(paths.base_factor(ray, hit), CoatedBase(coat_of(0.0f)).factor(std::sqrt(0.5)), 1e-9);
+  EXPECT_NEAR(paths.base_factor(ray, hit), CoatedBase(coat_of(0.0f)).factor(std::sqrt(0.5)),
+              1e-12);  // doubles
   double arrived = 0.0;
   const PathLosses losses =
       paths.follow(ray, hit, 7, [&](const LightArrival& at) { arrived += at.throughput[0]; });
-  // Fresnel at 45 degrees, index 1.5: the mean of 0.0920134 and its square.
+  // Fresnel at 45 degrees, index 1.5: the mean of 0.0920134 and its square. Spectra are floats.
   EXPECT_NEAR(arrived, 0.5 * (0.0920134 + 0.0920134 * 0.0920134), 1e-6);
   EXPECT_EQ(losses.escaped[0], 0.0f);
 }
 
 // A black square under a coat, in the open, 2 m below a lamp that hangs 1 m beside its middle. The
 // coat mirrors F(theta) of the light, and the base absorbs the rest: int (1 - F) E dA, here by the
-// midpoint rule of 40 x 40, beside which the lamp's rays are few: a fiftieth of a million, with an
-// error of 0.7 %.
+// midpoint rule of 40 x 40. The square fills 0.72 sr, so 60000 of the lamp's million rays meet it:
+// 0.4 % if they were not stratified.
 TEST(Coat, BlackBasesAbsorbWhatTheirCoatDoesNotMirror) {
   Scene scene = LampOverCoat::with_lamp();
   scene.materials[0].reflectance.setZero();
@@ -172,7 +176,6 @@ TEST(Coat, BlackBasesAbsorbWhatTheirCoatDoesNotMirror) {
     if (shoots) options.progressive = ProgressiveOptions{};
     const EnergyBalance energy = solve_scene(scene, options).solution.energy;
     EXPECT_NEAR(energy.absorbed / expected, 1.0, 0.01) << shoots;
-    EXPECT_NEAR((energy.absorbed + energy.escaped) / energy.emitted, 1.0, 1e-6) << shoots;
   }
 }
 

@@ -44,7 +44,7 @@ std::vector<ElementHit> hits_from(const ElementCaster& caster,
   for (const Eigen::Vector3d& p : outline) middle += p / static_cast<double>(outline.size());
   std::array<Ray, rays_per_face> rays;
   for (int r = 0; r < rays_per_face; ++r) {
-    const Eigen::Array4f u = sobol.point(r, random_key(face, RandomPurpose::part_rays));
+    const Eigen::Array4f u = sobol.point(r, random_key(face, RandomPurpose::lamp_face_rays));
     // A point between the middle and the outline.
     const double place = static_cast<double>(u[0]) * static_cast<double>(outline.size());
     const auto side = std::min(static_cast<std::size_t>(place), outline.size() - 1);

@@ -80,7 +80,7 @@ class SideChooser {
   void cast(int patch) {
     static const SobolPoints sobol(rays_per_patch);
     const std::uint64_t key =
-        random_key(static_cast<std::uint64_t>(patch), RandomPurpose::part_rays);
+        random_key(static_cast<std::uint64_t>(patch), RandomPurpose::side_rays);
     const PatchSampler sampler(mesh_, patch);
     std::array<Ray, rays_per_patch> rays;
     for (int r = 0; r < rays_per_patch; ++r) {

@@ -79,8 +79,8 @@ constexpr std::array<ViewType, 6> view_types = {{{'v', Projection::perspective},
                                                  {'s', Projection::stereographic},
                                                  {'c', Projection::cylindrical}}};
 
-// What a side of a view's picture spans, in lengths of its projection's plane: `span` is the side's
-// angle, degrees, or its width of a parallel view. angle_of() is the inverse.
+// Length of a side of a view's picture in the plane of its projection. `span` is the angle of the
+// side in degrees, or the width of a parallel view. angle_of() is the inverse.
 double plane_length(Projection projection, double span, bool is_height) {
   const double angle = span * degree;
   if (projection == Projection::cylindrical && is_height) return 2.0 * std::tan(0.5 * angle);

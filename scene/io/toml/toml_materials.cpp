@@ -188,9 +188,9 @@ std::optional<GivenCoat> read_coat(const TomlTable& table, const TomlBands& band
   for (const char* other : {"specular", "roughness", "glass"}) {
     if (const auto value = table.find(other)) {
       value->fail(
-          "contradicts 'coat', which mirrors by Fresnel's law alone (and has its roughness as a "
-          "key "
-          "of its own); remove one of the two keys");
+          "contradicts 'coat', which mirrors by Fresnel's law alone and has a roughness of its "
+          "own; "
+          "remove one of the two keys");
     }
   }
   std::optional<TomlTable> t;
