@@ -125,6 +125,12 @@ std::string kind_of(const Material& material, bool relative_units) {
   if ((material.reflectance > 0.0f).any()) {
     words.push_back(fmt::format("reflectance {:.3g}", mean(material.reflectance)));
   }
+  if (material.is_translucent()) {
+    words.push_back(fmt::format("translucent {:.3g}", mean(material.transmittance)));
+  }
+  if (material.passes_straight()) {
+    words.push_back(fmt::format("transparent {:.3g}", mean(material.regular_transmittance)));
+  }
   if (material.texture) {
     const Texture& picture = *material.texture->image.picture;
     words.push_back(fmt::format("texture {} x {}", picture.width(), picture.height()));

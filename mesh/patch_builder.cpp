@@ -10,6 +10,7 @@
 
 #include "mesh/facets/reflex_corners.h"
 #include "mesh/patches/parted_topology.h"
+#include "mesh/patches/translucency.h"
 
 namespace lightwell {
 namespace {
@@ -300,6 +301,7 @@ PatchMesh PatchBuilder::finish() {
     }
     if (!is_back || m.emits_both_sides) out.emission.row(p) = m.emission.transpose();
   }
+  set_transmittance(scene_, out);
   out.sphere_grids = std::move(grids_);
   build_parted_topology(out, positions);
   return out;

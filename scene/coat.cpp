@@ -28,10 +28,10 @@ double mirrored_by_lobe(const Material& material, double cosine, std::uint64_t n
   for (int i = 0; i < count; ++i) {
     const Eigen::Array4d u = points.point(i, number).cast<double>();
     const ScatteringSample sample =
-        sample_scattering(interaction, {.component = u[2],
-                                        .u = u[0],
-                                        .v = u[1],
-                                        .key = random_key(number, static_cast<std::uint64_t>(i))});
+        sample_lobe(interaction, {.component = u[2],
+                                  .u = u[0],
+                                  .v = u[1],
+                                  .key = random_key(number, static_cast<std::uint64_t>(i))});
     sum += static_cast<double>(sample.weight[0]);
   }
   return sum / count;

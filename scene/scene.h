@@ -62,11 +62,17 @@ struct Mask {
   float cutoff = 0.5f;     ///< (0,1]
 };
 
-/// Reflection, refraction and emission of a surface. Energy: reflectance + mean_mirrored() <= 1 in
-/// every band.
+/// Reflection, transmission, refraction and emission of a surface. Energy: reflectance +
+/// transmittance + mean_specular() <= 1 in every band.
 struct Material {
   std::string name{};
-  Spectrum reflectance{};           ///< diffuse rho, [0,1]; with a texture: of facets without UV
+  Spectrum reflectance{};  ///< diffuse rho, [0,1]; with a texture: of facets without UV
+  /// Diffuse transmittance tau of a thin sheet, [0,1]: paper, cloth, opal glass. Light that arrives
+  /// at one side leaves the other side evenly in all directions. Empty: none.
+  Spectrum transmittance{};
+  /// Regular transmittance of a thin sheet, [0,1]: light that passes straight on, such as through
+  /// the holes of a fabric. Empty: none.
+  Spectrum regular_transmittance{};
   Spectrum specular{};              ///< mirror reflectance, [0,1]
   float specular_roughness = 0.0f;  ///< GGX alpha of the mirror, [0,1]: spreads the reflected
                                     ///< light, whose share stays the same; 0: perfect mirror
@@ -82,8 +88,16 @@ struct Material {
   std::optional<ReflectanceTexture> texture{};
   std::optional<Mask> mask{};  ///< holes in facets with UV; of materials that emit nothing
 
-  /// True if light is mirrored or refracted, sharply or spread by roughness.
-  bool is_specular() const { return dielectric.has_value() || (specular > 0.0f).any(); }
+  /// True if light is mirrored, refracted or passes straight on, sharply or spread by roughness.
+  bool is_specular() const {
+    return dielectric.has_value() || (specular > 0.0f).any() || passes_straight();
+  }
+  /// True if light from one side leaves the other side diffusely.
+  bool is_translucent() const { return (transmittance > 0.0f).any(); }
+  /// True for a thin sheet that lets a share of the light pass straight on.
+  bool passes_straight() const { return (regular_transmittance > 0.0f).any(); }
+  /// True if light is scattered diffusely, to either side.
+  bool is_diffuse() const { return (reflectance > 0.0f).any() || is_translucent(); }
   /// GGX alpha of the dielectric or the mirror; 0: smooth, or neither.
   float gloss_roughness() const {
     if (dielectric) return dielectric->roughness;

@@ -37,7 +37,8 @@ class Hash {
 // Each kind begins with a word of its own, which no reflectance has.
 void add_gloss(const Material& m, Hash& hash) {
   constexpr std::uint64_t rough_mirror = 0x6d17707e, glass_body = 0x61a55b0d,
-                          body_of_pane = 0x9a4eb0d1, coat = 0xc0a7ba5e;
+                          body_of_pane = 0x9a4eb0d1, coat = 0xc0a7ba5e, translucent = 0x7a0d1ff5,
+                          straight = 0x57a1647;
   if (m.specular_roughness > 0.0f && (m.specular > 0.0f).any()) {
     hash.add(rough_mirror);
     hash.add(static_cast<double>(m.specular_roughness));
@@ -45,6 +46,14 @@ void add_gloss(const Material& m, Hash& hash) {
   if (m.coat) {
     hash.add(coat);
     hash.add(static_cast<double>(m.coat->index_of_refraction));
+  }
+  if (m.is_translucent()) {
+    hash.add(translucent);
+    hash.add(m.transmittance);
+  }
+  if (m.passes_straight()) {
+    hash.add(straight);
+    hash.add(m.regular_transmittance);
   }
   if (!m.dielectric) return;
   const Dielectric& glass = *m.dielectric;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "scene/coat.h"
 #include "scene/microfacet.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
@@ -227,6 +228,7 @@ ScatteringSample sample_smooth(const SurfaceInteraction& interaction, double whi
 
 Spectrum scattering_weight(const SurfaceInteraction& interaction, const ScatteringSample& sample) {
   const auto& glass = interaction.material.dielectric;
+  if (!glass && sample.crosses) return interaction.material.regular_transmittance;
   if (const auto& coat = interaction.material.coat) {
     const double cosine = std::min(1.0, cosine_at_facet(interaction, sample));
     const double F = fresnel_reflectance(cosine, double{coat->index_of_refraction});
@@ -248,7 +250,20 @@ Spectrum crossing_share(const Dielectric& glass) {
 
 bool is_clear_pane(const Material& material) {
   const auto& glass = material.dielectric;
-  return glass && glass->thin && !(glass->roughness > 0.0f);
+  return glass ? glass->thin && !(glass->roughness > 0.0f) : material.passes_straight();
+}
+
+Spectrum mean_specular(const Material& material) {
+  Spectrum share = mean_mirrored(material);
+  if (material.passes_straight()) share += material.regular_transmittance;
+  return share;
+}
+
+ScatteringSample straight_sample(const SurfaceInteraction& interaction) {
+  return {.direction = interaction.direction,
+          .weight = interaction.material.regular_transmittance,
+          .crosses = true,
+          .polarisation = interaction.polarisation};
 }
 
 SmoothScattering smooth_scattering(const SurfaceInteraction& interaction) {
@@ -256,11 +271,35 @@ SmoothScattering smooth_scattering(const SurfaceInteraction& interaction) {
   SmoothScattering lobes;
   lobes.count = 1;
   lobes.sample[0] = mirror_sample(interaction);
+  if (interaction.material.passes_straight()) {
+    lobes.sample[1] = straight_sample(interaction);
+    lobes.count = 2;
+  }
   return lobes;
 }
 
 ScatteringSample sample_scattering(const SurfaceInteraction& interaction,
                                    const ScatteringRandom& first) {
+  const Material& material = interaction.material;
+  if (!material.passes_straight()) return sample_lobe(interaction, first);
+  // A coat's mean is no more than its greatest reflectance, so that neither weight exceeds 1 by
+  // far.
+  const double straight = static_cast<double>(material.regular_transmittance.maxCoeff());
+  const double mirrored = static_cast<double>(material.specular.maxCoeff());
+  const double chance = straight / (straight + mirrored);
+  if (first.component < chance) {
+    ScatteringSample sample = straight_sample(interaction);
+    sample.weight /= static_cast<float>(chance);
+    return sample;
+  }
+  ScatteringRandom rest = first;
+  rest.component = (first.component - chance) / (1.0 - chance);
+  ScatteringSample sample = sample_lobe(interaction, rest);
+  sample.weight /= static_cast<float>(1.0 - chance);
+  return sample;
+}
+
+ScatteringSample sample_lobe(const SurfaceInteraction& interaction, const ScatteringRandom& first) {
   const bool grazes = !(interaction.direction.dot(interaction.normal) < 0.0);
   if (!(interaction.material.gloss_roughness() > 0.0f) || grazes) {
     return sample_smooth(interaction, first.component);

@@ -9,7 +9,7 @@
 
 namespace lightwell {
 
-/// Light that meets a mirror or a clear surface.
+/// Light that meets a mirror, a clear surface or a sheet that passes light straight on.
 struct SurfaceInteraction {
   const Material& material;     ///< with is_specular()
   Eigen::Vector3d direction;    ///< of the light, unit, towards the surface
@@ -28,9 +28,10 @@ struct ScatteringSample {
 };
 
 /// Scattering at a smooth surface: one sample for a mirror; the reflected and, except under total
-/// internal reflection, the refracted light for a dielectric. A dielectric polarises the light, so
-/// the shares of several parallel faces are those of each polarisation, summed. A mirror keeps the
-/// polarisation.
+/// internal reflection, the refracted light for a dielectric; the mirrored light and that which
+/// passes straight on for a sheet of regular transmittance. A dielectric polarises the light, so
+/// the shares of several parallel faces are those of each polarisation, summed. A mirror and a
+/// sheet keep the polarisation.
 struct SmoothScattering {
   std::array<ScatteringSample, 2> sample{};
   int count = 0;
@@ -38,18 +39,24 @@ struct SmoothScattering {
 SmoothScattering smooth_scattering(const SurfaceInteraction& interaction);
 
 /// Share of light, per band, that continues once a sample's direction and side have been chosen:
-/// the reflectance of a mirror; that of a coat by Fresnel's equations at the microfacet; for a
-/// dielectric, 1 if reflected and the tint if crossing. The body
-/// of a thin pane that absorbs leaves less of both, by the angle to the microfacet. The weight that
-/// the sample carries does not count.
+/// the reflectance of a mirror; that of a coat by Fresnel's equations at the microfacet; the
+/// regular transmittance of a sheet; for a dielectric, 1 if reflected and the tint if crossing. The
+/// body of a thin pane that absorbs leaves less of both, by the angle to the microfacet. The weight
+/// that the sample carries does not count.
 Spectrum scattering_weight(const SurfaceInteraction& interaction, const ScatteringSample& sample);
 
 /// Share, per band, of the light not reflected that crosses a clear surface along its normal: the
 /// tint, times what the body of a thin pane leaves.
 Spectrum crossing_share(const Dielectric& glass);
 
-/// True if light that crosses continues straight on: a thin pane without roughness.
+/// True if light that crosses continues straight on: a thin pane without roughness, or a sheet of
+/// regular transmittance.
 bool is_clear_pane(const Material& material);
+
+/// Share of even light, per band, that a material sends on along single directions: what it mirrors
+/// (see mean_mirrored) and its regular transmittance. A dielectric sends on all light; the result
+/// is that of the rest of the material.
+Spectrum mean_specular(const Material& material);
 
 /// Random numbers in [0,1) that choose a sample. `key` gives further numbers where the first ones
 /// are rejected.
@@ -66,9 +73,15 @@ struct ScatteringRandom {
 /// light, Heitz 2014) or the surface itself blocks the sample. The loss of single scattering is
 /// thus spread over the same lobe. At every angle of incidence, roughness keeps the share of a
 /// mirror and all light of glass. A rough thin pane passes the mirrored picture of the light that
-/// it reflects.
+/// it reflects. Light that passes a sheet straight on is one of its samples.
 ScatteringSample sample_scattering(const SurfaceInteraction& interaction,
                                    const ScatteringRandom& random);
+
+/// sample_scattering() without the light that passes a sheet straight on: the lobe of its mirror.
+ScatteringSample sample_lobe(const SurfaceInteraction& interaction, const ScatteringRandom& random);
+
+/// Light that passes a sheet of regular transmittance straight on.
+ScatteringSample straight_sample(const SurfaceInteraction& interaction);
 
 /// Most mirrors and clear surfaces along a path: `most`, or once the path has met glass or a rough
 /// surface at least 128 (0 if `most` is 0). Light in a rough ball is trapped beyond the critical

@@ -10,6 +10,7 @@
 #include "scene/errors.h"
 #include "scene/limits.h"
 #include "scene/scene.h"
+#include "scene/specular.h"
 
 namespace lightwell {
 namespace {
@@ -95,6 +96,33 @@ void check_dielectric(const Scene& scene, const Material& m, const Dielectric& g
   }
 }
 
+bool is_sheet(const Material& m) {
+  return m.is_translucent() || m.passes_straight();
+}
+
+// Share of light, per band, that is mirrored or passes.
+Spectrum passed_on(const Material& m) {
+  return m.is_translucent() ? Spectrum(mean_specular(m) + m.transmittance) : mean_specular(m);
+}
+
+// Checks what passes a thin sheet.
+void check_sheet(const Scene& scene, const Material& m) {
+  for (const Spectrum* share : {&m.transmittance, &m.regular_transmittance}) {
+    if (share->size() > 0) check_share(scene, m, "transmittance", *share);
+  }
+  if (!is_sheet(m)) return;
+  if (m.dielectric) {
+    fail(scene, fmt::format("material '{}' is a dielectric and has a transmittance; remove one: a "
+                            "clear surface passes light by Fresnel's equations",
+                            m.name));
+  }
+  if (m.one_sided) {
+    fail(scene, fmt::format("material '{}' has a transmittance and one side; a sheet that passes "
+                            "light needs both sides",
+                            m.name));
+  }
+}
+
 void check_pictures(const Scene& scene, const Material& m) {
   if (m.texture) {
     if (scene.bands.count() != 3 || !scene.bands.wavelengths_nm.empty()) {
@@ -108,11 +136,11 @@ void check_pictures(const Scene& scene, const Material& m) {
     check_share(scene, m, "texture factor", m.texture->factor);
     constexpr float rounding = 1e-5f;
     const Spectrum brightest = m.texture->factor * m.texture->image.picture->largest();
-    const Spectrum mirrored = mean_mirrored(m);
-    if (!((brightest + mirrored) <= 1.0f + rounding).all()) {
+    const Spectrum others = passed_on(m);
+    if (!((brightest + others) <= 1.0f + rounding).all()) {
       fail(scene, fmt::format("material '{}': where its texture is brightest, reflectance {} + "
-                              "specular {} exceed 1; lower one",
-                              m.name, brightest.maxCoeff(), mirrored.maxCoeff()));
+                              "specular and transmitted {} exceed 1; lower one",
+                              m.name, brightest.maxCoeff(), others.maxCoeff()));
     }
     if (m.dielectric) {
       fail(scene,
@@ -155,15 +183,17 @@ void check_material(const Scene& scene, const Material& m) {
   check_roughness(scene, m, m.specular_roughness);
   check_coat(scene, m);
   constexpr float rounding = 1e-5f;  // decimals of a file that should add up to 1
-  const Spectrum mirrored = mean_mirrored(m);
+  check_sheet(scene, m);
+  const Spectrum mirrored = mean_mirrored(m), sum = m.reflectance + passed_on(m);
   for (int k = 0; k < scene.bands.count(); ++k) {
-    const float sum = m.reflectance[k] + mirrored[k];
-    if (!(sum <= 1.0f + rounding)) {
+    if (!(sum[k] <= 1.0f + rounding)) {
       fail(scene,
            fmt::format(
-               "material '{}': reflectance {} + specular {} = {} in band {}; more light would "
+               "material '{}': reflectance {} + specular {}{} = {} in band {}; more light would "
                "leave than arrives, lower one so that they add up to at most 1",
-               m.name, m.reflectance[k], mirrored[k], sum, scene.bands.names[k]));
+               m.name, m.reflectance[k], mirrored[k],
+               is_sheet(m) ? fmt::format(" + transmittance {}", passed_on(m)[k] - mirrored[k]) : "",
+               sum[k], scene.bands.names[k]));
     }
   }
   if (m.dielectric) {

@@ -47,7 +47,8 @@ std::vector<double> light_key(const Surface& surface, const Material& material) 
   std::vector<double> key{static_cast<double>(surface.motion), material.one_sided ? 1.0 : 0.0,
                           static_cast<double>(material.specular_roughness),
                           material.coat ? double{material.coat->index_of_refraction} : 0.0};
-  for (const Spectrum* spectrum : {&material.reflectance, &material.specular}) {
+  for (const Spectrum* spectrum : {&material.reflectance, &material.specular,
+                                   &material.transmittance, &material.regular_transmittance}) {
     key.push_back(static_cast<double>(spectrum->size()));
     key.insert(key.end(), spectrum->begin(), spectrum->end());
   }

@@ -49,6 +49,8 @@ void copy_patches(const PatchMesh& base, const std::vector<int>& first, PatchMes
   for (const int e : base.first_element) out.first_element.push_back(first[e]);
   out.area = base.area;
   out.reflectance = base.reflectance;
+  out.transmittance = base.transmittance;
+  out.behind = base.behind;
   out.emission = base.emission;
   out.surface = base.surface;
   out.material = base.material;

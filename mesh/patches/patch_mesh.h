@@ -93,6 +93,10 @@ struct PatchMesh {
   Eigen::ArrayXd area{};             ///< A_i, m^2, > 0
   /// Reflectance rho_i, patches x bands; the mean over the patch where a texture varies.
   BandArray reflectance{};
+  /// Diffuse transmittance tau_i, patches x bands: light that arrives behind the patch leaves it.
+  /// Empty if nothing is translucent.
+  BandArray transmittance{};
+  std::vector<int> behind{};    ///< see patches_behind(); empty if nothing is translucent
   BandArray emission{};         ///< M_i, W/m^2, patches x bands
   std::vector<int> surface{};   ///< index into Scene::surfaces
   std::vector<int> material{};  ///< index into Scene::materials

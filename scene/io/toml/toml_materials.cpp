@@ -12,6 +12,7 @@
 #include "scene/errors.h"
 #include "scene/io/glossy.h"
 #include "scene/io/toml/toml_pictures.h"
+#include "scene/specular.h"
 
 namespace lightwell {
 namespace {
@@ -162,8 +163,9 @@ void read_glass(const TomlTable& table, const TomlBands& bands, Material& materi
     dielectric.transmissivity = spectral(*transmissivity, bands, Quantity::share);
   }
   material.dielectric = dielectric;
-  for (const char* other : {"reflectance", "specular", "roughness", "radiance", "exitance", "power",
-                            "luminance", "luminous_exitance", "lumens"}) {
+  for (const char* other :
+       {"reflectance", "specular", "roughness", "radiance", "exitance", "power", "luminance",
+        "luminous_exitance", "lumens", "translucent", "transparent"}) {
     if (const auto value = table.find(other)) {
       value->fail(
           "contradicts 'glass': a clear surface reflects by Fresnel's law alone and emits "
@@ -234,6 +236,31 @@ void lay_given_coat(const TomlTable& table, const GivenCoat& given, Material& ma
         "under this coat the reflectance is at most {:.4f}",
         mirrored.maxCoeff(), material.reflectance.maxCoeff(), 1.0f - mirrored.maxCoeff()));
   }
+}
+
+// What passes a thin sheet, diffusely or straight on.
+void read_sheet(const TomlTable& table, const TomlBands& bands, Material& material) {
+  const auto read = [&](const char* key, Spectrum& share) {
+    const auto value = table.find(key);
+    if (!value) return;
+    if (material.one_sided) {
+      value->fail(
+          "needs both sides of the surface, but sides is 'one'; remove one of the two keys");
+    }
+    share = spectral(*value, bands, Quantity::share);
+    const Spectrum others = material.reflectance + mean_specular(material);
+    const Spectrum all =
+        material.is_translucent() ? Spectrum(others + material.transmittance) : others;
+    constexpr float rounding = 1e-5f;
+    if ((all > 1.0f + rounding).any()) {
+      value->fail(fmt::format(
+          "({}) and what the material reflects and passes besides add up to {}; more light would "
+          "leave than arrives, lower one so that they add up to at most 1",
+          share.maxCoeff(), all.maxCoeff()));
+    }
+  };
+  read("translucent", material.transmittance);
+  read("transparent", material.regular_transmittance);
 }
 
 bool is_photometric(std::string_view key) {
@@ -370,7 +397,7 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
   const TomlTable table =
       value.table({"reflectance", "specular", "roughness", "glass", "sides", "radiance", "exitance",
                    "power", "luminance", "luminous_exitance", "lumens", "colour", "watts", "emits",
-                   "texture", "mask", "coat"});
+                   "texture", "mask", "coat", "translucent", "transparent"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
@@ -397,6 +424,7 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
   const bool has_reflectance = table.has("reflectance") || (coat && coat->has_base);
   read_toml_pictures(table, bands, pictures, has_reflectance, material);
   if (coat) lay_given_coat(table, *coat, material);
+  read_sheet(table, bands, material);
   read_emission(table, bands, result);
   return result;
 }
