@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "cli/channels.h"
+#include "mesh/patches/translucency.h"
 #include "scene/atomic_file.h"
 #include "scene/parallel.h"
 
@@ -22,7 +23,7 @@ std::vector<double> mean_irradiances(const PatchMesh& mesh, const RadiositySolut
   std::vector<double> sum(solution.parts.parts.size(), 0.0), area(sum);
   for (int e = 0; e < mesh.element_count() && !sum.empty(); ++e) {
     const int patch = mesh.patch[e], part = solution.parts.of_patch[patch];
-    if (part < 0 || !(mesh.reflectance.row(patch) > 0.0f).any()) continue;
+    if (part < 0 || !scatters(mesh, patch)) continue;
     const Spectrum here = E.row(e).transpose();
     const double value =
         solution.relative_units ? double{here.mean()} : double{luminous(solution.bands, here)};

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "mesh/patches/translucency.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/error_reference.h"
 
@@ -32,14 +33,19 @@ double noise_share(double target) {
 namespace {
 
 // Irradiance of a patch, W/m^2; a band that the patch absorbs whole takes the mean of its other
-// bands. Empty if nothing reflects.
+// bands. Sides of a sheet have the mean irradiance of both. Empty if nothing is scattered.
 std::optional<Spectrum> patch_irradiance(const PatchMesh& mesh, const BandArray& patch_radiosity,
                                          int patch) {
-  const Eigen::ArrayXf rho = mesh.reflectance.row(patch).transpose();
+  const Eigen::ArrayXf rho = scattered_share(mesh, patch);
   const double known = (rho > 0.0f).cast<double>().sum();
   if (!(known > 0.0)) return std::nullopt;
-  const Eigen::ArrayXf reflected =
-      (patch_radiosity.row(patch) - mesh.emission.row(patch)).transpose();
+  const auto scattered = [&](int p) -> Eigen::ArrayXf {
+    return (patch_radiosity.row(p) - mesh.emission.row(p)).transpose();
+  };
+  Eigen::ArrayXf reflected = scattered(patch);
+  if (!mesh.behind.empty() && mesh.behind[patch] >= 0) {
+    reflected = 0.5f * (reflected + scattered(mesh.behind[patch]));
+  }
   const Spectrum E = (rho > 0.0f).select(reflected / rho.max(1e-30f), 0.0f);
   const auto mean = static_cast<float>(E.cast<double>().sum() / known);
   return (rho > 0.0f).select(E, mean);

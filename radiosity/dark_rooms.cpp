@@ -9,6 +9,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "mesh/patches/patch_sampler.h"
+#include "mesh/patches/translucency.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -83,7 +84,7 @@ DarkRooms find_dark_rooms(const Scene& scene, const PatchMesh& mesh,
   std::vector<int> dark;
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int p = mesh.patch[e];
-    if (!(mesh.reflectance.row(p) > 0.0f).any()) continue;
+    if (!scatters(mesh, p)) continue;
     if (!mesh.is_back[p]) all += mesh.element_area[e];
     if (is_dark(mesh, E, e)) dark.push_back(e);
   }

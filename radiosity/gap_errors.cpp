@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/translucency.h"
 #include "radiosity/refine/error_reference.h"
 #include "scene/parallel.h"
 
@@ -83,7 +84,7 @@ std::vector<int> elements_in_gaps(const ElementCaster& caster) {
   std::vector<char> is_in_gap(static_cast<std::size_t>(mesh.element_count()), 0);
   parallel_for(mesh.element_count(), 1024, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
-      const bool reflects = (mesh.reflectance.row(mesh.patch[e]) > 0.0f).any();
+      const bool reflects = scatters(mesh, mesh.patch[e]);
       if (!reflects || sphere_grid_of(mesh, mesh.facet[e])) continue;
       is_in_gap[static_cast<std::size_t>(e)] = lies_in_gap(caster, e) ? 1 : 0;
     }

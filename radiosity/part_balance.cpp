@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "mesh/patches/patch_sampler.h"
+#include "mesh/patches/translucency.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/refine/error_reference.h"
 #include "radiosity/solution/light_channel.h"
@@ -85,8 +86,10 @@ class ReflectedPower {
     return scales;
   }
 
-  // Index into parts() of the part that a vertex belongs to; -1: none of them.
+  // Index into parts() of the part that a vertex belongs to; -1: none of them. The light of sheets
+  // comes from both sides and is not scaled.
   int part_of_vertex(int v) const {
+    if (is_translucent(patch_[static_cast<std::size_t>(v)])) return -1;
     return place_[static_cast<std::size_t>(balance_.parts.judged_with(patch_[v]))];
   }
 
@@ -129,6 +132,9 @@ class ReflectedPower {
     return columns;
   }
 
+  // Sheets scatter light of both sides, which points on one side do not tell.
+  bool is_translucent(int patch) const { return !mesh_.behind.empty() && mesh_.behind[patch] >= 0; }
+
   // Points on the surfaces of a part, half of them by area and half by the light that is reflected.
   std::vector<BalanceSample> draw(int part) const {
     struct Candidate {
@@ -139,7 +145,7 @@ class ReflectedPower {
     double area = 0.0, power = 0.0;
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       if (balance_.parts.judged_with(p) != part || !(mesh_.reflectance.row(p) > 0.0f).any() ||
-          lit_.caster.hidden_elements(p) > 0) {
+          is_translucent(p) || lit_.caster.hidden_elements(p) > 0) {
         continue;
       }
       for (int e = mesh_.first_element[p]; e < mesh_.first_element[p + 1]; ++e) {

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mesh/patches/patch_textures.h"
+#include "mesh/patches/translucency.h"
 #include "raytrace/specular_light.h"
 
 namespace lightwell {
@@ -143,7 +144,7 @@ void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, doubl
 double reflected_illuminance(const Scene& scene, const ElementCaster& caster,
                              const DirectLight& direct_light, const RadiositySolution& solution,
                              const Camera& eye, const GatherOptions& gathering) {
-  const BandArray reflected = vertex_reflectance(caster.mesh()) * solution.irradiance();
+  const BandArray reflected = scattered_at_vertices(caster.mesh(), solution.irradiance());
   const GatherPoint point{.position = eye.position, .normal = eye.direction};
   const LitScene lit{scene, caster, direct_light};
   const GatheredIrradiance E = gather_indirect(lit, reflected, std::span(&point, 1), gathering);

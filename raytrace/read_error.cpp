@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/patches/translucency.h"
 #include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/paths/light_path.h"
@@ -82,7 +83,13 @@ class ReadErrors {
   double reflectance(int element) const {
     return double{mesh_.reflectance.row(mesh_.patch[element]).mean()};
   }
-  double reflected(int element) const { return reflectance(element) * double{error_[element]}; }
+  double reflected(int element) const {
+    const double sum = reflectance(element) * double{error_[element]};
+    const int patch = mesh_.patch[element];
+    if (mesh_.behind.empty() || mesh_.behind[patch] < 0) return sum;
+    return sum +
+           double{mesh_.transmittance.row(patch).mean()} * double{error_[mesh_.twin[element]]};
+  }
 
   static Ray cosine_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& normal, int facet,
                         float u, float v) {
@@ -112,7 +119,8 @@ Eigen::ArrayXd mean_reflected(const LitScene& lit, const RadiositySolution& solu
   Eigen::ArrayXd area = Eigen::ArrayXd::Zero(parts.judged_count());
   for (int p = 0; p < mesh.patch_count(); ++p) {
     if (!(of_patch.row(p) > 0.0).any()) continue;
-    sum.row(parts.judged_with(p)) += of_patch.row(p) * mesh.reflectance.row(p).cast<double>();
+    sum.row(parts.judged_with(p)) +=
+        of_patch.row(p) * scattered_share(mesh, p).transpose().cast<double>();
     area[parts.judged_with(p)] += mesh.area[p];
   }
   Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(mesh.patch_count());

@@ -294,7 +294,13 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
   }
   Branch here = branch;
   if (!goes_on_at_coat(interaction, here, state)) return;
-  if (material.gloss_roughness() > 0.0f) return scatter(here, interaction, hit, at, state);
+  if (material.gloss_roughness() > 0.0f) {
+    if (material.passes_straight() && !(state.turns && branch.depth >= state.turns->count)) {
+      constexpr std::uint64_t straight = 1;
+      grow(here, child_node(here.node, straight), straight_sample(interaction), hit, at, state);
+    }
+    return scatter(here, interaction, hit, at, state);
+  }
   if (state.turns && branch.depth >= state.turns->count) return;
   SmoothScattering lobes = smooth_scattering(interaction);
   if (state.shades && here.weight.maxCoeff() < options_.min_contribution) {
@@ -314,7 +320,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .depth = parent.depth + 1,
                 .node = node,
                 .is_sharp = parent.is_sharp,
-                .met_glass = parent.met_glass || what.dielectric,
+                .met_glass = parent.met_glass || what.dielectric || what.passes_straight(),
                 .is_direct = parent.is_direct && sample.crosses && is_clear_pane(what),
                 .chain = random_key(parent.chain, facets_[hit.facet].chain, sample.crosses),
                 .turns = parent.turns,
@@ -471,25 +477,46 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
   return textures_->reflectance(hit.facet, at.rest, footprint);
 }
 
-// Adds L = (M + rho E) / pi, weighted by share_of_bright().
+// Irradiance behind a translucent sheet.
+RayTree::Arriving RayTree::arriving_behind(const ElementHit& hit, const ShadingPoint& at,
+                                           const Branch& branch, const TreeState& state) const {
+  ShadingPoint other = at;
+  other.normal = -at.normal;
+  other.rest_normal = -at.rest_normal;
+  return arriving(hit_behind(caster_.mesh(), hit), other, branch, state);
+}
+
+// Adds L = (M + rho E + tau E_behind) / pi, weighted by share_of_bright().
 void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                     TreeState& state) const {
   const float share = share_of_bright(branch, hit, at);
   Spectrum M = emission(branch, hit, at);
   if (!direct_light_.owns(hit.facet, hit.from_back)) M *= share;
   Spectrum rho = share * reflectance(branch, hit, at);
+  const int patch = caster_.mesh().patch[hit.element];
+  const bool is_translucent = !caster_.mesh().behind.empty() && caster_.mesh().behind[patch] >= 0;
+  Spectrum tau;
+  if (is_translucent) tau = share * caster_.mesh().transmittance.row(patch).transpose();
   if (const CoatedBase* base = base_at(hit)) {
     const double cosine = -branch.ray.direction.normalized().dot(smooth_normal(hit, at));
     rho *= static_cast<float>(base->factor(cosine));
+    tau *= static_cast<float>(base->factor(cosine));
   }
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
   if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, state);
+  Scattered scattered{.direct = rho * E.direct, .indirect = rho * E.indirect};
+  if (is_translucent) {
+    const Arriving behind = arriving_behind(hit, at, branch, state);
+    scattered.direct += tau * behind.direct;
+    scattered.indirect += tau * behind.indirect;
+  }
   if (is_by_chance(branch, state) && direct_light_.owns(hit.facet, hit.from_back)) {
     *state.by_chance += branch.weight * one_over_pi * M;
     M.setZero();
   }
-  state.result.radiance += branch.weight * one_over_pi * (M + rho * (E.direct + E.indirect));
-  if (with_layers_) note_layers(branch, hit, M, rho, E, state);
+  state.result.radiance +=
+      branch.weight * one_over_pi * (M + scattered.direct + scattered.indirect);
+  if (with_layers_) note_layers(branch, hit, M, rho, scattered, E, state);
 }
 
 // Adds the emission of DirectLight's emitters, which hemisphere rays do not read.
@@ -568,7 +595,8 @@ void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at,
 }
 
 void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
-                          const Spectrum& rho, const Arriving& E, TreeState& state) const {
+                          const Spectrum& rho, const Scattered& scattered, const Arriving& E,
+                          TreeState& state) const {
   const Bands& bands = scene_.bands;
   const auto three = [&](Layer layer) {
     return state.result.layers.segment<3>(first_sampled_column(layer));
@@ -584,10 +612,10 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
                                ? Eigen::Array3f(linear_rgb(bands, rho) / white_rgb_)
                                : Eigen::Array3f::Constant(rho.mean());
     three(Layer::emission) = light(M);
-    three(Layer::direct) = light(rho * E.direct);
-    three(Layer::indirect) = light(rho * E.indirect);
+    three(Layer::direct) = light(scattered.direct);
+    three(Layer::indirect) = light(scattered.indirect);
   } else {
-    three(Layer::specular) += light(M + rho * (E.direct + E.indirect));
+    three(Layer::specular) += light(M + scattered.direct + scattered.indirect);
   }
   // Refracted children alone have odd numbers, so all bits of a number straight through glass are
   // ones.

@@ -62,11 +62,12 @@ struct SpecularSegment {
 
 /// Whitted's ray tree (1980) over a radiosity solution. Radiance at a hit is the sum over the parts
 /// of the material:
-/// - diffuse: L = (M + rho E) / pi;
+/// - diffuse: L = (M + rho E) / pi, for a translucent sheet (M + rho E + tau E_behind) / pi;
 /// - mirror: specular * L(reflected), with a coat times Fresnel's reflectance;
 /// - base under a coat: L = (M + rho g(out) E) / pi, with each lamp's part of E times g(in), see
 ///   CoatedBase; light of sky and surfaces counts as even;
 /// - clear dielectric: R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R;
+/// - regular transmittance of a sheet: tau_r L(straight on);
 /// - rough mirror or dielectric: the mean over some directions of its lobe, see sample_scattering.
 ///
 /// Smooth surfaces polarise the light, which decides over its share at the surfaces behind them
@@ -196,6 +197,10 @@ class RayTree {
     Spectrum direct{}, indirect{};
     Spectrum direct_at_coat{};  ///< before the coat, for layers; empty: as `direct`
   };
+  /// Diffuse radiosity towards a ray without emission, W/m^2, of direct and of indirect light.
+  struct Scattered {
+    Spectrum direct{}, indirect{};
+  };
   /// State and result of a tree while it grows.
   struct TreeState {
     RaySample result{};
@@ -270,13 +275,16 @@ class RayTree {
   }
   Arriving arriving(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
                     const TreeState& state) const;
+  Arriving arriving_behind(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
+                           const TreeState& state) const;
   Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   double cone_width(const Branch& branch, const ShadingPoint& at) const {
     return branch.cone.start + branch.cone.spread * (at.position - branch.ray.origin).norm();
   }
   void add_caustics(const ElementHit& hit, const ShadingPoint& at, Spectrum& indirect) const;
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
-                   const Spectrum& rho, const Arriving& E, TreeState& state) const;
+                   const Spectrum& rho, const Scattered& scattered, const Arriving& E,
+                   TreeState& state) const;
 
   const Scene& scene_;
   const ElementCaster& caster_;

@@ -65,8 +65,8 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
     const int index = (first + i) % gloss_point_count;
     const auto sample_key = random_key(key, static_cast<std::uint64_t>(index));
     const Eigen::Array4d u = gloss_points_.point(index, key).cast<double>();
-    ScatteringSample sample = sample_scattering(
-        interaction, {.component = u[2], .u = u[0], .v = u[1], .key = sample_key});
+    ScatteringSample sample =
+        sample_lobe(interaction, {.component = u[2], .u = u[0], .v = u[1], .key = sample_key});
     sample.weight /= static_cast<float>(count);
     sample.density =
         lobe(facets_[hit.facet].material, hit.from_back).density(interaction, sample.direction);

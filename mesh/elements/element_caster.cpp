@@ -37,6 +37,18 @@ Array4f turned_weights(const Array4f& w, bool is_triangle) {
   return is_triangle ? Array4f(w[0], w[2], w[1], 0.0f) : Array4f(w[0], w[3], w[2], w[1]);
 }
 
+}  // namespace
+
+ElementHit hit_behind(const PatchMesh& mesh, const ElementHit& hit) {
+  ElementHit other = hit;
+  other.element = mesh.twin[hit.element];
+  other.from_back = !hit.from_back;
+  other.weights = turned_weights(hit.weights, mesh.corner_count(hit.element) == 3);
+  return other;
+}
+
+namespace {
+
 // Sets the element and weights of `hit` at the point `from_center` away from a sphere's centre.
 void find_on_sphere(const PatchMesh& mesh, const SphereGrid& grid, const Vector3d& from_center,
                     ElementHit& hit) {

@@ -24,6 +24,9 @@ struct ElementHit {
   Eigen::Array4f weights = Eigen::Array4f::Zero();
 };
 
+/// The hit on the other side of a sheet, at the same place. Precondition: the element has a twin.
+ElementHit hit_behind(const PatchMesh& mesh, const ElementHit& hit);
+
 /// Casts rays at the elements of a PatchMesh and at exact spheres, and returns the element and
 /// place that each ray meets. Ray::origin_group and target_group are scene-wide facet numbers here.
 /// Keeps a reference to the mesh. A copy is cheap: large data are shared.

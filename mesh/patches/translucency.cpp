@@ -1,27 +1,11 @@
 #include "mesh/patches/translucency.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "mesh/patches/patch_textures.h"
 
 namespace lightwell {
 namespace {
-
-// Corner of an element nearest to the position of a vertex.
-int nearest_corner(const PatchMesh& mesh, int element, int vertex) {
-  int nearest = -1;
-  double least = std::numeric_limits<double>::infinity();
-  for (int c = 0; c < mesh.corner_count(element); ++c) {
-    const int corner = mesh.corners[element][c];
-    const double square = (mesh.position(corner) - mesh.position(vertex)).squaredNorm();
-    if (square < least) {
-      least = square;
-      nearest = corner;
-    }
-  }
-  return nearest;
-}
 
 using Row = Eigen::Array<float, 1, Eigen::Dynamic>;
 
@@ -60,8 +44,10 @@ std::vector<int> vertices_behind(const PatchMesh& mesh) {
     const int twin = mesh.twin[e];
     if (twin < 0 || mesh.behind[mesh.patch[e]] < 0) continue;
     for (int c = 0; c < mesh.corner_count(e); ++c) {
+      // The corners of the other side run the other way around.
+      const int count = mesh.corner_count(e), turned = (count - c) % count;
       int& other = behind[mesh.corners[e][c]];
-      if (other < 0) other = nearest_corner(mesh, twin, mesh.corners[e][c]);
+      if (other < 0) other = mesh.corners[twin][turned];
     }
   }
   return behind;

@@ -40,7 +40,8 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   // Brightness determines which emitters have closed forms, and their order.
   for (const Emitter& emitter : direct_light.emitters()) print.add(emitter.facet);
   for (const Material& material : scene.materials) {
-    print.add((material.reflectance > 0.0f).any());
+    print.add(material.is_diffuse());
+    print.add(material.regular_transmittance);
     print.add(material.is_emitter());
     print.add(material.one_sided);
     print.add(material.emits_both_sides);

@@ -9,6 +9,7 @@
 #include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/patch_textures.h"
 #include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/translucency.h"
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
@@ -460,7 +461,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
   const Eigen::Index bands = mesh.reflectance.cols();
   BandArray gains;
   if (direct.rows() > 0) gains = direct_gains(mesh, direct_light, patch, direct.cols() / bands);
-  BandArray B(irradiance.rows(), irradiance.cols());
+  BandArray B(irradiance.rows(), irradiance.cols()), at_base = irradiance;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int p = patch[v], facet = mesh.facet[mesh.first_element[p]];
     for (Eigen::Index k = 0; k < B.cols(); k += bands) {
@@ -468,11 +469,13 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
       if (gains.size() > 0 && gains(v, k / bands) != 0.0f) {
         B.row(v).segment(k, bands) +=
             gains(v, k / bands) * rho.row(v) * direct.row(v).segment(k, bands);
+        at_base.row(v).segment(k, bands) += gains(v, k / bands) * direct.row(v).segment(k, bands);
       }
     }
     if (direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
     B.row(v).segment(direct_light.first_column(facet), bands) += mesh.emission.row(p);
   }
+  add_transmitted(mesh, at_base, B);
   return B;
 }
 

@@ -78,12 +78,14 @@ bool GapLight::is_gap(const Eigen::Vector3d& normal, const Ray& ray, const Eleme
   return other.dot(normal) < facing && width < widest_gap * size && width > narrowest_gap * size;
 }
 
-// True if the surface reflects diffusely, mirrors by a coat at most, and does not emit.
+// True if the surface reflects diffusely, mirrors by a coat at most, passes no light and does not
+// emit.
 bool GapLight::may_be_followed(const ElementHit& hit) const {
   const PatchMesh& mesh = lit_.mesh();
   const int patch = mesh.patch[hit.element];
   return paths_.is_mostly_diffuse(hit.facet) && !(mesh.emission.row(patch) > 0.0f).any() &&
-         (mesh.reflectance.row(patch) > 0.0f).any();
+         (mesh.reflectance.row(patch) > 0.0f).any() &&
+         (mesh.behind.empty() || mesh.behind[patch] < 0);
 }
 
 bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const {

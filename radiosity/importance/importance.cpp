@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "mesh/patches/patch_sampler.h"
+#include "mesh/patches/translucency.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -32,8 +33,14 @@ class ImportanceWalks {
       const int patch = mesh.patch[end->element];
       visited.push_back(patch);
       const auto random = [&](std::uint64_t i) { return random_uniform(random_key(key, i)); };
-      if (random(1) >= double{mesh.reflectance.row(patch).mean()}) break;
-      ray = cosine_ray(mesh, *end, static_cast<float>(random(2)), static_cast<float>(random(3)));
+      const double reflected = double{mesh.reflectance.row(patch).mean()};
+      if (random(1) >= double{scattered_share(mesh, patch).mean()}) break;
+      PatchPoint from = *end;
+      if (random(1) >= reflected) {
+        from = behind(*end);
+        visited.push_back(mesh.patch[from.element]);
+      }
+      ray = cosine_ray(mesh, from, static_cast<float>(random(2)), static_cast<float>(random(3)));
     }
     return visited;
   }
@@ -53,6 +60,13 @@ class ImportanceWalks {
       if (!found && at.hit.element >= 0) found = place(at.hit.element, at.position);
     });
     return found;
+  }
+
+  // The same point on the other side of a sheet.
+  PatchPoint behind(PatchPoint at) const {
+    at.element = caster_.mesh().twin[at.element];
+    at.normal = -at.normal;
+    return at;
   }
 
   PatchPoint place(int element, const Eigen::Vector3d& position) const {

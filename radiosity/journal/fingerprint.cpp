@@ -20,6 +20,7 @@ void Fingerprint::add_bytes(std::span<const std::byte> bytes) {
 void Fingerprint::add(const PatchMesh& mesh) {
   add_geometry(mesh);
   add(mesh.reflectance);
+  add(mesh.transmittance);
   add(mesh.emission);
   if (mesh.source_scale.size() > 0) add(mesh.source_scale);
 }

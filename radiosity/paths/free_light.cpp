@@ -181,11 +181,12 @@ class Collector {
         }
       });
     }
-    const std::vector<Spectrum> mirrored = mean_mirrored(scene.materials);
+    std::vector<Spectrum> sent_on;
+    for (const Material& material : scene.materials) sent_on.push_back(mean_specular(material));
     for (int i = 0; i < mesh.patch_count(); ++i) {
       from_afar_.col(i) += mesh.area[i] * E.row(i).transpose().cast<double>();
       const auto material = static_cast<std::size_t>(mesh.material[static_cast<std::size_t>(i)]);
-      const Eigen::ArrayXd kept = 1.0 - mirrored[material].cast<double>();
+      const Eigen::ArrayXd kept = 1.0 - sent_on[material].cast<double>();
       for (Eigen::Index k = 0; k < from_afar_.rows(); k += bands_) {
         light_.emitted.segment(k, bands_) += kept * from_afar_.col(i).segment(k, bands_);
       }

@@ -19,8 +19,7 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
     const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
     material_.push_back(surface.material);
     specular_.push_back(material.is_specular());
-    diffuse_.push_back((material.reflectance > 0.0f).any() || material.is_emitter() ||
-                       !material.is_specular());
+    diffuse_.push_back(material.is_diffuse() || material.is_emitter() || !material.is_specular());
     normal_.push_back(polygons ? facet_normal(*polygons, polygons->facets[ref.facet])
                                : Eigen::Vector3d::Zero());
     sphere_.push_back(polygons ? nullptr : &std::get<Sphere>(surface.shape));
@@ -145,7 +144,8 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
   bool goes_deep = false;
   for (int depth = 0;; ++depth) {
     const Material& met = scene_.materials[material_[hit.facet]];
-    goes_deep = goes_deep || met.dielectric || met.gloss_roughness() > 0.0f;
+    goes_deep =
+        goes_deep || met.dielectric || met.passes_straight() || met.gloss_roughness() > 0.0f;
     if (depth >= deepest_path(max_depth_, goes_deep)) {
       losses.cut += throughput;
       return losses;

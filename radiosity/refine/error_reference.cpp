@@ -20,8 +20,10 @@ NoiseGoal noise_goal(double mean_irradiance, double share) {
 }
 
 std::vector<char> judged_patches(const PatchMesh& mesh) {
-  const bool any = (mesh.reflectance > 0.0f).any();
-  const BandArray& light = any ? mesh.reflectance : mesh.emission;
+  BandArray light = mesh.reflectance;
+  if (mesh.transmittance.size() > 0) light += mesh.transmittance;
+  const bool any = (light > 0.0f).any();
+  if (!any) light = mesh.emission;
   std::vector<char> judged(static_cast<std::size_t>(mesh.patch_count()), 0);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     judged[static_cast<std::size_t>(p)] = (light.row(p) > 0.0f).any() == any ? 1 : 0;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "mesh/patches/translucency.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/refine/error_reference.h"
 
@@ -103,8 +104,7 @@ std::vector<char> unread_patches(const Scene& scene, const PatchMesh& mesh) {
   std::vector<char> unread(static_cast<std::size_t>(mesh.patch_count()), 0);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const Material& material = scene.materials[static_cast<std::size_t>(mesh.material[p])];
-    const bool is_diffuse = (material.reflectance > 0.0f).any() || material.is_emitter() ||
-                            (mesh.reflectance.row(p) > 0.0f).any() ||
+    const bool is_diffuse = material.is_diffuse() || material.is_emitter() || scatters(mesh, p) ||
                             (mesh.emission.row(p) > 0.0f).any();
     unread[static_cast<std::size_t>(p)] = material.is_specular() && !is_diffuse ? 1 : 0;
   }

@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "mesh/patches/translucency.h"
 #include "radiosity/solution/channel_arrays.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solution/solution_arrays.h"
@@ -97,6 +98,9 @@ void read_patches(const SolutionArrays& in, int band_count, PatchMesh& mesh) {
   const auto is_back = in.required<unsigned char>(in.field(), "patch_is_back", n);
   mesh.is_back.assign(is_back.data, is_back.data + n);
   mesh.reflectance = in.bands(in.field(), "patch_reflectance", n, band_count);
+  if (in.optional<float>(in.field(), "patch_transmittance", band_count).rows > 0) {
+    mesh.transmittance = in.bands(in.field(), "patch_transmittance", n, band_count);
+  }
   mesh.emission = in.bands(in.field(), "patch_emission", n, band_count);
 
   mesh.element_area = in.areas(in.cells(), "area", element_count);
@@ -108,6 +112,7 @@ void read_patches(const SolutionArrays& in, int band_count, PatchMesh& mesh) {
     in.require(first[i] <= e && e < first[i + 1],
                fmt::format("element {} names patch {}, which does not include the element", e, i));
   }
+  mesh.behind = patches_behind(mesh);
 }
 
 void read_sphere_grids(const SolutionArrays& in, PatchMesh& mesh) {

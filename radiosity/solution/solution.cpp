@@ -1,6 +1,6 @@
 #include "radiosity/solution/solution.h"
 
-#include "mesh/patches/patch_textures.h"
+#include "mesh/patches/translucency.h"
 
 namespace lightwell {
 
@@ -20,14 +20,13 @@ Eigen::ArrayXf error_bound(const RadiositySolution& solution) {
 }
 
 BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution) {
-  BandArray B = solution.irradiance();
-  const BandArray rho = vertex_reflectance(mesh);
+  BandArray B = scattered_at_vertices(mesh, solution.irradiance());
   std::vector<int> patch(mesh.vertex_count(), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {
     for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
   }
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    B.row(v) = mesh.emission.row(patch[v]) + rho.row(v) * B.row(v);
+    B.row(v) += mesh.emission.row(patch[v]);
   }
   return B;
 }

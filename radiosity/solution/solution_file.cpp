@@ -141,6 +141,9 @@ void add_patches(vtkFieldData* data, const PatchMesh& mesh, const RadiositySolut
   add_values(data, "patch_material", mesh.material.data(), n);
   add_values(data, "patch_is_back", is_back.data(), n);
   add_bands(data, "patch_reflectance", mesh.reflectance, s.bands);
+  if (mesh.transmittance.size() > 0) {
+    add_bands(data, "patch_transmittance", mesh.transmittance, s.bands);
+  }
   add_bands(data, "patch_emission", mesh.emission, s.bands);
   add_bands(data, "patch_radiosity", s.patch_radiosity, s.bands);
 

@@ -5,7 +5,7 @@
 
 namespace lightwell {
 
-ExchangeGroups::ExchangeGroups(const FormFactors& form_factors) {
+ExchangeGroups::ExchangeGroups(const FormFactors& form_factors, const std::vector<int>& behind) {
   const int n = form_factors.patch_count();
   std::vector<int> parent(static_cast<std::size_t>(n));
   std::iota(parent.begin(), parent.end(), 0);
@@ -31,6 +31,7 @@ ExchangeGroups::ExchangeGroups(const FormFactors& form_factors) {
     };
     for (const FormFactor& f : form_factors.row(i)) join(f.patch);
     for (const int j : form_factors.specular_row(i).patch) join(j);
+    if (!behind.empty() && behind[i] >= 0) join(behind[i]);
   }
   group_of.resize(parent.size());
   for (int i = 0; i < n; ++i) {

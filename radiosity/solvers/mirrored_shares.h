@@ -9,7 +9,8 @@
 
 namespace lightwell {
 
-/// Shares, [0,1], of arriving light that surfaces mirror, for energy balances. Mirrors have theirs.
+/// Shares, [0,1], of arriving light that surfaces mirror or pass straight on, for energy balances.
+/// Mirrors and sheets have theirs.
 /// Coats mirror less of steep light and more of grazing light than mean_mirrored(): the light that
 /// arrived or was lost beyond what was sent, and which no mirror sent on, is theirs.
 class MirroredShares {
@@ -17,8 +18,12 @@ class MirroredShares {
   MirroredShares(const Scene& scene, Eigen::Index columns)
       : beyond_(Eigen::ArrayXd::Zero(columns)), by_coats_(beyond_) {
     for (const Material& material : scene.materials) {
-      shares_.push_back(
-          mean_mirrored(material).cast<double>().replicate(columns / scene.bands.count(), 1));
+      const auto repeated = [&](const Spectrum& share) -> Eigen::ArrayXd {
+        return share.cast<double>().replicate(columns / scene.bands.count(), 1);
+      };
+      shares_.push_back(repeated(mean_mirrored(material)));
+      straight_.push_back(material.passes_straight() ? repeated(material.regular_transmittance)
+                                                     : Eigen::ArrayXd());
       is_coat_.push_back(material.coat.has_value());
       has_coats_ = has_coats_ || material.coat;
     }
@@ -31,6 +36,7 @@ class MirroredShares {
   void arrive(const Eigen::ArrayXd& light, int material) {
     const auto m = static_cast<std::size_t>(material);
     beyond_ += light;
+    if (straight_[m].size() > 0) beyond_ -= light * straight_[m];
     if (is_coat_[m]) {
       by_coats_ += light * shares_[m];
     } else {
@@ -50,15 +56,17 @@ class MirroredShares {
       if (is_coat_[m]) shares_[m] *= of_mean;
     }
   }
-  /// Share of a column's arriving light, [0,1], that a surface of a material keeps if it reflects
-  /// the share `rho` diffusely.
-  double kept(int material, Eigen::Index column, float rho) const {
-    const double mirrored = shares_[static_cast<std::size_t>(material)][column];
-    return std::max(0.0, 1.0 - double{rho} - mirrored);
+  /// Share of a column's arriving light, [0,1], that a surface of a material keeps if it scatters
+  /// the share `scattered` diffusely, to one side or both.
+  double kept(int material, Eigen::Index column, float scattered) const {
+    const auto m = static_cast<std::size_t>(material);
+    const double straight = straight_[m].size() > 0 ? straight_[m][column] : 0.0;
+    return std::max(0.0, 1.0 - double{scattered} - shares_[m][column] - straight);
   }
 
  private:
   std::vector<Eigen::ArrayXd> shares_{};
+  std::vector<Eigen::ArrayXd> straight_{};  // empty: nothing passes straight on
   std::vector<char> is_coat_{};
   bool has_coats_ = false;
   Eigen::ArrayXd beyond_, by_coats_;

@@ -12,6 +12,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/patches/translucency.h"
 #include "radiosity/form_factors/ray_cast_rows.h"
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/solvers/mirrored_shares.h"
@@ -94,7 +95,7 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
     if (!(mesh.area[i] > 0.0)) {
       throw std::invalid_argument(fmt::format("patch {} has area {}", i, mesh.area[i]));
     }
-    reflected += mesh.area[i] * mesh.reflectance.row(i).transpose().cast<double>();
+    reflected += mesh.area[i] * scattered_share(mesh, i).cast<double>();
     energy_.row(emitted_row) += mesh.area[i] * radiosity_.row(i).cast<double>();
   }
   if (!free_light.empty()) take_in(free_light);
@@ -115,11 +116,9 @@ void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
   mirrored.settle();
   for (int i = 0; i < mesh_.patch_count(); ++i) {
     for (Eigen::Index k = 0; k < unshot_.cols(); ++k) {
-      const float E = free_light.irradiance(i, k), rho = mesh_.reflectance(i, k % bands);
-      radiosity_(i, k) += rho * E;
-      unshot_(i, k) += rho * E;
-      energy_(absorbed_row, k) +=
-          mesh_.area[i] * double{E} * mirrored.kept(mesh_.material[i], k, rho);
+      const float E = free_light.irradiance(i, k);
+      energy_(absorbed_row, k) += mesh_.area[i] * double{E} *
+                                  mirrored.kept(mesh_.material[i], k, scatter(i, k, k % bands, E));
     }
   }
   free_energy_ = free_energy(free_light);
@@ -194,8 +193,8 @@ bool ProgressiveRadiosity::step(int most) {
   last_shots_.clear();
   for (const int i : chosen) {
     requests.push_back({i, rays_of(i)});
-    const Spectrum rho = mesh_.reflectance.row(i).transpose();
-    const Eigen::ArrayXf more = for_each_channel(rho, unshot_.cols()) * foreseen.max(0.0f);
+    const Eigen::ArrayXf more =
+        for_each_channel(scattered_share(mesh_, i), unshot_.cols()) * foreseen.max(0.0f);
     last_shots_.push_back({i, unshot_.row(i).transpose() + more});
   }
   std::vector<EstimatedRow> rows(requests.size());
@@ -252,6 +251,19 @@ MirroredShares ProgressiveRadiosity::mirrored_of(const EstimatedRow& row) const 
   return mirrored;
 }
 
+// Adds what patch j scatters of an irradiance to both of its sides. Returns the share.
+float ProgressiveRadiosity::scatter(int j, Eigen::Index column, Eigen::Index band, float E) {
+  const auto add = [&](int patch, float share) {
+    const float sent_on = share * E;
+    radiosity_(patch, column) += sent_on;
+    unshot_(patch, column) += sent_on;
+    return share;
+  };
+  const float reflected = add(j, mesh_.reflectance(j, band));
+  if (mesh_.behind.empty() || mesh_.behind[j] < 0) return reflected;
+  return reflected + add(mesh_.behind[j], mesh_.transmittance(mesh_.behind[j], band));
+}
+
 void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
   const Eigen::ArrayXd watts = mesh_.area[shot.patch] * shot.radiosity.cast<double>();
   const Eigen::Index columns = unshot_.cols(), bands = mesh_.emission.cols();
@@ -261,11 +273,8 @@ void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
     for (Eigen::Index k = 0; k < columns; ++k) {
       const Eigen::Index band = k % bands;
       const double arriving = watts[k] * static_cast<double>(share_of(band));
-      const float rho = mesh_.reflectance(j, band);
-      const float sent_on = rho * static_cast<float>(arriving / mesh_.area[j]);
-      radiosity_(j, k) += sent_on;
-      unshot_(j, k) += sent_on;
-      energy_(absorbed_row, k) += arriving * mirrored.kept(mesh_.material[j], band, rho);
+      const float scattered = scatter(j, k, band, static_cast<float>(arriving / mesh_.area[j]));
+      energy_(absorbed_row, k) += arriving * mirrored.kept(mesh_.material[j], band, scattered);
     }
   };
   for (const auto& [j, share] : row.shares) {

@@ -112,6 +112,7 @@ class ProgressiveRadiosity {
   std::vector<int> choose(int most) const;
   int rays_of(int patch) const;
   MirroredShares mirrored_of(const EstimatedRow& row) const;
+  float scatter(int j, Eigen::Index column, Eigen::Index band, float E);
   void receive(const Shot& shot, const EstimatedRow& row);
 
   const Scene& scene_;

@@ -30,21 +30,36 @@ RadiositySystem::RadiositySystem(const PatchMesh& mesh, const FormFactors& form_
     : RowGather(form_factors, static_cast<int>(mesh.emission.cols()), std::move(pause)),
       area(mesh.area),
       M(with_lanes(mesh.emission)),
-      rho(with_lanes(mesh.reflectance)) {
-  if (arriving.size() > 0) M += rho * with_lanes(arriving);
+      rho(with_lanes(mesh.reflectance)),
+      albedo(rho),
+      behind_(mesh.behind) {
+  if (!mesh.behind.empty()) {
+    tau = with_lanes(mesh.transmittance);
+    albedo += tau;
+  }
+  if (arriving.size() > 0) M += scattered(with_lanes(arriving));
+}
+
+LightVector RadiositySystem::scattered(const LightVector& E) const {
+  LightVector B = rho * E;
+  if (!is_translucent()) return B;
+  for (int i = 0; i < patch_count(); ++i) {
+    if (behind(i) >= 0) B.row(i) += tau.row(i) * E.row(behind(i));
+  }
+  return B;
 }
 
 LightVector RadiositySystem::residual(const LightVector& B) const {
   LightVector r;
   pass([&] { r = all(B); }, r);
-  r = M + rho * r - B;
+  r = M + scattered(r) - B;
   return r;
 }
 
 LightVector RadiositySystem::product(const LightVector& x) const {
   LightVector y;
   pass([&] { y = all(x); }, y);
-  y = x - rho * y;
+  y = x - scattered(y);
   return y;
 }
 

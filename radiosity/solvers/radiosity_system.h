@@ -1,12 +1,15 @@
 #pragma once
 
+#include <vector>
+
 #include "radiosity/solvers/kept_passes.h"
 #include "radiosity/solvers/row_gather.h"
 
 namespace lightwell {
 
-/// The linear system B = M + rho F B of a mesh, all bands side by side. With arriving light E0 from
-/// elsewhere, M is M + rho E0.
+/// The linear system B = M + R F B of a mesh, all bands side by side. R scatters irradiance E to
+/// both sides of sheets, (R E)_i = rho_i E_i + tau_i E_behind(i), and is the diagonal of rho where
+/// nothing is translucent. With arriving light E0 from elsewhere, M is M + R E0.
 class RadiositySystem : public RowGather {
  public:
   /// Keeps references to mesh and form_factors; `pause` as in RowGather. `arriving` is E0, patches
@@ -18,10 +21,19 @@ class RadiositySystem : public RowGather {
 
   const Eigen::ArrayXd& area;  ///< A_i, m^2
   LightVector M, rho;          ///< emission in W/m^2, reflectance
+  LightVector tau;             ///< diffuse transmittance; empty if nothing is translucent
+  LightVector albedo;          ///< rho + tau: what scatters of even light on both sides
 
-  /// M + rho F B - B: one pass.
+  /// True if light passes sheets diffusely.
+  bool is_translucent() const { return tau.size() > 0; }
+  /// The patch whose irradiance passes to patch i; -1: none.
+  int behind(int i) const { return behind_.empty() ? -1 : behind_[static_cast<std::size_t>(i)]; }
+  /// R E.
+  LightVector scattered(const LightVector& E) const;
+
+  /// M + R F B - B: one pass.
   LightVector residual(const LightVector& B) const;
-  /// (I - rho F) x: one pass.
+  /// (I - R F) x: one pass.
   LightVector product(const LightVector& x) const;
 
   /// Runs a solver's `pass` over the rows, which overwrites `results`; a kept pass is recalled
@@ -42,6 +54,7 @@ class RadiositySystem : public RowGather {
   double asymmetry() const;
 
  private:
+  const std::vector<int>& behind_;  // see PatchMesh::behind
   KeptPasses* passes_ = nullptr;
 };
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "mesh/patches/translucency.h"
 #include "radiosity/solvers/mirrored_shares.h"
 
 namespace lightwell {
@@ -15,6 +16,8 @@ PatchMesh patches_of(const PatchMesh& mesh) {
   PatchMesh patches;
   patches.area = mesh.area;
   patches.reflectance = mesh.reflectance;
+  patches.transmittance = mesh.transmittance;
+  patches.behind = mesh.behind;
   patches.material = mesh.material;
   return patches;
 }
@@ -116,6 +119,7 @@ BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFact
                        const BandArray& B, const FreeLight& free_light) {
   BandArray E = gather(form_factors, B);
   if (!free_light.empty()) E += free_light.irradiance;
+  const BandArray scattered = scattered_by_patches(mesh, E);
   MirroredShares mirrored(scene, B.cols());
   for (int i = 0; i < mesh.patch_count(); ++i) {
     const Spectrum lost = (form_factors.absorbed_by_specular(i) + form_factors.escaped(i) - 1.0f) *
@@ -131,11 +135,10 @@ BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFact
   for (int i = 0; i < mesh.patch_count(); ++i) {
     const double A = mesh.area[i];
     const Spectrum B_i = B.row(i).transpose(), E_i = E.row(i).transpose();
-    const Spectrum M_i = mesh.emission.row(i).transpose(),
-                   rho = mesh.reflectance.row(i).transpose();
+    const Spectrum M_i = mesh.emission.row(i).transpose(), share = scattered_share(mesh, i);
     Spectrum kept(B.cols());
     for (Eigen::Index k = 0; k < kept.size(); ++k) {
-      kept[k] = static_cast<float>(mirrored.kept(mesh.material[i], k, rho[k]));
+      kept[k] = static_cast<float>(mirrored.kept(mesh.material[i], k, share[k]));
     }
     const auto add = [&](int row, const Spectrum& per_area) {
       energy.row(row) += A * per_area.cast<double>().transpose();
@@ -143,7 +146,7 @@ BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFact
     add(0, M_i);
     add(1, kept * E_i + form_factors.absorbed_by_specular(i) * B_i);
     add(2, form_factors.escaped(i) * B_i);
-    add(3, M_i + rho * E_i - B_i);
+    add(3, M_i + scattered.row(i).transpose() - B_i);
   }
   if (!free_light.empty()) {
     energy.row(0) += free_light.emitted.transpose();

@@ -30,8 +30,17 @@ SolverMethod chosen(const SolverRun& run, SolverMethod asked) {
   if (!needs_reciprocity) return asked;
   const double found = asymmetry(run.system);
   const bool is_reciprocal = found < most_asymmetry;
+  // Where a sheet passes more light than it reflects, the matrix is not positive definite.
+  const bool is_definite = !run.system.is_translucent();
   if (asked == SolverMethod::automatic) {
-    return is_reciprocal ? SolverMethod::conjugate_gradients : SolverMethod::bicgstab;
+    return is_reciprocal && is_definite ? SolverMethod::conjugate_gradients
+                                        : SolverMethod::bicgstab;
+  }
+  if (asked == SolverMethod::conjugate_gradients && !is_definite) {
+    throw InputError(fmt::format(
+        "the solver '{}' does not solve for translucent materials, whose sides exchange light; use "
+        "'bicgstab', 'gmres' or 'gauss-seidel'",
+        solver_name(asked)));
   }
   if (is_reciprocal) return asked;
   throw InputError(fmt::format(

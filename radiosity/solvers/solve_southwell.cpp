@@ -44,7 +44,9 @@ class SouthwellShooter {
         r_(r),
         lanes_(system.lanes()),
         rho_per_area_(system.rho.colwise() / system.area),
-        unshot_(system.patch_count()) {}
+        unshot_(system.patch_count()) {
+    if (system.is_translucent()) tau_per_area_ = system.tau.colwise() / system.area;
+  }
 
   // Shoots until `factors` entries of F are read.
   void shoot_for(std::size_t factors) {
@@ -62,7 +64,8 @@ class SouthwellShooter {
   double unshot_power(int i) const { return system_.area[i] * r_.row(i).abs().sum(); }
 
   // B_i += r_i, and r_j += rho_j F_ji r_i, with column i of F taken from row i by reciprocity, F_ji
-  // = A_i F_ij / A_j. Returns the number of entries read.
+  // = A_i F_ij / A_j; behind a translucent patch j, r += tau F_ji r_i. Returns the number of
+  // entries read.
   std::size_t shoot(int i) {
     power_ = system_.area[i] * r_.row(i);
     B_.row(i) += r_.row(i);
@@ -83,11 +86,19 @@ class SouthwellShooter {
 
   template <class Factor>
   void receive(int j, Factor F) {
-    const double* const rho_per_area = &rho_per_area_(j, 0);
+    scatter(j, &rho_per_area_(j, 0), F);
+    // Both sides of a sheet have the same area.
+    if (const int behind = system_.behind(j); behind >= 0) {
+      scatter(behind, &tau_per_area_(behind, 0), F);
+    }
+  }
+
+  template <class Factor>
+  void scatter(int j, const double* share_per_area, Factor F) {
     double* const r = &r_(j, 0);
     double sum = 0.0;
     for (int k = 0; k < lanes_; ++k) {
-      r[k] += rho_per_area[k] * F(k) * power_[k];
+      r[k] += share_per_area[k] * F(k) * power_[k];
       sum += std::abs(r[k]);
     }
     unshot_.set(j, system_.area[j] * sum);
@@ -96,7 +107,7 @@ class SouthwellShooter {
   const RadiositySystem& system_;
   LightVector &B_, &r_;
   int lanes_ = 0;
-  LightVector rho_per_area_;
+  LightVector rho_per_area_, tau_per_area_;
   Largest unshot_;
   LaneArray power_;
 };

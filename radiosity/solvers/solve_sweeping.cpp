@@ -8,13 +8,21 @@
 namespace lightwell {
 namespace {
 
-// B_i += omega (M_i + rho_i sum_j F_ij B_j - B_i), one patch after another.
+// B_i += omega (M_i + rho_i sum_j F_ij B_j - B_i), one patch after another; with tau_i times the
+// irradiance behind a translucent patch.
 void sweep(const RadiositySystem& system, double omega, LightVector& B) {
   constexpr int rows_between_pauses = 4096;
-  LaneArray E(system.lanes());
+  LaneArray E(system.lanes()), E_behind(system.lanes());
   for (int i = 0; i < system.patch_count(); ++i) {
     system.row(i, B, E.data());
-    B.row(i) += omega * (system.M.row(i) + system.rho.row(i) * E - B.row(i));
+    const int behind = system.behind(i);
+    if (behind < 0) {
+      B.row(i) += omega * (system.M.row(i) + system.rho.row(i) * E - B.row(i));
+    } else {
+      system.row(behind, B, E_behind.data());
+      B.row(i) += omega * (system.M.row(i) + system.rho.row(i) * E + system.tau.row(i) * E_behind -
+                           B.row(i));
+    }
     if ((i + 1) % rows_between_pauses == 0) system.pause();
   }
 }

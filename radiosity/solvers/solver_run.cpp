@@ -56,14 +56,14 @@ SolverRun::SolverRun(const PatchMesh& mesh, const FormFactors& form_factors,
           checked(mesh, solver_options), form_factors,
           [this] { report(options.run.progress, "solve", share_); }, solver_options.arriving),
       options(solver_options),
-      groups(form_factors) {
+      groups(form_factors, mesh.behind) {
   find_ends();
 }
 
 void SolverRun::keep_passes(SolverMethod method) {
   if (!options.run.journal) return;
   // A product with F is part of the fingerprint, so other form factors have another fingerprint.
-  const LightVector E = system.product(system.rho + system.M);
+  const LightVector E = system.product(system.albedo + system.M);
   const JournalPhase phase(options.run.journal, "passes", [&](Fingerprint& print) {
     print.add(method);
     print.add(options.relaxation);
@@ -72,6 +72,7 @@ void SolverRun::keep_passes(SolverMethod method) {
     print.add(system.area);
     print.add(system.M);
     print.add(system.rho);
+    print.add(system.tau);
     print.add(E);
   });
   passes_.emplace(phase, options.run.journal->every());
@@ -81,7 +82,7 @@ void SolverRun::keep_passes(SolverMethod method) {
 // Error bound of each group and band, |error of B| <= |residual| / (1 - rho_max). Throws InputError
 // where a lit group absorbs nothing.
 void SolverRun::find_ends() {
-  const LightVector &M = system.M, &rho = system.rho;
+  const LightVector &M = system.M, &rho = system.albedo;
   LightVector rho_max = LightVector::Zero(groups.count, system.lanes());
   LightVector emission = rho_max;
   for (int i = 0; i < system.patch_count(); ++i) {
@@ -123,7 +124,7 @@ LightVector SolverRun::start() const {
   LightVector B = system.with_lanes(options.start);
   for (int i = 0; i < system.patch_count(); ++i) {
     const auto is_lit = error_per_residual_.row(groups.group_of[i]) > 0.0;
-    B.row(i) = is_lit.select((system.rho.row(i) > 0.0).select(B.row(i), system.M.row(i)), 0.0);
+    B.row(i) = is_lit.select((system.albedo.row(i) > 0.0).select(B.row(i), system.M.row(i)), 0.0);
   }
   return B;
 }

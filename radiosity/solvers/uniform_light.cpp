@@ -3,7 +3,7 @@
 namespace lightwell {
 
 UniformLight::UniformLight(const SolverRun& run)
-    : run_(run), drained_(run.system.product(run.system.rho)) {
+    : run_(run), drained_(run.system.product(run.system.albedo)) {
   drain_ = sums([&](Eigen::Index i) { return run_.system.area[i] * drained_.row(i); });
 }
 
@@ -27,7 +27,7 @@ void UniformLight::correct(LightVector& residual, LightVector& B) const {
       over_drain(sums([&](Eigen::Index i) { return run_.system.area[i] * residual.row(i); }));
   for (Eigen::Index i = 0; i < B.rows(); ++i) {
     const int g = run_.groups.group_of[i];
-    B.row(i) += alpha.row(g) * run_.system.rho.row(i);
+    B.row(i) += alpha.row(g) * run_.system.albedo.row(i);
     residual.row(i) -= alpha.row(g) * drained_.row(i);
   }
 }

@@ -28,7 +28,8 @@ struct Paint {
   float roughness = 0.0f;   ///< of the mirror or the dielectric
   float absorption = 0.0f;  ///< 1/m
   bool thin = false;
-  std::optional<float> coat{};  ///< index of refraction; `roughness` is the coat's
+  std::optional<float> coat{};                   ///< index of refraction; `roughness` is the coat's
+  float translucent = 0.0f, transparent = 0.0f;  ///< diffuse and regular transmittance
 };
 
 /// Builds a scene surface by surface.
@@ -88,6 +89,12 @@ class SceneBuilder {
                       .emission = constant_spectrum(bands, paint.exitance),
                       .one_sided = paint.one_sided,
                       .emits_both_sides = paint.emits_both_sides};
+    if (paint.translucent > 0.0f) {
+      material.transmittance = constant_spectrum(bands, paint.translucent);
+    }
+    if (paint.transparent > 0.0f) {
+      material.regular_transmittance = constant_spectrum(bands, paint.transparent);
+    }
     if (paint.coat) {
       material.coat = Coat{.index_of_refraction = *paint.coat};
       material.specular = constant_spectrum(bands, 1.0f);

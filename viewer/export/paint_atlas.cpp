@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/translucency.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/openings/portals.h"
 #include "scene/parallel.h"
@@ -147,6 +148,8 @@ LightmapAtlas paint_atlas(const LightmapLayout& layout, int atlas, const BakedMo
   const Bands& bands = solved.solution.bands;
   const std::vector<Texel> texels = texels_of(layout, atlas, model, mesh);
   const BandArray E = irradiance_of(texels, model, solved, scene, options);
+  BandArray transmitted = BandArray::Zero(mesh.vertex_count(), bands.count());
+  add_transmitted(mesh, solved.solution.irradiance(), transmitted);
 
   const Eigen::Index size = layout.size;
   LightmapAtlas painted{.size = layout.size};
@@ -165,10 +168,11 @@ LightmapAtlas paint_atlas(const LightmapLayout& layout, int atlas, const BakedMo
     const Spectrum rho = mesh.reflectance.row(patch).transpose();
     const Spectrum e = E.row(static_cast<Eigen::Index>(i)).transpose();
     const Spectrum shown = shown_reflectance(mesh, scene.materials, patch);
+    const Spectrum sent = M + at_texel(model, transmitted, texel);
     painted.irradiance.row(at) = e.unaryExpr(&finite_or_black).transpose();
-    painted.radiosity.row(at).head<3>() = finite_rgb(bands, M + rho * e).transpose();
+    painted.radiosity.row(at).head<3>() = finite_rgb(bands, sent + rho * e).transpose();
     painted.radiance.row(at).head<3>() =
-        finite_rgb(bands, (M + shown * e) / std::numbers::pi_v<float>).transpose();
+        finite_rgb(bands, (sent + shown * e) / std::numbers::pi_v<float>).transpose();
     if (has_bounds) painted.lux_within(at, 0) = model.lux_within[texel.face];
     is_known[static_cast<std::size_t>(at)] = 1;
     int& face = painted.face[static_cast<std::size_t>(at)];

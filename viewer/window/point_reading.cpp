@@ -59,7 +59,11 @@ PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArr
   }
   reading.lux = luminous(bands, reading.irradiance);
   const Spectrum emission = mesh.emission.row(reading.patch).transpose();
-  const Spectrum B = emission + reading.reflectance * reading.irradiance;
+  Spectrum B = emission + reading.reflectance * reading.irradiance;
+  if (!mesh.behind.empty() && mesh.behind[reading.patch] >= 0) {
+    const Spectrum behind = interpolate(mesh, irradiance, hit_behind(mesh, seen.hit));
+    B += mesh.transmittance.row(reading.patch).transpose() * behind;
+  }
   reading.luminance = luminous(bands, B) / std::numbers::pi;
   const int surface =
       names ? names->surface_of(mesh, reading.element, seen.position) : mesh.surface[reading.patch];
