@@ -29,6 +29,7 @@ int CausticMap::neighbours(std::size_t count) {
 CausticMap::CausticMap(const PatchMesh& mesh, const CausticPhotons& photons)
     : regions_(light_regions(mesh)), root_(static_cast<std::size_t>(regions_.count()), -1) {
   const int count = static_cast<int>(photons.count());
+  power_.resize(0, mesh.emission.cols());
   if (count == 0) return;
   for (const Eigen::Vector3d& p : photons.position) origin_ += p / count;
   const auto region_of = [&](int photon) {

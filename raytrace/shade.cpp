@@ -108,8 +108,8 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
     return material.gloss_roughness() > 0.0f && !material.dielectric;
   };
   if (std::any_of(scene.materials.begin(), scene.materials.end(), is_rough_mirror)) {
-    bright_ = BrightPatches(scene, caster.mesh(),
-                            gatherable_radiosity(caster.mesh(), direct_light, solution));
+    bright_ =
+        BrightPatches(scene, caster, gatherable_radiosity(caster.mesh(), direct_light, solution));
   }
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];

@@ -24,6 +24,7 @@ enum class RandomPurpose : std::uint64_t {
   gather_aims = 15,
   gap_rays = 16,  // (key, purpose, number)
   gather_portals = 17,
+  bright_openness = 18,       // (patch, purpose)
   error_points = 20,          // alone, a multiple of 10000 added for every further batch
   exchange_shadow_rays = 21,  // (patch, patch, purpose, set)
   shooter_points = 22,        // (patch, receiver, purpose)
@@ -99,6 +100,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::gather_aims:
     case RandomPurpose::gap_rays:
     case RandomPurpose::gather_portals:
+    case RandomPurpose::bright_openness:
     case RandomPurpose::balance_points:
     case RandomPurpose::importance_walks:
     case RandomPurpose::error_points:

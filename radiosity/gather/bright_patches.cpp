@@ -6,6 +6,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/patches/patch_sampler.h"
+#include "scene/parallel.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
 namespace lightwell {
 namespace {
 
@@ -55,34 +60,82 @@ double least_brightness(const PatchMesh& mesh, const Eigen::ArrayXd& mean) {
   return 0.0;
 }
 
+// Share of a patch's cosine-distributed rays that meet no bright patch; at least that of one ray,
+// since points of the room may see a little of any patch.
+double openness_of(const ElementCaster& caster, const std::vector<char>& is_bright, int patch) {
+  constexpr int rays = 32;
+  const PatchSampler sampler(caster.mesh(), patch);
+  const SobolPoints sobol(rays);
+  const std::uint64_t key =
+      random_key(static_cast<std::uint64_t>(patch), RandomPurpose::bright_openness);
+  std::array<Ray, rays> ray;
+  std::array<ElementHit, rays> hit;
+  for (int i = 0; i < rays; ++i) {
+    const Eigen::Array4d u = sobol.point(i, key).cast<double>();
+    const PatchPoint at = sampler.point(u[0], u[1]);
+    Eigen::Vector3d a, b;
+    tangent_frame(at.normal, a, b);
+    const Eigen::Vector3d d = cosine_direction(static_cast<float>(u[2]), static_cast<float>(u[3]));
+    ray[static_cast<std::size_t>(i)] = {.origin = at.position,
+                                        .direction = d.x() * a + d.y() * b + d.z() * at.normal,
+                                        .origin_group = caster.mesh().facet[at.element]};
+  }
+  caster.closest_elements(ray, hit);
+  const auto open = std::ranges::count_if(hit, [&](const ElementHit& h) {
+    return h.element < 0 ||
+           is_bright[static_cast<std::size_t>(caster.mesh().patch[h.element])] == 0;
+  });
+  return static_cast<double>(std::max<std::ptrdiff_t>(open, 1)) / rays;
+}
+
+// A patch that rays are aimed at.
+struct BrightPatch {
+  int patch = -1;
+  double openness = 1.0;
+};
+
 // Patches whose RMS brightness is above `least`, in rising order; `square` is the mean square of
-// each. If there are more than BrightPatches::most, those with the largest mean square times area,
-// which leave the most noise.
-std::vector<int> choose_bright(const Scene& scene, const PatchMesh& mesh,
-                               const Eigen::ArrayXd& square, double least) {
+// each. If there are more than BrightPatches::most, those with the largest mean square times area
+// of what points of the room see, which leave the most noise.
+std::vector<BrightPatch> choose_bright(const Scene& scene, const ElementCaster& caster,
+                                       const Eigen::ArrayXd& square, double least) {
   constexpr int most = BrightPatches::most;
-  std::vector<int> bright;
+  const PatchMesh& mesh = caster.mesh();
+  std::vector<BrightPatch> bright;
+  std::vector<char> is_bright(static_cast<std::size_t>(mesh.patch_count()), 0);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const Surface& surface = scene.surfaces[static_cast<std::size_t>(mesh.surface[p])];
     if (std::holds_alternative<Sphere>(surface.shape) || surface.motion >= 0) continue;
-    if (std::sqrt(square[p]) > least) bright.push_back(p);
+    if (!(std::sqrt(square[p]) > least)) continue;
+    bright.push_back({p});
+    is_bright[static_cast<std::size_t>(p)] = 1;
   }
+  parallel_for(static_cast<int>(bright.size()), 16, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      BrightPatch& at = bright[static_cast<std::size_t>(i)];
+      at.openness = openness_of(caster, is_bright, at.patch);
+    }
+  });
   if (bright.size() > static_cast<std::size_t>(most)) {
-    const auto noisier = [&](int a, int b) {
-      const double of_a = square[a] * mesh.area[a], of_b = square[b] * mesh.area[b];
-      return std::pair(-of_a, a) < std::pair(-of_b, b);
+    const auto noise = [&](const BrightPatch& b) {
+      return std::pair(-square[b.patch] * mesh.area[b.patch] * b.openness, b.patch);
+    };
+    const auto noisier = [&](const BrightPatch& a, const BrightPatch& b) {
+      return noise(a) < noise(b);
     };
     std::nth_element(bright.begin(), bright.begin() + most, bright.end(), noisier);
     bright.resize(static_cast<std::size_t>(most));
-    std::sort(bright.begin(), bright.end());
+    std::ranges::sort(bright, {}, &BrightPatch::patch);
   }
   return bright;
 }
 
 }  // namespace
 
-BrightPatches::BrightPatches(const Scene& scene, const PatchMesh& mesh, const BandArray& radiosity)
-    : mesh_(&mesh) {
+BrightPatches::BrightPatches(const Scene& scene, const ElementCaster& caster,
+                             const BandArray& radiosity)
+    : mesh_(&caster.mesh()) {
+  const PatchMesh& mesh = *mesh_;
   const int count = mesh.patch_count();
   std::vector<double> of_element(static_cast<std::size_t>(mesh.element_count()));
   Eigen::ArrayXd mean(count), square(count);
@@ -98,15 +151,16 @@ BrightPatches::BrightPatches(const Scene& scene, const PatchMesh& mesh, const Ba
     mean[p] = area > 0.0 ? sum / area : 0.0;
     square[p] = area > 0.0 ? sum2 / area : 0.0;
   }
-  const std::vector<int> bright = choose_bright(scene, mesh, square, least_brightness(mesh, mean));
+  const std::vector<BrightPatch> bright =
+      choose_bright(scene, caster, square, least_brightness(mesh, mean));
   if (bright.empty()) return;
   of_element_.assign(of_element.size(), -1);
-  for (const int p : bright) add_patch(p, of_element);
+  for (const BrightPatch& b : bright) add_patch(b.patch, of_element, b.openness);
 }
 
-void BrightPatches::add_patch(int p, const std::vector<double>& of_element) {
+void BrightPatches::add_patch(int p, const std::vector<double>& of_element, double openness) {
   const PatchMesh& mesh = *mesh_;
-  Patch patch{.first = static_cast<int>(elements_.size())};
+  Patch patch{.openness = openness, .first = static_cast<int>(elements_.size())};
   const bool is_flat = mesh.facet_of(p) >= 0;
   if (is_flat) patch.normal = element_center(mesh, mesh.first_element[p]).normal;
   for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
@@ -162,7 +216,8 @@ BrightPatches::View BrightPatches::view(const Eigen::Vector3d& from, const Eigen
                            ((distance2 + patch.radius2) * (distance + radius));
       const double form_factor =
           std::min(rise / (distance + radius), 1.0) * solid * std::numbers::inv_pi;
-      sum += patch.power / patch.area * form_factor / (1.0 + rays * form_factor / few);
+      sum += patch.openness * patch.power / patch.area * form_factor /
+             (1.0 + rays * form_factor / few);
     }
     view.up_to_.push_back(static_cast<float>(sum));
   }

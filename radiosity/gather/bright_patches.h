@@ -24,9 +24,10 @@ class BrightPatches {
   /// No bright patches.
   BrightPatches() = default;
   /// `radiosity` is the light that rays read, vertices x columns, W/m^2. Moving surfaces are left
-  /// out, and so are spheres, since rays hit the sphere itself and not its elements. Keeps a
-  /// reference to the mesh.
-  BrightPatches(const Scene& scene, const PatchMesh& mesh, const BandArray& radiosity);
+  /// out, and so are spheres, since rays hit the sphere itself and not its elements. Patches whose
+  /// rays mostly meet other bright patches, as within a lampshade, are drawn less often: points of
+  /// the room hardly see them. Keeps a reference to the caster's mesh.
+  BrightPatches(const Scene& scene, const ElementCaster& caster, const BandArray& radiosity);
 
   bool is_empty() const { return patches_.empty(); }
 
@@ -74,6 +75,7 @@ class BrightPatches {
     double radius2 = 0.0;                              // m^2, of a sphere around the corners
     double area = 0.0;                                 // m^2
     double power = 0.0;                                // W, all columns
+    double openness = 1.0;                             // see add_patch()
     int first = 0, end = 0;                            // indices in elements_
   };
   struct Element {
@@ -83,8 +85,9 @@ class BrightPatches {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   };
 
-  // `of_element`: brightness of every element of the mesh.
-  void add_patch(int p, const std::vector<double>& of_element);
+  // `of_element`: brightness of every element of the mesh; `openness`: share of the patch's rays
+  // that meet no bright patch.
+  void add_patch(int p, const std::vector<double>& of_element, double openness);
 
   const PatchMesh* mesh_ = nullptr;
   std::vector<Patch> patches_{};

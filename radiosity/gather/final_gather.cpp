@@ -47,7 +47,7 @@ class HemisphereGather {
         paths_(lit.scene, lit.caster, options.max_specular_depth),
         options_(options),
         bands_(lit.scene.bands.count()),
-        bright_(lit.scene, mesh_, radiosity),
+        bright_(lit.scene, lit.caster, radiosity),
         gaps_(lit, radiosity, paths_) {
     if (const FreeSource* dome = lit.direct_light.dome()) {
       dome_ = dome->light;

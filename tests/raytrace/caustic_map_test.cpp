@@ -67,6 +67,15 @@ TEST(CausticMap, EvenLightIsEvenUpToTheEdge) {
   EXPECT_NEAR(sum, 1.0, 0.02);
 }
 
+// A map without photons is dark, in as many bands as the mesh has.
+TEST(CausticMap, WithoutPhotonsIsDark) {
+  const TracedScene lit(
+      SceneBuilder().square(white, Vector3d::Zero(), Vector3d::UnitZ(), 1.0).build());
+  const Spectrum E = CausticMap(lit.mesh, {}).irradiance(Vector3d::Zero(), Vector3d::UnitZ(), 0);
+  ASSERT_EQ(E.size(), 3);
+  EXPECT_EQ(E.maxCoeff(), 0.0f);
+}
+
 // The integral of irradiance over an L-shaped floor is the power of the photons.
 TEST(CausticMap, IrradianceAddsUpToThePowerOfThePhotons) {
   const TracedScene lit(

@@ -74,9 +74,9 @@ Statistics gathered(const Room& room, const BandArray& B, const Eigen::Vector3d&
 
 TEST(BrightPatches, AreNoneWhereAllIsOfOneKind) {
   const Room room{.side = 0.1, .with_shelf = false};
-  EXPECT_TRUE(BrightPatches(room.scene, room.mesh, room.radiosity(1.0f)).is_empty());
-  EXPECT_TRUE(BrightPatches(room.scene, room.mesh, room.radiosity(30.0f)).is_empty());
-  EXPECT_FALSE(BrightPatches(room.scene, room.mesh, room.radiosity(34.0f)).is_empty());
+  EXPECT_TRUE(BrightPatches(room.scene, room.caster, room.radiosity(1.0f)).is_empty());
+  EXPECT_TRUE(BrightPatches(room.scene, room.caster, room.radiosity(30.0f)).is_empty());
+  EXPECT_FALSE(BrightPatches(room.scene, room.caster, room.radiosity(34.0f)).is_empty());
 }
 
 TEST(BrightPatches, GiveWhatTheFormFactorSays) {
