@@ -71,13 +71,24 @@ void lay_coat(Material& material, double index, double alpha, const Spectrum& sp
               bool saturating) {
   set_coat(material, index, alpha, specular);
   const CoatOverBase coat(material, saturating);
-  replace_base(material, [&](const Spectrum& base) { return coat.reflectance(base); });
+  if (!material.is_translucent()) {
+    return replace_base(material, [&](const Spectrum& base) { return coat.reflectance(base); });
+  }
+  // Light on both sides is the sum of light that is alike on both, of which rho + tau returns, and
+  // of light that is opposite, of which rho - tau returns.
+  const Spectrum tau = material.transmittance;
+  const auto half = [&](const Spectrum& base, float sign) -> Spectrum {
+    return 0.5f * (coat.reflectance(base + tau) + sign * coat.reflectance(base - tau));
+  };
+  material.transmittance = half(material.reflectance, -1.0f);
+  replace_base(material, [&](const Spectrum& base) { return half(base, 1.0f); });
 }
 
 void lay_simple_coat(Material& material, double index, double alpha, const Spectrum& specular) {
   set_coat(material, index, alpha, specular);
   const auto passed = static_cast<float>(1.0 - CoatedBase(material).mean_mirrored());
   material.reflectance *= passed;
+  material.transmittance *= passed;
   if (material.texture) material.texture->factor *= passed;
 }
 

@@ -10,6 +10,7 @@
 
 #include "scene/io/glossy.h"
 #include "scene/io/radiance/radiance_materials.h"
+#include "scene/io/sheets.h"
 #include "scene/optics.h"
 
 namespace lightwell {
@@ -116,18 +117,19 @@ Maybe with_function(const Given& given) {
 
 // trans. Arguments: red green blue specularity roughness transmissivity transmitted-specularity.
 Material translucent(const Given& given, std::size_t transmissivity, double roughness) {
-  const Spectrum color = given.color(0);
   const float specular = given.share(3, "specularity");
   const float passing = given.share(transmissivity, "transmissivity");
   const float straight = given.share(transmissivity + 1, "transmitted specularity");
-  const Spectrum through = (1.0f - specular) * passing * straight * color;
-  if ((through[0] + through[1] + through[2]) / 3.0f >= mostly_clear) {
-    given.remark("Translucent materials that are mostly clear were read as panes");
-    return clear(1.0, through);
+  const Spectrum inside = (1.0f - specular) * given.color(0);
+  const Spectrum through = passing * straight * inside;
+  if (roughness > straight_alpha && (through > 0.0f).any()) {
+    given.remark("Light that passes with a roughness above 0.1 was read as diffuse");
   }
-  if (passing > 0.0f) given.remark("What passes through translucent materials was left out");
-  return glossy(given, (1.0f - specular) * (1.0f - passing) * color,
-                Spectrum::Constant(3, specular), roughness);
+  Material material =
+      glossy(given, (1.0f - passing) * inside, Spectrum::Constant(3, specular), roughness);
+  add_diffuse_transmittance(material, passing * (1.0f - straight) * inside);
+  add_transmittance(material, through, roughness);
+  return material;
 }
 
 Maybe trans(const Given& given) {
@@ -236,7 +238,9 @@ Maybe by_diffuse_part(const Given& given) {
 
 Maybe prism(const Given& given) {
   given.remark("Prisms let light straight through");
-  return clear(1.0, Spectrum::Ones(3));
+  Material material = opaque(zero());
+  add_regular_transmittance(material, Spectrum::Ones(3));
+  return material;
 }
 
 Maybe unseen(const Given&) {

@@ -9,6 +9,7 @@
 #include "scene/errors.h"
 #include "scene/io/default_material.h"
 #include "scene/io/radiance/radiance_expression.h"
+#include "scene/io/sheets.h"
 
 namespace lightwell {
 namespace {
@@ -155,15 +156,27 @@ std::optional<Material> RadianceMaterials::mixed(const Definition& mixture, int 
   share = std::clamp(share, 0.0, 1.0);
   const auto front = read(mixture.parts[0], depth + 1), back = read(mixture.parts[1], depth + 1);
   const auto& larger = share >= 0.5 ? front : back;
-  // A clear or invisible material has no mean with an opaque one.
-  if (!front || !back || front->dielectric || back->dielectric) return larger;
-  Material sum = *larger;
   const auto a = static_cast<float>(share), b = static_cast<float>(1.0 - share);
+  const bool has_glass = (front && front->dielectric) || (back && back->dielectric);
+  if (front.has_value() != back.has_value() && !has_glass) {
+    // A perforated sheet: light passes where nothing is.
+    Material sheet = front ? *front : *back;
+    if (sheet.is_emitter()) return larger;
+    let_through(sheet, Spectrum::Constant(3, front ? a : b));
+    return sheet;
+  }
+  // A clear material has no mean with an opaque one.
+  if (!front || !back || has_glass) return larger;
+  Material sum = *larger;
   sum.reflectance = a * front->reflectance + b * back->reflectance;
   sum.specular = a * front->specular + b * back->specular;
   sum.specular_roughness = std::max(front->specular_roughness, back->specular_roughness);
   sum.emission = a * front->emission + b * back->emission;
   sum.one_sided = front->one_sided && back->one_sided;
+  sum.transmittance = sum.regular_transmittance = {};
+  add_passed(*front, a, sum);
+  add_passed(*back, b, sum);
+  close_lamp(sum);
   return sum;
 }
 

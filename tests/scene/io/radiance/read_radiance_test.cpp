@@ -262,11 +262,30 @@ TEST_F(Radiance, MirrorsAreBlackBehind) {
   EXPECT_TRUE(mirror.one_sided);
 }
 
-TEST_F(Radiance, TransIsAPaneWhereItIsClearAndElseItsReflection) {
+// With a specularity of 0.1, a transmissivity of 0.5 and a transmitted specularity of 0.2:
+// rho = 0.9 C 0.5, tau = 0.9 C 0.5 0.8, and 0.9 C 0.5 0.2 passes straight on.
+TEST_F(Radiance, TransPassesLightStraightAndDiffusely) {
+  const Material curtain = material("void trans m 0 0 7 .8 .6 .4 .1 .05 .5 .2");
+  expect_rgb(curtain.reflectance, {0.36, 0.27, 0.18});
+  expect_rgb(curtain.specular, {0.1, 0.1, 0.1});
+  expect_rgb(curtain.transmittance, {0.288, 0.216, 0.144});
+  expect_rgb(curtain.regular_transmittance, {0.072, 0.054, 0.036});
+  EXPECT_FLOAT_EQ(curtain.specular_roughness, 0.05f);
   const Material clear = material("void trans m 0 0 7 .9 .9 .9 0 0 .9 .9");
-  EXPECT_NEAR(clear.dielectric->tint[1], 0.9 * 0.9 * 0.9, 1e-6);
-  const Material paper = material("void trans m 0 0 7 .8 .8 .8 0 0 .5 0");
-  expect_rgb(paper.reflectance, {0.4, 0.4, 0.4});
+  EXPECT_FALSE(clear.dielectric);
+  EXPECT_NEAR(clear.regular_transmittance[1], 0.9 * 0.9 * 0.9, 1e-6);
+  const Material screen = material("void trans m 0 0 7 .5 .5 .5 0 0 0 0");
+  EXPECT_FALSE(screen.is_translucent() || screen.passes_straight());
+}
+
+TEST_F(Radiance, TransThatIsRoughPassesLightDiffusely) {
+  const Scene scene = read("void trans2 m 4 1 0 0 . 0 8 .8 .8 .8 0 .05 .3 .5 .4\nm " + square);
+  const Material& frosted = scene.materials.at(0);
+  expect_rgb(frosted.transmittance, {0.4, 0.4, 0.4});
+  EXPECT_FALSE(frosted.passes_straight());
+  EXPECT_TRUE(has_loss(scene, "roughness above 0.1 was read as diffuse: 'm'"));
+  expect_rgb(material("void transfunc m 2 f f.cal 0 6 .8 .8 .8 0 .5 .5").transmittance,
+             {0.4, 0.4, 0.4});
 }
 
 TEST_F(Radiance, ConstantPatternsMultiply) {
@@ -311,6 +330,24 @@ TEST_F(Radiance, AMixtureIsAMean) {
       "void plastic white 0 0 5 .8 .8 .8 0 0\nvoid plastic black 0 0 5 0 0 0 0 0\n";
   EXPECT_FLOAT_EQ(material(parts + "void mixfunc m 4 white black .25 . 0 0").reflectance[0], 0.2f);
   EXPECT_FLOAT_EQ(material(parts + "void mixpict m 4 white black a b 0 0").reflectance[0], 0.4f);
+}
+
+TEST_F(Radiance, AMixtureWithNothingIsAPerforatedSheet) {
+  const std::string parts =
+      "void metal steel 0 0 5 .6 .6 .6 .5 .1\nvoid trans cloth 0 0 7 .5 .5 .5 0 0 .4 0\n";
+  for (const std::string mixture : {"steel void .7", "void steel .3"}) {
+    const Material sheet = material(parts + "void mixfunc m 4 " + mixture + " . 0 0");
+    expect_rgb(sheet.reflectance, {0.21, 0.21, 0.21});
+    expect_rgb(sheet.specular, {0.21, 0.21, 0.21});
+    expect_rgb(sheet.regular_transmittance, {0.3, 0.3, 0.3});
+  }
+  const Material both = material(parts + "void mixfunc m 4 cloth steel .5 . 0 0");
+  expect_rgb(both.transmittance, {0.1, 0.1, 0.1});
+}
+
+TEST_F(Radiance, PrismsLetLightStraightThrough) {
+  const Material prism = material("void prism1 m 5 1 0 0 0 f.cal 0 0");
+  expect_rgb(prism.regular_transmittance, {1, 1, 1});
 }
 
 TEST_F(Radiance, AnIllumShinesUnlessItsPatternIsUnknown) {
