@@ -238,8 +238,18 @@ void lay_given_coat(const TomlTable& table, const GivenCoat& given, Material& ma
   }
 }
 
+// A texture without a factor of its own reflects what the other shares leave.
+void make_room(const Spectrum& share, Material& material) {
+  if (!material.texture) return;
+  Spectrum& factor = material.texture->factor;
+  const Spectrum left = (factor - share).max(0.0f);
+  material.reflectance *= (factor > 0.0f).select(left / factor, 0.0f);
+  factor = left;
+}
+
 // What passes a thin sheet, diffusely or straight on.
-void read_sheet(const TomlTable& table, const TomlBands& bands, Material& material) {
+void read_sheet(const TomlTable& table, const TomlBands& bands, bool has_reflectance,
+                Material& material) {
   const auto read = [&](const char* key, Spectrum& share) {
     const auto value = table.find(key);
     if (!value) return;
@@ -248,6 +258,7 @@ void read_sheet(const TomlTable& table, const TomlBands& bands, Material& materi
           "needs both sides of the surface, but sides is 'one'; remove one of the two keys");
     }
     share = spectral(*value, bands, Quantity::share);
+    if (!has_reflectance) make_room(share, material);
     const Spectrum others = material.reflectance + mean_specular(material);
     const Spectrum all =
         material.is_translucent() ? Spectrum(others + material.transmittance) : others;
@@ -424,7 +435,7 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
   const bool has_reflectance = table.has("reflectance") || (coat && coat->has_base);
   read_toml_pictures(table, bands, pictures, has_reflectance, material);
   if (coat) lay_given_coat(table, *coat, material);
-  read_sheet(table, bands, material);
+  read_sheet(table, bands, has_reflectance, material);
   read_emission(table, bands, result);
   return result;
 }

@@ -136,6 +136,56 @@ polygon = [[0, 0, 1], [1, 0, 1], [0, 1, 1]]
   expect_spectrum(glaze.reflectance, {rho[0], rho[1], rho[2]});
 }
 
+TEST(ReadToml, SheetsPassLight) {
+  const Scene scene = read_text(R"(
+[bands]
+kind = "spectral"
+from = 400
+to = 600
+count = 2
+[materials.white]
+reflectance = 0.4
+coat = 1.5
+translucent = [0.2, 0.3]
+transparent = { wavelengths = [400, 600], values = [0.0, 0.2] }
+)" + one_polygon);
+  const Material& curtain = scene.materials[0];
+  expect_spectrum(curtain.transmittance, {0.2f, 0.3f});
+  expect_spectrum(curtain.regular_transmittance, {0.05f, 0.15f});  // the means of the halves
+  EXPECT_FALSE(curtain.one_sided || curtain.dielectric);
+  const Scene opaque = read_text("[materials.white]\nreflectance = 0.5\n" + one_polygon);
+  EXPECT_FALSE(opaque.materials[0].is_translucent() || opaque.materials[0].passes_straight());
+}
+
+TEST(ReadToml, SheetsThatCannotBeAreToldWhy) {
+  const auto refuses = [](const std::string& keys, const char* words) {
+    test::expect_message([&] { read_text("[materials.white]\n" + keys + "\n" + one_polygon); },
+                         {"text.toml:", "'white'", words});
+  };
+  refuses("reflectance = 0.5\ntranslucent = 0.6", "add up to 1.1");
+  refuses("reflectance = 0.2\nspecular = 0.3\ntransparent = [0.1, 0.6, 0.1]", "add up to 1.1");
+  refuses("translucent = 0.6\ntransparent = 0.5", "add up to 1.1");
+  refuses("translucent = 1.5", "1.5");
+  refuses("translucent = 0.1\nsides = \"one\"", "needs both sides of the surface");
+  refuses("transparent = 0.1\nsides = \"one\"", "needs both sides of the surface");
+  refuses("translucent = 0.1\nglass = { ior = 1.5 }", "contradicts 'glass'");
+  refuses("transparent = 0.1\nglass = { ior = 1.5 }", "contradicts 'glass'");
+}
+
+// A texture reflects what the other shares leave, unless its factor is given.
+TEST(ReadToml, TexturesOfSheetsLeaveRoomForWhatPasses) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", folder / "print.png");
+  const auto factor = [&](const std::string& keys) {
+    const Scene scene = read_scene(folder.write(
+        "print.toml", "[materials.white]\ntexture = \"print.png\"\n" + keys + one_polygon));
+    return scene.materials[0].texture.value().factor[0];
+  };
+  EXPECT_FLOAT_EQ(factor("translucent = 0.25\nspecular = 0.125\n"), 0.625f);
+  EXPECT_FLOAT_EQ(factor("translucent = 0.25\ntransparent = 0.25\n"), 0.5f);
+  EXPECT_FLOAT_EQ(factor("translucent = 0.25\nreflectance = 0.3\n"), 0.3f);
+}
+
 TEST(ReadToml, GlossGlassAndLensesAreAsTheySay) {
   const Scene scene = read_text(R"(
 unit = "cm"
