@@ -71,6 +71,7 @@ void lay_coat(Material& material, double index, double alpha, const Spectrum& sp
               bool saturating) {
   set_coat(material, index, alpha, specular);
   const CoatOverBase coat(material, saturating);
+  if (material.passes_straight()) material.regular_transmittance *= 1.0f - mean_mirrored(material);
   if (!material.is_translucent()) {
     return replace_base(material, [&](const Spectrum& base) { return coat.reflectance(base); });
   }
@@ -89,6 +90,7 @@ void lay_simple_coat(Material& material, double index, double alpha, const Spect
   const auto passed = static_cast<float>(1.0 - CoatedBase(material).mean_mirrored());
   material.reflectance *= passed;
   material.transmittance *= passed;
+  material.regular_transmittance *= passed;
   if (material.texture) material.texture->factor *= passed;
 }
 

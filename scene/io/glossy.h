@@ -33,7 +33,7 @@ void set_coat(Material& material, double index, double alpha, const Spectrum& sp
 /// Lays a clear coat of the index of refraction `index`, [lowest_coat_index, highest_index], and
 /// GGX width `alpha` over a material whose `reflectance` and texture are those of the base (see
 /// CoatOverBase). The coat mirrors Fresnel's share times `specular`. `saturating` as for
-/// CoatOverBase. A translucent base has the coat on both sides.
+/// CoatOverBase. A sheet that passes light has the coat on both sides.
 void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
               bool saturating = true);
 

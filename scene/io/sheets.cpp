@@ -13,10 +13,6 @@ void add_share(const Spectrum& share, Spectrum& sum) {
   }
 }
 
-void scale_share(const Spectrum& factor, Spectrum& share) {
-  if (share.size() > 0) share *= factor;
-}
-
 }  // namespace
 
 void add_diffuse_transmittance(Material& material, const Spectrum& share) {
@@ -42,13 +38,17 @@ void add_passed(const Material& part, float weight, Material& sum) {
   if (part.passes_straight()) add_regular_transmittance(sum, weight * part.regular_transmittance);
 }
 
-void let_through(Material& material, const Spectrum& opacity) {
-  if ((opacity >= 1.0f).all()) return;
+void scale_shares(const Spectrum& factor, Material& material) {
   for (Spectrum* share : {&material.reflectance, &material.specular, &material.transmittance,
                           &material.regular_transmittance}) {
-    scale_share(opacity, *share);
+    if (share->size() > 0) *share *= factor;
   }
-  if (material.texture) material.texture->factor *= opacity;
+  if (material.texture) material.texture->factor *= factor;
+}
+
+void let_through(Material& material, const Spectrum& opacity) {
+  if ((opacity >= 1.0f).all()) return;
+  scale_shares(opacity, material);
   add_regular_transmittance(material, 1.0f - opacity);
 }
 

@@ -24,6 +24,9 @@ void add_transmittance(Material& material, const Spectrum& share, double alpha);
 /// Adds `weight` times what `part` passes, of a mixed material.
 void add_passed(const Material& part, float weight, Material& sum);
 
+/// Multiplies every share of light that a material other than a dielectric reflects or passes.
+void scale_shares(const Spectrum& factor, Material& material);
+
 /// Leaves the share `opacity`, [0,1], of a material that is no dielectric: a fabric with fine
 /// holes. The rest of the light passes straight on. Emission stays as it is.
 void let_through(Material& material, const Spectrum& opacity);

@@ -159,6 +159,11 @@ std::optional<MitsubaTexture> MitsubaColors::texture(const MitsubaNode& owner,
   return result;
 }
 
+bool MitsubaColors::is_bitmap(const MitsubaNode& owner, std::string_view property) const {
+  const MitsubaNode* node = texture_node(owner, property);
+  return node && node->type == "bitmap";
+}
+
 std::optional<Mask> MitsubaColors::mask(const MitsubaNode& owner, std::string_view property) {
   const MitsubaNode* node = texture_node(owner, property);
   if (!node || node->type != "bitmap") return std::nullopt;

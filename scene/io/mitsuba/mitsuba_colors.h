@@ -46,8 +46,10 @@ class MitsubaColors {
   /// properties.
   std::optional<MitsubaTexture> texture(const MitsubaNode& owner, std::string_view property,
                                         Pixels pixels);
+  /// True if a property is a bitmap, scaled or not.
+  bool is_bitmap(const MitsubaNode& owner, std::string_view property) const;
   /// Mask of an opacity bitmap: the picture's alpha, or its red channel if the picture is opaque.
-  /// Empty if the property is no bitmap.
+  /// Empty if the property is no bitmap, or one that cannot be read.
   std::optional<Mask> mask(const MitsubaNode& owner, std::string_view property);
 
  private:

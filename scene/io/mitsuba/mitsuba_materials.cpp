@@ -11,6 +11,8 @@
 #include "scene/io/glossy.h"
 #include "scene/io/mitsuba/mitsuba_presets.h"
 #include "scene/io/nearest_name.h"
+#include "scene/io/sheets.h"
+#include "scene/specular.h"
 
 namespace lightwell {
 namespace {
@@ -37,6 +39,10 @@ Material pane(double index, const Spectrum& tint, double alpha) {
   material.dielectric = thin_pane(index, tint, alpha);
   return material;
 }
+
+// Share of clear light from which a thin principled BSDF is read as a pane. A smaller share is that
+// of a sheet.
+constexpr double nearly_clear = 0.9;
 
 const char* const rough_metal = "Metals of alpha above 0.5 were read as diffuse";
 
@@ -99,6 +105,9 @@ void MitsubaMaterials::add_emission(const MitsubaNode& emitter, const std::strin
     remarks_.add("Clear materials that shine were read as black ones that shine", name);
     material.dielectric.reset();
   }
+  if (close_lamp(material)) {
+    remarks_.add("Lamps let no light straight through, so this part was left out", name);
+  }
   if (material.mask && material.is_emitter()) {
     remarks_.add("Lamps have no holes, so their masks were left out", name);
     material.mask.reset();
@@ -130,7 +139,12 @@ Material MitsubaMaterials::read_new(const MitsubaNode& bsdf, Pixels pixels) {
   if (is({"mask", "bumpmap", "bump", "normalmap", "coating", "roughcoating"}))
     return wrapped(bsdf, pixels);
   if (is({"blendbsdf", "mixturebsdf"})) return blend(bsdf, pixels);
-  if (type == "null") return clear_bsdf(1.0, Spectrum::Ones(3));
+  if (is({"difftrans", "diffuse_transmitter"})) return transmitter(bsdf, pixels);
+  if (type == "null") {
+    Material material = opaque_bsdf(black());
+    add_regular_transmittance(material, Spectrum::Ones(3));
+    return material;
+  }
   if (is({"phong", "ward", "modified_phong"})) return highlighted(bsdf, pixels);
   remarks_.add(
       fmt::format("BSDF plugin '{}' is not known and got a diffuse reflectance of 0.5", type),
@@ -148,6 +162,13 @@ Material MitsubaMaterials::diffuse(const MitsubaNode& bsdf, std::string_view pro
     return material;
   }
   return opaque_bsdf(colors_.share_or(bsdf, property, 0.5f, pixels));
+}
+
+Material MitsubaMaterials::transmitter(const MitsubaNode& bsdf, Pixels pixels) {
+  Material material = opaque_bsdf(black());
+  material.one_sided = false;
+  add_diffuse_transmittance(material, colors_.share_or(bsdf, "transmittance", 0.5f, pixels));
+  return material;
 }
 
 Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
@@ -229,7 +250,7 @@ Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
 
 // A smooth or rough coating over another BSDF. Light passes the coating's absorption twice.
 Material MitsubaMaterials::coated(const MitsubaNode& bsdf, Material material, Pixels pixels) {
-  if (material.is_specular()) {
+  if (material.dielectric || (material.specular > 0.0f).any()) {
     remarks_.add("Coatings over mirrors and glass were left out", bsdf.label());
     return material;
   }
@@ -238,6 +259,7 @@ Material MitsubaMaterials::coated(const MitsubaNode& bsdf, Material material, Pi
     passed = (-2.0f * static_cast<float>(bsdf.number_or("thickness", 1.0)) * *sigma).exp();
   }
   material.reflectance *= passed;
+  if (material.is_translucent()) material.transmittance *= passed;
   if (material.texture) material.texture->factor *= passed;
   const double alpha = bsdf.type == "roughcoating" ? roughness(bsdf) : 0.0;
   const double index = std::max(index_ratio(bsdf, bk7), double{lowest_coat_index});
@@ -268,15 +290,9 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
     return std::clamp(colors_.number_or(bsdf, property, otherwise), 0.0, 1.0);
   };
   const double alpha = share("roughness", 0.5) * share("roughness", 0.5);
-  if (share("spec_trans", 0.0) >= mostly_clear) {
-    const double eta = index(bsdf, "eta", 1.5);
-    if (!(eta >= lowest_index && eta <= highest_index))
-      bsdf.fail("has no index of refraction that glass has");
-    if (bsdf.type == "principledthin") return pane(eta, color, alpha);
-    remarks_.add("Principled BSDFs that are mostly clear were read as glass", bsdf.label());
-    Material glass = clear_bsdf(eta, color);
-    glass.dielectric->roughness = roughness_of(alpha);
-    return glass;
+  const bool is_thin = bsdf.type == "principledthin";
+  if (share("spec_trans", 0.0) >= (is_thin ? nearly_clear : mostly_clear)) {
+    return clear_principled(bsdf, color, alpha);
   }
   remarks_.add("Principled BSDFs were read by their base colour, metallic and roughness",
                bsdf.label());
@@ -287,6 +303,7 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
     material.texture = picture->texture;
     material.texture->factor *= (color > 0.0f).select(material.reflectance / color, 0.0f);
   }
+  if (is_thin) pass_thin(bsdf, color, alpha, material);
   if (metallic < least_metallic && alpha <= glossy_alpha) {
     // The reflectance 0.08 specular at normal incidence, as an index of refraction.
     const double root = std::sqrt(0.08 * share("specular", 0.5));
@@ -298,23 +315,66 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
   return material;
 }
 
+// Glass, or a pane without thickness.
+Material MitsubaMaterials::clear_principled(const MitsubaNode& bsdf, const Spectrum& color,
+                                            double alpha) {
+  const double eta = index(bsdf, "eta", 1.5);
+  if (!(eta >= lowest_index && eta <= highest_index))
+    bsdf.fail("has no index of refraction that glass has");
+  if (bsdf.type == "principledthin") return pane(eta, color, alpha);
+  remarks_.add("Principled BSDFs that are mostly clear were read as glass", bsdf.label());
+  Material glass = clear_bsdf(eta, color);
+  glass.dielectric->roughness = roughness_of(alpha);
+  return glass;
+}
+
+// principledthin: `spec_trans` of the light passes the sheet without being scattered, and of the
+// rest half of `diff_trans` diffusely.
+void MitsubaMaterials::pass_thin(const MitsubaNode& bsdf, const Spectrum& color, double alpha,
+                                 Material& material) {
+  const double straight = std::clamp(colors_.number_or(bsdf, "spec_trans", 0.0), 0.0, 1.0);
+  const double diffuse = std::clamp(0.5 * colors_.number_or(bsdf, "diff_trans", 0.0), 0.0, 1.0);
+  const auto kept = static_cast<float>(1.0 - straight);
+  const auto reflected = static_cast<float>(1.0 - diffuse);
+  add_diffuse_transmittance(material, kept * (1.0f - reflected) * material.reflectance);
+  material.reflectance *= kept * reflected;
+  if (material.texture) material.texture->factor *= kept * reflected;
+  if (material.texture && (straight > 0.0 || diffuse > 0.0)) {
+    remarks_.add("What passes sheets with a picture has its mean colour", bsdf.label());
+  }
+  add_transmittance(material, static_cast<float>(straight) * color, alpha);
+}
+
+// The share `opacity` of a BSDF; the rest of the light passes straight on.
+Material MitsubaMaterials::masked(const MitsubaNode& bsdf, const MitsubaNode& inner) {
+  const bool is_picture = colors_.is_bitmap(bsdf, "opacity");
+  Material material = read(inner, is_picture ? Pixels::by_opacity : Pixels::all);
+  Spectrum opacity = Spectrum::Ones(3);
+  if (is_picture) {
+    const auto mask = colors_.mask(bsdf, "opacity");
+    const auto even = mask ? even_opacity(*mask->image.picture) : std::nullopt;
+    if (even) opacity.setConstant(*even);
+    if (mask && !even) material.mask = mask;
+  } else {
+    opacity = colors_.share_or(bsdf, "opacity", 0.5f, Pixels::all);
+  }
+  if (material.dielectric && (opacity < 1.0f).any()) {
+    remarks_.add("Masks of glass that cut no holes were left out", bsdf.label());
+    return material;
+  }
+  let_through(material, opacity);
+  return material;
+}
+
 Material MitsubaMaterials::wrapped(const MitsubaNode& bsdf, Pixels pixels) {
   const auto inner = tree_.children(bsdf, "bsdf");
   if (inner.empty()) bsdf.fail("holds no BSDF");
   if (bsdf.type == "coating" || bsdf.type == "roughcoating") {
     return coated(bsdf, read(*inner.front(), pixels), pixels);
   }
-  if (bsdf.type != "mask") {
-    remarks_.add(fmt::format("BSDF '{}' was read as what it covers", bsdf.type), bsdf.label());
-    return read(*inner.front(), pixels);
-  }
-  Material material = read(*inner.front(), Pixels::by_opacity);
-  material.mask = colors_.mask(bsdf, "opacity");
-  if (!material.mask) {
-    remarks_.add("Masks that are no bitmap were left out, so the whole surface is opaque",
-                 bsdf.label());
-  }
-  return material;
+  if (bsdf.type == "mask") return masked(bsdf, *inner.front());
+  remarks_.add(fmt::format("BSDF '{}' was read as what it covers", bsdf.type), bsdf.label());
+  return read(*inner.front(), pixels);
 }
 
 Material MitsubaMaterials::two_sided(const MitsubaNode& bsdf, Pixels pixels) {
@@ -332,9 +392,10 @@ Material MitsubaMaterials::two_sided(const MitsubaNode& bsdf, Pixels pixels) {
 // that mirrors more stays.
 void MitsubaMaterials::add_gloss(const Material& part, float weight, const MitsubaNode& bsdf,
                                  Material& sum) {
-  if (!part.is_specular()) return;
+  const auto mirrors = [](const Material& m) { return (m.specular > 0.0f).any(); };
+  if (!mirrors(part)) return;
   const auto index = [](const Material& m) { return m.coat ? m.coat->index_of_refraction : 0.0f; };
-  const bool is_alike = !sum.is_specular() || index(sum) == index(part);
+  const bool is_alike = !mirrors(sum) || index(sum) == index(part);
   if (!is_alike) {
     remarks_.add("Blends of different coats, or of coats and mirrors, kept the brighter one",
                  bsdf.label());
@@ -378,11 +439,12 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
     }
     sum.reflectance += weights[i] * part.reflectance;
     add_gloss(part, weights[i], bsdf, sum);
+    add_passed(part, weights[i], sum);
   }
-  // The weights of a mixture may add up to more than 1; the reflectance must not exceed 1.
-  const Spectrum excess = (sum.reflectance + mean_mirrored(sum)).max(1.0f);
-  sum.reflectance /= excess;
-  sum.specular /= excess;
+  // The weights of a mixture may add up to more than 1; the shares of light must not.
+  Spectrum all = sum.reflectance + mean_specular(sum);
+  if (sum.is_translucent()) all += sum.transmittance;
+  scale_shares(all.max(1.0f).inverse(), sum);
   return sum;
 }
 

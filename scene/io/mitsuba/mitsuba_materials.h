@@ -31,11 +31,15 @@ class MitsubaMaterials {
   Material diffuse(const MitsubaNode& bsdf, std::string_view property, Pixels pixels);
   Material conductor(const MitsubaNode& bsdf, Pixels pixels);
   Material dielectric(const MitsubaNode& bsdf, Pixels pixels);
+  Material transmitter(const MitsubaNode& bsdf, Pixels pixels);
   Material plastic(const MitsubaNode& bsdf, Pixels pixels);
   Material coated(const MitsubaNode& bsdf, Material material, Pixels pixels);
   void add_gloss(const Material& part, float weight, const MitsubaNode& bsdf, Material& sum);
   Material highlighted(const MitsubaNode& bsdf, Pixels pixels);
   Material principled(const MitsubaNode& bsdf, Pixels pixels);
+  Material clear_principled(const MitsubaNode& bsdf, const Spectrum& color, double alpha);
+  void pass_thin(const MitsubaNode& bsdf, const Spectrum& color, double alpha, Material& material);
+  Material masked(const MitsubaNode& bsdf, const MitsubaNode& inner);
   Material wrapped(const MitsubaNode& bsdf, Pixels pixels);
   Material two_sided(const MitsubaNode& bsdf, Pixels pixels);
   Material blend(const MitsubaNode& bsdf, Pixels pixels);

@@ -95,6 +95,10 @@ TEST(Sheets, CoatsCoverBothSidesOfATranslucentBase) {
   EXPECT_NEAR(even.reflectance[0], even.transmittance[0], 1e-6f);
   EXPECT_LE((opal.reflectance + opal.transmittance + mean_specular(opal)).maxCoeff(), 1.0f);
   EXPECT_LT(opal.transmittance[0], 0.3f);
+  Material gauze = opaque(0.0f);
+  gauze.regular_transmittance = grey(1.0f);
+  lay_coat(gauze, 1.5, 0.0, grey(1.0f));
+  EXPECT_NEAR(mean_specular(gauze)[0], 1.0f, 1e-6f);
 }
 
 }  // namespace

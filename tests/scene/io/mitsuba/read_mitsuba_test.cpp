@@ -375,9 +375,12 @@ TEST_F(Mitsuba, PicturesBecomeTheirMeanColour) {
   std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", folder / "my picture.png");
   const std::string picture = R"(<texture type="bitmap" name="reflectance">
       <string name="filename" value="my picture.png"/></texture>)";
+  const std::string opacity = R"(<texture type="bitmap" name="opacity">
+      <string name="filename" value="my picture.png"/></texture>)";
   EXPECT_FLOAT_EQ(material("<bsdf type='diffuse'>" + picture + "</bsdf>").reflectance[0], 0.5f);
   // A mask cuts away the black, transparent half.
-  EXPECT_FLOAT_EQ(material("<bsdf type='mask'><bsdf type='diffuse'>" + picture + "</bsdf></bsdf>")
+  EXPECT_FLOAT_EQ(material("<bsdf type='mask'>" + opacity + "<bsdf type='diffuse'>" + picture +
+                           "</bsdf></bsdf>")
                       .reflectance[0],
                   1.0f);
 }
@@ -387,7 +390,8 @@ TEST_F(Mitsuba, AMaskCutsOnlyWhereItIs) {
   const std::string leaf = R"(<bsdf type="diffuse" id="leaf"><texture type="bitmap"
       name="reflectance"><string name="filename" value="leaf.png"/></texture></bsdf>)";
   const std::string masked =
-      R"(<shape type="cube"><bsdf type="mask"><ref id="leaf"/></bsdf></shape>)";
+      R"(<shape type="cube"><bsdf type="mask"><texture type="bitmap" name="opacity">
+      <string name="filename" value="leaf.png"/></texture><ref id="leaf"/></bsdf></shape>)";
   const std::string whole = R"(<shape type="cube"><ref id="leaf"/></shape>)";
   const auto reflectance = [](const Scene& scene, std::size_t surface) {
     const auto m = static_cast<std::size_t>(scene.surfaces.at(surface).material);
@@ -398,6 +402,79 @@ TEST_F(Mitsuba, AMaskCutsOnlyWhereItIs) {
   EXPECT_FLOAT_EQ(reflectance(one_way, 1), 0.5f);
   EXPECT_FLOAT_EQ(reflectance(other_way, 0), 0.5f);
   EXPECT_FLOAT_EQ(reflectance(other_way, 1), 1.0f);
+}
+
+// With an opacity of 0.6, 0.6 of the plastic stays and 0.4 of the light passes straight on.
+TEST_F(Mitsuba, AMaskOfAnEvenOpacityLetsTheRestThrough) {
+  const std::string plastic =
+      R"(<bsdf type="plastic"><rgb name="diffuse_reflectance" value="0.5"/></bsdf>)";
+  const Material whole = material(plastic);
+  const auto masked = [&](const std::string& opacity, const std::string& inner) {
+    return material("<bsdf type='mask'>" + opacity + inner + "</bsdf>");
+  };
+  const Material gauze = masked("<float name='opacity' value='0.6'/>", plastic);
+  EXPECT_FLOAT_EQ(gauze.reflectance[0], 0.6f * whole.reflectance[0]);
+  EXPECT_FLOAT_EQ(gauze.specular[0], 0.6f);
+  EXPECT_FLOAT_EQ(gauze.regular_transmittance[0], 0.4f);
+  EXPECT_FALSE(gauze.one_sided || gauze.mask);
+  EXPECT_FLOAT_EQ(masked("", plastic).regular_transmittance[0], 0.5f);  // Mitsuba's default
+  const Material tinted = masked("<rgb name='opacity' value='0.25, 0.5, 1'/>", plastic);
+  EXPECT_FLOAT_EQ(tinted.regular_transmittance[0], 0.75f);
+  EXPECT_FLOAT_EQ(tinted.regular_transmittance[2], 0.0f);
+  const std::string half = "<float name='opacity' value='0.5'/>";
+  EXPECT_TRUE(masked(half, "<bsdf type='dielectric'/>").dielectric);
+  const Scene lamp = read("<shape type='rectangle'><bsdf type='mask'>" + half + plastic +
+                          "</bsdf><emitter type='area'/></shape>");
+  EXPECT_FALSE(first_material(lamp).passes_straight());
+  EXPECT_TRUE(has_loss(lamp, "Lamps let no light straight through"));
+}
+
+TEST_F(Mitsuba, DiffuseTransmittersPassTheirTransmittance) {
+  const Material paper = material(
+      R"(<bsdf type="difftrans"><rgb name="transmittance" value="0.6, 0.5, 0.4"/></bsdf>)");
+  EXPECT_FLOAT_EQ(paper.transmittance[0], 0.6f);
+  EXPECT_FLOAT_EQ(paper.transmittance[2], 0.4f);
+  EXPECT_FALSE((paper.reflectance > 0.0f).any() || paper.one_sided);
+  EXPECT_FLOAT_EQ(material(R"(<bsdf type="difftrans"/>)").transmittance[0], 0.5f);
+  const Material both = material(R"(<bsdf type="twosided"><bsdf type="difftrans"/></bsdf>)");
+  EXPECT_FLOAT_EQ(both.transmittance[0], 0.5f);
+}
+
+// A leaf: 0.7 of its mixture reflects 0.4, and 0.3 passes 0.5.
+TEST_F(Mitsuba, BlendsPassTheMeanOfTheirParts) {
+  const Material leaf = material(R"(<bsdf type="blendbsdf"><float name="weight" value="0.3"/>
+      <bsdf type="diffuse"><rgb name="reflectance" value="0.4"/></bsdf>
+      <bsdf type="difftrans"/></bsdf>)");
+  EXPECT_FLOAT_EQ(leaf.reflectance[0], 0.7f * 0.4f);
+  EXPECT_FLOAT_EQ(leaf.transmittance[0], 0.3f * 0.5f);
+  const Material net = material(R"(<bsdf type="blendbsdf"><float name="weight" value="0.75"/>
+      <bsdf type="diffuse"><rgb name="reflectance" value="0.4"/></bsdf>
+      <bsdf type="null"/></bsdf>)");
+  EXPECT_FLOAT_EQ(net.reflectance[0], 0.1f);
+  EXPECT_FLOAT_EQ(net.regular_transmittance[0], 0.75f);
+  // Weights of 2 in all: everything that arrives leaves, as much to either side.
+  const Material twice = material(R"(<bsdf type="mixturebsdf"><string name="weights" value="1, 1"/>
+      <bsdf type="diffuse"><rgb name="reflectance" value="1"/></bsdf>
+      <bsdf type="difftrans"><rgb name="transmittance" value="1"/></bsdf></bsdf>)");
+  EXPECT_FLOAT_EQ(twice.reflectance[0], 0.5f);
+  EXPECT_FLOAT_EQ(twice.transmittance[0], 0.5f);
+}
+
+TEST_F(Mitsuba, ANullBsdfLetsAllLightThrough) {
+  const Material null = material(R"(<bsdf type="null"/>)");
+  EXPECT_FLOAT_EQ(null.regular_transmittance[0], 1.0f);
+  EXPECT_FALSE(null.dielectric || null.is_diffuse());
+}
+
+// The light passes the coating's body once on either side, as reflected light passes it twice.
+TEST_F(Mitsuba, CoatingsCoverBothSidesOfASheet) {
+  const Material opal = material(R"(<bsdf type="coating"><float name="thickness" value="0.2"/>
+      <rgb name="sigma_a" value="0.5"/><bsdf type="difftrans"/></bsdf>)");
+  const auto tau = static_cast<float>(0.5 * std::exp(-0.2));
+  const CoatOverBase coat(opal);
+  EXPECT_FLOAT_EQ(opal.transmittance[0], 0.5f * (coat.reflectance(Spectrum::Constant(3, tau))[0] -
+                                                 coat.reflectance(Spectrum::Constant(3, -tau))[0]));
+  EXPECT_TRUE(opal.coat);
 }
 
 TEST_F(Mitsuba, TexturesThatShareTheirPartsAreReadOnce) {
@@ -447,6 +524,29 @@ TEST_F(Mitsuba, AThinPrincipledSheetIsAPane) {
   const Material block = material(R"(<bsdf type="principled"><string name="eta" value="diamond"/>
       <float name="spec_trans" value="1"/></bsdf>)");
   EXPECT_FLOAT_EQ(block.dielectric.value().index_of_refraction, 2.419f);
+}
+
+// A diff_trans of 2 would pass all diffuse light. The default roughness 0.5 is an alpha of 0.25.
+TEST_F(Mitsuba, AThinPrincipledSheetPassesLight) {
+  const auto sheet = [&](const std::string& keys) {
+    return material(R"(<bsdf type="principledthin"><rgb name="base_color" value="0.8"/>)" + keys +
+                    "</bsdf>");
+  };
+  const std::string matt = R"(<float name="roughness" value="1"/>)";
+  const Material paper = sheet(matt + R"(<float name="diff_trans" value="0.5"/>)");
+  EXPECT_FLOAT_EQ(paper.reflectance[0], 0.8f * 0.75f);
+  EXPECT_FLOAT_EQ(paper.transmittance[0], 0.8f * 0.25f);
+  EXPECT_FALSE(paper.passes_straight());
+  const std::string part =
+      R"(<float name="diff_trans" value="1"/><float name="spec_trans" value="0.6"/>)";
+  const Material frosted = sheet(matt + part);
+  EXPECT_FLOAT_EQ(frosted.reflectance[0], 0.8f * 0.4f * 0.5f);
+  EXPECT_FLOAT_EQ(frosted.transmittance[0], 0.8f * (0.4f * 0.5f + 0.6f));
+  const Material foil = sheet(R"(<float name="roughness" value="0.1"/>)" + part);
+  ASSERT_TRUE(foil.coat);
+  const auto kept = static_cast<float>(1.0 - CoatedBase(foil).mean_mirrored());
+  EXPECT_FLOAT_EQ(foil.regular_transmittance[0], kept * 0.8f * 0.6f);
+  EXPECT_FLOAT_EQ(foil.transmittance[0], kept * 0.8f * 0.2f);
 }
 
 TEST_F(Mitsuba, DefaultsAndReferencesAndIncludesArePutInPlace) {
