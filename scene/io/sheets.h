@@ -10,6 +10,10 @@ namespace lightwell {
 /// straight on: a lobe 5 degrees wide at half its height. Wider light is read as diffuse.
 inline constexpr double straight_alpha = 0.1;
 
+/// Share of clear light from which a thin sheet is read as a pane, which reflects by Fresnel's
+/// equations. Sheets of a smaller share keep it.
+inline constexpr double nearly_clear = 0.9;
+
 /// Adds a share of light that leaves the other side of a thin sheet diffusely. A sheet has two
 /// sides.
 void add_diffuse_transmittance(Material& material, const Spectrum& share);

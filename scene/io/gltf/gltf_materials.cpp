@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "scene/io/default_material.h"
 #include "scene/io/glossy.h"
+#include "scene/io/sheets.h"
 
 namespace lightwell {
 namespace {
@@ -131,7 +133,11 @@ int GltfMaterials::of_primitive(const GltfObject& primitive, bool is_closed) {
   const auto other = index_of_.find({index, !is_closed});
   if (other != index_of_.end()) {
     const Material& known = scene_.materials[static_cast<std::size_t>(other->second)];
-    if (!material.dielectric && material.emits_both_sides == known.emits_both_sides) {
+    const auto form = [](const Material& m) {
+      return std::array{m.dielectric.has_value(), m.emits_both_sides, m.is_translucent(),
+                        m.passes_straight()};
+    };
+    if (!material.dielectric && form(material) == form(known)) {
       return entry->second = other->second;
     }
   }
@@ -146,10 +152,14 @@ Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
   material.one_sided = !is_double_sided;
   set_surface(from, is_closed, material);
   material.emission = emission(from);
+  cut_by_alpha(from, material);
   material.emits_both_sides = material.is_emitter() && is_double_sided && !is_closed;
   if (material.dielectric && material.is_emitter()) {
     remarks_.add("Clear materials that shine were read as black ones that shine", material.name);
     material.dielectric.reset();
+  }
+  if (close_lamp(material)) {
+    remarks_.add("Lamps let no light straight through, so this part was left out", material.name);
   }
   if (material.mask && material.is_emitter()) {
     remarks_.add("Lamps have no holes, so their transparency by alpha was left out", material.name);
@@ -212,18 +222,38 @@ void GltfMaterials::lay_on_picture(const GltfObject& from, const Spectrum& base,
   } else if (picture) {
     remarks_.add("Textures were read as their mean colour", material.name);
   }
+}
+
+// Alpha below a cutoff cuts holes. Blended alpha lets the share 1 - alpha through, except where a
+// picture of alpha cuts holes: most of its texels are then clear or opaque.
+void GltfMaterials::cut_by_alpha(const GltfObject& from, Material& material) {
   if (!is_cut_by_alpha(from)) return;
+  const BaseColor color_from(from);
   const auto factors =
       color_from.owner ? color_from.owner->numbers(color_from.factor, 4) : std::vector<double>();
-  const double alpha = factors.empty() ? 1.0 : factors[3];
-  const double cutoff = from.number_or("alphaCutoff", 0.5) / alpha;
-  if (from.string_or("alphaMode", "OPAQUE") != "MASK" || !(cutoff <= 1.0)) {
-    remarks_.add("Transparency by alpha was left out, so the whole surface is opaque",
-                 material.name);
-  } else if (picture && picture->alpha && cutoff > 0.0) {
+  double opacity = factors.empty() ? 1.0 : std::clamp(factors[3], 0.0, 1.0);
+  const auto picture = base_picture(from);
+  const auto cut = [&](double cutoff) {
     material.mask = Mask{.image = laid_on(*color_from.info(), picture->alpha),
                          .cutoff = static_cast<float>(cutoff)};
+  };
+  const bool has_picture = picture && picture->alpha;
+  if (from.string_or("alphaMode", "OPAQUE") == "MASK") {
+    const double cutoff = from.number_or("alphaCutoff", 0.5);
+    const bool is_seen = cutoff <= opacity;
+    if (is_seen && has_picture && cutoff > 0.0) cut(cutoff / opacity);
+    opacity = is_seen ? 1.0 : 0.0;
+  } else if (has_picture) {
+    const auto even = even_opacity(*picture->alpha);
+    if (even) opacity *= static_cast<double>(*even);
+    if (!even) cut(0.5);
   }
+  if (!(opacity < 1.0)) return;
+  if (material.dielectric) {
+    return remarks_.add("Transparency by alpha was left out of glass", material.name);
+  }
+  let_through(material, Spectrum::Constant(3, static_cast<float>(opacity)));
+  material.emission *= static_cast<float>(opacity);
 }
 
 PictureMean GltfMaterials::texture_mean(const std::optional<GltfObject>& owner, const char* key,
@@ -285,30 +315,62 @@ void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, boo
   const auto pbr = from.object("pbrMetallicRoughness");
   const auto transmission = from.extension("KHR_materials_transmission");
   // A metal transmits no light. A file with transmission and the default metallic factor of 1 means
-  // glass.
-  const double otherwise = transmission && !(pbr && pbr->has("metallicFactor")) ? 0.0 : 1.0;
+  // glass or paper.
+  const bool transmits = transmission || from.extension("KHR_materials_diffuse_transmission");
+  const double otherwise = transmits && !(pbr && pbr->has("metallicFactor")) ? 0.0 : 1.0;
   const auto mean = texture_mean(pbr, "metallicRoughnessTexture", PictureCode::linear, from).color;
   const double roughness = share_or(pbr, "roughnessFactor", 1.0) * mean[1];
   const double metallic = share_or(pbr, "metallicFactor", otherwise) * mean[2];
   const double alpha = roughness * roughness;
-  double passed = (1.0 - metallic) * share_or(transmission, "transmissionFactor", 0.0);
-  if (passed > 0.0) {
-    passed *= texture_mean(transmission, "transmissionTexture", PictureCode::linear, from).color[0];
+  double clear = share_or(transmission, "transmissionFactor", 0.0);
+  if (clear > 0.0) {
+    clear *= texture_mean(transmission, "transmissionTexture", PictureCode::linear, from).color[0];
   }
-  if (passed >= mostly_clear) {
+  const double passed = (1.0 - metallic) * clear;
+  const bool is_sheet = !is_closed && !(number_or(from.extension("KHR_materials_volume"),
+                                                  "thicknessFactor", 0.0) > 0.0);
+  if (passed >= (is_sheet ? nearly_clear : mostly_clear)) {
     if (passed < 1.0) {
-      remarks_.add("Materials at least half clear were read as wholly clear", material.name);
+      remarks_.add("Materials that are mostly clear were read as wholly clear", material.name);
     }
     return set_clear(from, base, alpha, is_closed, material);
   }
-  if (passed > 0.0) {
+  if (passed > 0.0 && !is_sheet) {
     remarks_.add("Materials less than half clear were read as opaque", material.name);
   }
   if (metallic > 0.0 && alpha > glossy_alpha) {
     remarks_.add("Metals of roughness above 0.7 were read as diffuse", material.name);
   }
   set_metallic(material, base, metallic, alpha);
+  const auto dielectric = static_cast<float>(1.0 - metallic);
+  if (dielectric > 0.0f) {
+    pass_light(from, base, dielectric, is_sheet ? clear : 0.0, alpha, material);
+  }
   if (metallic < least_metallic) set_coat(from, alpha, material);
+}
+
+// Passes light of the share `dielectric` of a material that scatters back the colour `base`:
+// `clear` of the light without being scattered, and a share of the rest diffusely, in a colour of
+// its own.
+void GltfMaterials::pass_light(const GltfObject& from, const Spectrum& base, float dielectric,
+                               double clear, double alpha, Material& material) {
+  const auto diffuse = from.extension("KHR_materials_diffuse_transmission");
+  double scattered = share_or(diffuse, "diffuseTransmissionFactor", 0.0);
+  Spectrum hue = color(diffuse, "diffuseTransmissionColorFactor", 3).max(0.0f).min(1.0f);
+  if (scattered > 0.0) {
+    scattered *=
+        texture_mean(diffuse, "diffuseTransmissionTexture", PictureCode::linear, from).alpha;
+    hue *= texture_mean(diffuse, "diffuseTransmissionColorTexture", PictureCode::srgb, from)
+               .color.cast<float>();
+  }
+  const float straight = dielectric * static_cast<float>(clear);
+  const float behind = dielectric * static_cast<float>((1.0 - clear) * scattered);
+  material.reflectance = (material.reflectance - (straight + behind) * base).max(0.0f);
+  add_diffuse_transmittance(material, behind * hue);
+  if (clear > 0.0 && BaseColor(from).info()) {
+    remarks_.add("What passes sheets with a picture has its mean colour", material.name);
+  }
+  add_transmittance(material, straight * base, alpha);
 }
 
 // Lays on the coat that a dielectric is, or its clear coat. Highlights of a roughness above 0.7 are

@@ -31,6 +31,9 @@ class GltfMaterials {
   Spectrum base_color(const GltfObject& from);
   void set_surface(const GltfObject& from, bool is_closed, Material& material);
   void set_shaded(const GltfObject& from, const Spectrum& base, bool is_closed, Material& material);
+  void pass_light(const GltfObject& from, const Spectrum& base, float dielectric, double clear,
+                  double alpha, Material& material);
+  void cut_by_alpha(const GltfObject& from, Material& material);
   void set_coat(const GltfObject& from, double alpha, Material& material);
   void set_clear(const GltfObject& from, const Spectrum& base, double alpha, bool is_closed,
                  Material& material);

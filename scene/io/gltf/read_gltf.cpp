@@ -23,6 +23,9 @@ namespace {
 // Extensions that are read, or that do not affect the light.
 constexpr std::array known_extensions = {"KHR_materials_emissive_strength",
                                          "KHR_materials_transmission",
+                                         "KHR_materials_diffuse_transmission",
+                                         "KHR_materials_specular",
+                                         "KHR_materials_clearcoat",
                                          "KHR_materials_ior",
                                          "KHR_materials_volume",
                                          "KHR_materials_pbrSpecularGlossiness",

@@ -40,10 +40,6 @@ Material pane(double index, const Spectrum& tint, double alpha) {
   return material;
 }
 
-// Share of clear light from which a thin principled BSDF is read as a pane. A smaller share is that
-// of a sheet.
-constexpr double nearly_clear = 0.9;
-
 const char* const rough_metal = "Metals of alpha above 0.5 were read as diffuse";
 
 }  // namespace

@@ -170,6 +170,90 @@ TEST_F(Gltf, ClearSheetsAreThinPanesUnlessTheyHaveAThickness) {
   EXPECT_NEAR(solid.dielectric->tint[0], 0.25, 1e-6);
 }
 
+// Half of the light that the base scatters leaves the back, in the colour of the transmission.
+TEST_F(Gltf, SheetsPassLightDiffusely) {
+  const std::string paper = R"({"pbrMetallicRoughness":{"baseColorFactor":[0.8,0.6,0.4,1],
+      "metallicFactor":0,"roughnessFactor":1},"extensions":{"KHR_materials_diffuse_transmission":
+      {"diffuseTransmissionFactor":0.5,"diffuseTransmissionColorFactor":[1,0.5,0.25]}}})";
+  const Material sheet = material(paper);
+  EXPECT_FLOAT_EQ(sheet.reflectance[0], 0.4f);
+  EXPECT_FLOAT_EQ(sheet.reflectance[2], 0.2f);
+  EXPECT_FLOAT_EQ(sheet.transmittance[0], 0.5f);
+  EXPECT_FLOAT_EQ(sheet.transmittance[2], 0.125f);
+  EXPECT_FALSE(sheet.one_sided || sheet.passes_straight());
+  EXPECT_FALSE(material(R"({"pbrMetallicRoughness":{"metallicFactor":1},
+      "extensions":{"KHR_materials_diffuse_transmission":{"diffuseTransmissionFactor":0.5}}})")
+                   .is_translucent());
+}
+
+// Two fifths of the light pass a sheet of the base colour; the coat takes its share of all.
+TEST_F(Gltf, SheetsThatArePartlyClearKeepTheirShare) {
+  const auto sheet = [&](const std::string& roughness) {
+    return material(
+        R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,0.5,0.5,1],"metallicFactor":0,
+        "roughnessFactor":)" +
+        roughness + R"(},"extensions":{"KHR_materials_transmission":{"transmissionFactor":0.4}}})");
+  };
+  const Material foil = sheet("0.2"), frosted = sheet("0.9");
+  ASSERT_TRUE(foil.coat);
+  const auto kept = static_cast<float>(1.0 - CoatedBase(foil).mean_mirrored());
+  EXPECT_FLOAT_EQ(foil.regular_transmittance[0], kept * 0.2f);
+  EXPECT_FLOAT_EQ(foil.reflectance[0], kept * 0.3f);
+  EXPECT_FLOAT_EQ(frosted.transmittance[0], 0.2f);
+  EXPECT_FALSE(frosted.passes_straight());
+}
+
+TEST_F(Gltf, BlendedAlphaLetsTheRestThrough) {
+  const auto base = [](const std::string& mode, double alpha) {
+    return R"({"alphaMode":")" + mode + R"(","emissiveFactor":[0,0,0],"pbrMetallicRoughness":{
+        "metallicFactor":0,"baseColorFactor":[0.8,0.8,0.8,)" +
+           std::to_string(alpha) + "]}}";
+  };
+  const Material gauze = material(base("BLEND", 0.25));
+  EXPECT_FLOAT_EQ(gauze.reflectance[0], 0.2f);
+  EXPECT_FLOAT_EQ(gauze.regular_transmittance[0], 0.75f);
+  EXPECT_FALSE(gauze.one_sided);
+  EXPECT_FALSE(material(base("BLEND", 1.0)).passes_straight());
+  EXPECT_FALSE(material(base("OPAQUE", 0.25)).passes_straight());
+  EXPECT_FALSE(material(base("MASK", 0.75)).passes_straight());
+  EXPECT_FLOAT_EQ(material(base("MASK", 0.25)).regular_transmittance[0], 1.0f);  // below the cutoff
+  const Material lamp = material(
+      R"({"alphaMode":"BLEND","emissiveFactor":[1,1,1],"pbrMetallicRoughness":{
+      "baseColorFactor":[1,1,1,0.5]}})");
+  EXPECT_FLOAT_EQ(lamp.emission[0], 0.5f * pi);
+  EXPECT_FALSE(lamp.passes_straight());
+}
+
+TEST_F(Gltf, PicturesOfBlendedAlphaCutHoles) {
+  const std::string png = content_of(LIGHTWELL_TEST_DATA "/scene/two-pixels.png");
+  const Scene scene =
+      read(square_gltf(one_node + R"(,"images":[{"uri":"data:image/png;base64,)" + base64(png) +
+                           R"("}],"textures":[{"source":0}],"materials":[{"alphaMode":"BLEND",
+          "pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0},
+          "baseColorFactor":[0.8,0.8,0.8,0.5]}}])",
+                       R"(,"material":0)"));
+  const Material& leaf = scene.materials.at(0);
+  ASSERT_TRUE(leaf.mask);
+  EXPECT_FLOAT_EQ(leaf.mask->cutoff, 0.5f);
+  EXPECT_FLOAT_EQ(leaf.regular_transmittance[0], 0.5f);
+  EXPECT_FLOAT_EQ(leaf.texture.value().factor[0], 0.4f);
+}
+
+// Two texels of alpha 0.2 and 0.6: neither clear nor opaque.
+TEST_F(Gltf, PicturesOfGauzeCountByTheirMeanAlpha) {
+  const std::string png = content_of(LIGHTWELL_TEST_DATA "/scene/gauze.png");
+  const Scene scene =
+      read(square_gltf(one_node + R"(,"images":[{"uri":"data:image/png;base64,)" + base64(png) +
+                           R"("}],"textures":[{"source":0}],"materials":[{"alphaMode":"BLEND",
+          "pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0},
+          "baseColorFactor":[0.8,0.8,0.8,0.5]}}])",
+                       R"(,"material":0)"));
+  const Material& gauze = scene.materials.at(0);
+  EXPECT_FALSE(gauze.mask);
+  // Texels have 16 bits, of the square root: steps of 2e-5 here.
+  EXPECT_NEAR(gauze.regular_transmittance[0], 1.0f - 0.5f * 0.4f, 2e-5f);
+}
+
 TEST_F(Gltf, PicturesWithinTheFileBecomeTheirMean) {
   const std::string png = content_of(LIGHTWELL_TEST_DATA "/scene/two-pixels.png");
   const auto color = [&](const char* mode) {
