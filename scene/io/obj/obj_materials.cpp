@@ -12,6 +12,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/pictures/picture_mean.h"
+#include "scene/io/sheets.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -127,13 +128,23 @@ class MtlParser {
   std::vector<MtlBlock> blocks_;
 };
 
-bool is_clear(const MtlBlock& b) {
+float opacity(const MtlBlock& b) {
+  return b.dissolve.value_or(1.0f - b.transparency.value_or(0.0f));
+}
+
+bool is_glass(const MtlBlock& b) {
   constexpr std::array clear_models = {4, 6, 7, 9};
-  if (std::find(clear_models.begin(), clear_models.end(), b.illumination) != clear_models.end()) {
-    return true;
-  }
-  const float opacity = b.dissolve.value_or(1.0f - b.transparency.value_or(0.0f));
-  return opacity < 1.0f || (b.filter && (*b.filter > 0.0f).any() && (*b.filter < 1.0f).any());
+  return std::ranges::find(clear_models, b.illumination) != clear_models.end() ||
+         (b.filter && (*b.filter > 0.0f).any() && (*b.filter < 1.0f).any());
+}
+
+// A dissolved surface: the share `d` of it is there, and the rest of the light passes straight on.
+bool is_sheet(const MtlBlock& b) {
+  return !is_glass(b) && opacity(b) < 1.0f && opacity(b) > 0.0f;
+}
+
+bool is_clear(const MtlBlock& b) {
+  return is_glass(b) || !(opacity(b) > 0.0f);
 }
 
 void make_clear(const MtlBlock& b, Material& material, MtlRemarks& remarks) {
@@ -143,7 +154,7 @@ void make_clear(const MtlBlock& b, Material& material, MtlRemarks& remarks) {
       Dielectric{.index_of_refraction = index > 0.0f && index != 1.0f ? index : 1.5f,
                  .tint = has_filter ? *b.filter : Spectrum(Spectrum::Ones(3))};
   if (b.illumination < 4 && !has_filter) {
-    remarks.add("d < 1 or Tr > 0 was read as clear glass in", b.name);
+    remarks.add("d 0 or Tr 1 was read as clear glass in", b.name);
   }
   if (b.radiance && (*b.radiance > 0.0f).any()) {
     remarks.add("Ke was left out in clear materials", b.name);
@@ -247,6 +258,8 @@ class MapReader {
       remarks_.add("lamps have no holes, so map_d was left out in", b.name);
     } else if (const auto picture = open(map.file, b, PictureCode::linear)) {
       map.image.picture = picture->alpha ? picture->alpha : picture->color;
+      const auto even = material.dielectric ? std::nullopt : even_opacity(*map.image.picture);
+      if (even) return let_through(material, Spectrum::Constant(3, *even));
       material.mask = Mask{.image = map.image};
     }
   }
@@ -290,6 +303,13 @@ class MapReader {
   PictureFiles pictures_;
 };
 
+void dissolve(const MtlBlock& b, Material& material, MtlRemarks& remarks) {
+  if (material.is_emitter()) {
+    return remarks.add("lamps let no light through, so d or Tr was left out in", b.name);
+  }
+  let_through(material, Spectrum::Constant(3, opacity(b)));
+}
+
 }  // namespace
 
 std::vector<Material> read_obj_materials(const std::filesystem::path& path, Remarks& remarks) {
@@ -300,6 +320,7 @@ std::vector<Material> read_obj_materials(const std::filesystem::path& path, Rema
   for (const MtlBlock& block : MtlParser(file).parse()) {
     materials.push_back(make_material(file, block, of_file));
     maps.add_maps(block, materials.back());
+    if (is_sheet(block)) dissolve(block, materials.back(), of_file);
   }
   return materials;
 }

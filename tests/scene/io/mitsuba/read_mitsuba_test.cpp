@@ -429,6 +429,16 @@ TEST_F(Mitsuba, AMaskOfAnEvenOpacityLetsTheRestThrough) {
   EXPECT_TRUE(has_loss(lamp, "Lamps let no light straight through"));
 }
 
+// Two texels of alpha 0.2 and 0.6: neither clear nor opaque.
+TEST_F(Mitsuba, APictureOfGauzeIsAMaskOfItsMeanOpacity) {
+  std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/gauze.png", folder / "gauze.png");
+  const Material gauze = material(R"(<bsdf type="mask"><texture type="bitmap" name="opacity">
+      <string name="filename" value="gauze.png"/></texture><bsdf type="diffuse"/></bsdf>)");
+  EXPECT_FALSE(gauze.mask);
+  // Texels have 16 bits, of the square root: steps of 2e-5 here.
+  EXPECT_NEAR(gauze.regular_transmittance[0], 0.6f, 2e-5f);
+}
+
 TEST_F(Mitsuba, DiffuseTransmittersPassTheirTransmittance) {
   const Material paper = material(
       R"(<bsdf type="difftrans"><rgb name="transmittance" value="0.6, 0.5, 0.4"/></bsdf>)");

@@ -126,12 +126,43 @@ TEST(ReadObj, ClearMaterialsAreDielectrics) {
   EXPECT_FLOAT_EQ(pane.dielectric->index_of_refraction, 1.45f);
   expect_rgb(pane.dielectric->tint, 0.9f, 1.0f, 0.8f);
   EXPECT_FALSE((pane.reflectance > 0.0f).any());
-  const Material& haze = material(room(), "haze");
-  ASSERT_TRUE(haze.dielectric);
-  EXPECT_FLOAT_EQ(haze.dielectric->index_of_refraction, 1.5f) << "none given";
-  EXPECT_TRUE(is_noted(room(), "'haze'"));
+  const Scene nothing = read_text(triangle, "newmtl m\nKd 1 1 1\nd 0\n");
+  ASSERT_TRUE(nothing.materials[0].dielectric);
+  EXPECT_FLOAT_EQ(nothing.materials[0].dielectric->index_of_refraction, 1.5f) << "none given";
+  EXPECT_TRUE(is_noted(nothing, "read as clear glass in: 'm'"));
   const Scene opaque = read_text(triangle, "newmtl m\nKd 1 1 1\nTr 0\nTf 1 1 1\nNi 1.5\n");
   EXPECT_FALSE(opaque.materials[0].dielectric);
+}
+
+// d is the share of the surface that is there. Models 4, 6, 7 and 9 and a colour of Tf mean glass.
+TEST(ReadObj, DissolvedSurfacesLetTheRestThrough) {
+  const Material& haze = material(room(), "haze");
+  EXPECT_FALSE(haze.dielectric);
+  expect_rgb(haze.reflectance, 0.15f, 0.15f, 0.15f);
+  expect_rgb(haze.regular_transmittance, 0.7f, 0.7f, 0.7f);
+  const auto first = [](const std::string& mtl) {
+    return read_text(triangle, "newmtl m\nKd 0.5\n" + mtl).materials[0];
+  };
+  const Material net = first("Tr 0.25\nillum 3\nKs 0.4\n");
+  expect_rgb(net.reflectance, 0.375f, 0.375f, 0.375f);
+  expect_rgb(net.specular, 0.3f, 0.3f, 0.3f);
+  expect_rgb(net.regular_transmittance, 0.25f, 0.25f, 0.25f);
+  EXPECT_TRUE(first("d 0.3\nillum 9\n").dielectric);
+  EXPECT_TRUE(first("d 0.3\nTf 0.5 1 1\n").dielectric);
+  EXPECT_FALSE(first("d 0.3\nTf 1 1 1\n").dielectric);
+  const Material lamp = first("d 0.3\nKe 1 1 1\n");
+  EXPECT_TRUE(lamp.is_emitter() && !lamp.passes_straight());
+}
+
+// Two texels of alpha 0.2 and 0.6: neither clear nor opaque.
+TEST(ReadObj, APictureOfGauzeCountsByItsMeanOpacity) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/gauze.png", folder / "gauze.png");
+  folder.write("text.mtl", "newmtl m\nKd 0.5\nmap_d gauze.png\n");
+  const Scene scene = read_scene(folder.write("text.obj", "mtllib text.mtl\n" + triangle));
+  EXPECT_FALSE(scene.materials[0].mask);
+  // Texels have 16 bits, of the square root: steps of 2e-5 here.
+  EXPECT_NEAR(scene.materials[0].regular_transmittance[0], 0.6f, 2e-5f);
 }
 
 TEST(ReadObj, KeIsRadiance) {
