@@ -7,7 +7,8 @@
 namespace lightwell {
 
 /// Largest width alpha (GGX, or a Gaussian of slopes) of transmitted light that is read as passing
-/// straight on: a lobe 5 degrees wide at half its height. Wider light is read as diffuse.
+/// straight on: a lobe that falls to half its height 5 to 7 degrees from its middle. Wider light is
+/// read as diffuse.
 inline constexpr double straight_alpha = 0.1;
 
 /// Share of clear light from which a thin sheet is read as a pane, which reflects by Fresnel's

@@ -92,7 +92,7 @@ class RgbeFile {
     rest_ = file_.text();
   }
 
-  EnvironmentPixels read() {
+  EnvironmentPixels read(bool divides_exposure) {
     if (!rest_.starts_with("#?"))
       fail_environment(path_, "is no RADIANCE picture: it does not begin with '#?'");
     double exposure = 1.0;
@@ -104,6 +104,7 @@ class RgbeFile {
       constexpr std::string_view key = "EXPOSURE=";
       if (text.starts_with(key)) exposure *= number(text.substr(key.size()));
     }
+    if (!divides_exposure) exposure = 1.0;
     const auto [width, height] = resolution(line());
     EnvironmentPixels pixels{.width = width, .height = height};
     pixels.rgb = BandArray::Zero(std::int64_t{width} * height, 3);
@@ -232,7 +233,7 @@ std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem
   if (extension == ".exr") {
     pixels = read_exr_pixels(path);
   } else if (extension == ".hdr" || extension == ".pic" || extension == ".rgbe") {
-    pixels = RgbeFile(path).read();
+    pixels = RgbeFile(path).read(true);
   } else {
     fail_environment(path, "is no environment map that is read: give an .exr or .hdr");
   }
@@ -247,6 +248,11 @@ std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem
   } catch (const std::invalid_argument& error) {
     fail_environment(path, error.what());
   }
+}
+
+BandArray read_rgbe_values(const std::filesystem::path& path) {
+  require_readable(path);
+  return RgbeFile(path).read(false).rgb;
 }
 
 }  // namespace lightwell

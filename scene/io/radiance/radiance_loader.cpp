@@ -34,10 +34,11 @@ bool makes_a_sky(std::string_view program) {
 
 }  // namespace
 
-std::optional<std::filesystem::path> RadianceLoader::find_if_any(
-    const std::string& name, const RadianceLocation& location) const {
-  for (const auto& folder : {location.file->parent_path(), folder_, folder_ / "lib"}) {
-    auto path = (folder / name).lexically_normal();
+std::optional<std::filesystem::path> find_radiance_file(const std::string& name,
+                                                        const RadianceLocation& location,
+                                                        const std::filesystem::path& folder) {
+  for (const auto& from : {location.file->parent_path(), folder, folder / "lib"}) {
+    auto path = (from / name).lexically_normal();
     if (is_file(path)) return path;
   }
   return std::nullopt;
@@ -45,7 +46,7 @@ std::optional<std::filesystem::path> RadianceLoader::find_if_any(
 
 std::filesystem::path RadianceLoader::find(const std::string& name,
                                            const RadianceLocation& location) const {
-  if (auto path = find_if_any(name, location)) return *path;
+  if (auto path = find_radiance_file(name, location, folder_)) return *path;
   location.fail(fmt::format(
       "names the file '{}', but there is no such file beside it, in the scene's folder or in its "
       "folder 'lib'",
@@ -110,7 +111,7 @@ void RadianceLoader::read_source_of(const RadiancePrimitive& compiled, const Rad
   const std::string name = compiled.strings.empty() ? compiled.name : compiled.strings.front();
   const std::string source =
       std::filesystem::path(name).replace_extension(is_octree ? ".rad" : ".obj").string();
-  const auto path = find_if_any(source, compiled.location);
+  const auto path = find_radiance_file(source, compiled.location, folder_);
   if (!path || is_open(*path)) {
     return remarks_.add(
         is_octree ? "Compiled octrees cannot be read and were left out (put '!xform FILE' for the "

@@ -13,6 +13,12 @@
 
 namespace lightwell {
 
+/// Path of a file named at `location` in a scene of the folder `folder`: beside the file that names
+/// it, in `folder` or in its subfolder "lib". Empty if there is none.
+std::optional<std::filesystem::path> find_radiance_file(const std::string& name,
+                                                        const RadianceLocation& location,
+                                                        const std::filesystem::path& folder);
+
 /// Reads the files of a RADIANCE scene and evaluates the commands in them (xform, cat and the
 /// generators). No text of a file is ever passed to a shell. Commands that cannot be evaluated,
 /// files that are missing or torn, and compiled octrees and meshes without their source are left
@@ -20,8 +26,7 @@ namespace lightwell {
 /// scenes beyond the limits on commands, bytes and facets.
 class RadianceLoader {
  public:
-  /// `folder` is the folder of the scene. A file is looked up beside the file that names it, then
-  /// in `folder`, last in its subfolder "lib".
+  /// `folder` is the folder of the scene, for find_radiance_file().
   RadianceLoader(std::filesystem::path folder, Remarks& remarks)
       : folder_(std::move(folder)), remarks_(remarks) {}
 
@@ -40,8 +45,6 @@ class RadianceLoader {
 
  private:
   using Program = std::vector<std::string>;
-  std::optional<std::filesystem::path> find_if_any(const std::string& name,
-                                                   const RadianceLocation& location) const;
   bool is_open(const std::filesystem::path& path) const;
   void read_source_of(const RadiancePrimitive& compiled, const RadianceSink& sink);
   void run(const std::string& command, const RadianceLocation& location, const RadianceSink& sink);

@@ -5,10 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <filesystem>
+#include <string_view>
 
 #include "scene/errors.h"
 #include "scene/io/default_material.h"
+#include "scene/io/pictures/environment_file.h"
 #include "scene/io/radiance/radiance_expression.h"
+#include "scene/io/radiance/radiance_loader.h"
 #include "scene/io/sheets.h"
 
 namespace lightwell {
@@ -25,6 +29,22 @@ double constant_value(const std::string& formula, const RadiancePrimitive& of) {
   } catch (const InputError&) {
     return std::nan("");
   }
+}
+
+// Functions of rayinit.cal that a colorpict applies to r, g and b.
+constexpr std::array<std::string_view, 8> picture_functions = {
+    "red", "green", "blue", "clip_r", "clip_g", "clip_b", "grey", "clipgrey"};
+
+// Means of these functions over the pixels of a picture.
+Spectrum means_of(const BandArray& pixels) {
+  const Eigen::Vector3d luminance(0.265, 0.670, 0.065);  // weights of RADIANCE's primaries
+  Eigen::ArrayXXd values(pixels.rows(), 4);
+  values << pixels.cast<double>(), (pixels.cast<double>().matrix() * luminance).array();
+  const Eigen::ArrayXd plain = values.colwise().mean(), cut = values.min(1.0).colwise().mean();
+  Spectrum means(static_cast<Eigen::Index>(picture_functions.size()));
+  means << plain.head(3).cast<float>(), cut.head(3).cast<float>(), static_cast<float>(plain[3]),
+      static_cast<float>(cut[3]);
+  return means;
 }
 
 bool is_same(const RadiancePrimitive& a, const RadiancePrimitive& b) {
@@ -209,6 +229,11 @@ void RadianceMaterials::apply(const Definition& pattern, RadiancePattern& result
     is_constant = factor[i] >= 0.0 && std::isfinite(factor[i]);
   }
   if (p.type.ends_with("pict")) {
+    if (const auto mean = mean_of_picture(p)) {
+      remarks_.add("Pictures on surfaces were taken as their mean colour", p.name);
+      result.factor *= *mean;
+      return;
+    }
     // A picture is the whole colour of its surface, over a white material.
     remarks_.add("Pictures on surfaces were taken as a medium grey of 0.5", p.name);
     is_constant = true;
@@ -223,6 +248,36 @@ void RadianceMaterials::apply(const Definition& pattern, RadiancePattern& result
   for (int k = 0; k < 3; ++k) {
     result.factor[k] *= static_cast<float>(factor[static_cast<std::size_t>(k)]);
   }
+}
+
+// Mean of a colorpict over its picture. Arguments: functions of red, green and blue, picture,
+// function file, u, v. Empty for a picture that cannot be read, or functions that are not known.
+std::optional<Spectrum> RadianceMaterials::mean_of_picture(const RadiancePrimitive& colorpict) {
+  if (colorpict.strings.size() < 4) return std::nullopt;
+  const std::string& name = colorpict.strings[3];
+  const std::filesystem::path folder = scene_.file.parent_path();
+  auto path = find_radiance_file(name, colorpict.location, folder);
+  // Pictures were renamed from .pic to .hdr over the years.
+  if (!path) {
+    const auto renamed = std::filesystem::path(name).replace_extension(".hdr").string();
+    path = find_radiance_file(renamed, colorpict.location, folder);
+  }
+  if (!path) return std::nullopt;
+  auto known = means_.find(*path);
+  if (known == means_.end()) {
+    std::optional<Spectrum> means;
+    remarks_.attempt("Pictures that cannot be read were taken as a medium grey of 0.5", name,
+                     [&] { means = means_of(read_rgbe_values(*path)); });
+    known = means_.emplace(*path, means).first;
+  }
+  if (!known->second) return std::nullopt;
+  Spectrum mean(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto function = std::ranges::find(picture_functions, colorpict.strings[k]);
+    if (function == picture_functions.end()) return std::nullopt;
+    mean[static_cast<Eigen::Index>(k)] = (*known->second)[function - picture_functions.begin()];
+  }
+  return mean;
 }
 
 }  // namespace lightwell

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,7 +16,7 @@ namespace lightwell {
 /// Product of the patterns of a material, a factor of its colour.
 struct RadiancePattern {
   Spectrum factor = Spectrum::Ones(3);
-  bool is_known = true;  ///< false: a spatially varying pattern was taken as 1
+  bool is_known = true;  ///< false: nothing is known of a pattern, which counts as 1 or 0.5
 };
 
 /// Converts a RADIANCE material; empty for invisible ones (antimatter, mist). Mixtures are not
@@ -50,6 +51,7 @@ class RadianceMaterials {
   std::optional<Material> mixed(const Definition& mixture, int depth);
   RadiancePattern pattern_of(const Definition& definition);
   void apply(const Definition& pattern, RadiancePattern& result);
+  std::optional<Spectrum> mean_of_picture(const RadiancePrimitive& colorpict);
 
   Scene& scene_;
   Remarks& remarks_;
@@ -57,6 +59,8 @@ class RadianceMaterials {
   std::map<std::string, int, std::less<>> latest_;
   // A cache: mixtures of mixtures would be read 2^n times.
   std::map<int, std::optional<Material>> known_;
+  // Means over each picture, of functions of its r, g and b.
+  std::map<std::filesystem::path, std::optional<Spectrum>> means_;
   NumberedNames names_;
 };
 

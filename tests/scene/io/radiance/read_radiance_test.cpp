@@ -306,6 +306,30 @@ TEST_F(Radiance, PatternsThatVaryAreNamed) {
   expect_rgb(picture.reflectance, {0.5, 0.5, 0.5});
 }
 
+// Two pixels (m + 1/2) 2^(e - 136): 128.5 / 256 and 128.5 / 64, 64.5 / 256 and 64.5 / 64,
+// 32.5 / 256 and 32.5 / 64. The exposure does not count.
+TEST_F(Radiance, PicturesCountByTheirMeanColour) {
+  std::filesystem::create_directory(folder / "lib");
+  folder.write("lib/print.hdr", "#?RADIANCE\nEXPOSURE=4\n\n-Y 1 +X 2\n" +
+                                    std::string("\x80\x40\x20\x80\x80\x40\x20\x82", 8));
+  const auto mean = [&](const std::string& functions, const std::string& file) -> Spectrum {
+    return material("void colorpict p 7 " + functions + " " + file +
+                    " picture.cal pic_u pic_v 0 0\np light m 0 0 3 1 1 1")
+               .emission /
+           static_cast<float>(pi);
+  };
+  const auto of_mantissa = [](double m) { return 0.5 * (m / 256 + m / 64); };
+  const double red = of_mantissa(128.5), green = of_mantissa(64.5), blue = of_mantissa(32.5);
+  expect_rgb(mean("red green blue", "print.hdr"), {red, green, blue});
+  expect_rgb(mean("clip_r clip_g clip_b", "print.pic"),
+             {0.5 * (128.5 / 256 + 1.0), 0.5 * (64.5 / 256 + 1.0), blue});
+  const double all = 0.265 * red + 0.670 * green + 0.065 * blue;
+  expect_rgb(mean("grey grey grey", "print.hdr"), {all, all, all});
+  expect_rgb(mean("fadered green blue", "print.hdr"), {0.5, 0.5, 0.5});
+  folder.write("torn.hdr", "#?RADIANCE\n\n-Y 1 +X 2\n\x80");
+  expect_rgb(mean("red green blue", "torn.hdr"), {0.5, 0.5, 0.5});
+}
+
 TEST_F(Radiance, ANameMeansWhatWasDefinedLast) {
   const Scene scene = read("void plastic m 0 0 5 .1 .1 .1 0 0\nm " + square +
                            "void plastic m 0 0 5 .2 .2 .2 0 0\nm polygon other 0 0 9 0 0 0 1 0 0 "
