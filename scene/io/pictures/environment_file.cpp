@@ -84,6 +84,10 @@ EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
   }
 }
 
+// Uses of a RADIANCE picture: as light, or as a pattern, where RADIANCE leaves EXPOSURE in and
+// takes old files, which do not begin with "#?".
+enum class RgbeUse { light, pattern };
+
 // A RADIANCE picture (Ward 1991, "Real pixels"): header lines, an empty line, the resolution, and
 // rows of shared-exponent pixels, run-length encoded or not.
 class RgbeFile {
@@ -92,8 +96,8 @@ class RgbeFile {
     rest_ = file_.text();
   }
 
-  EnvironmentPixels read(bool divides_exposure) {
-    if (!rest_.starts_with("#?"))
+  EnvironmentPixels read(RgbeUse use) {
+    if (use == RgbeUse::light && !rest_.starts_with("#?"))
       fail_environment(path_, "is no RADIANCE picture: it does not begin with '#?'");
     double exposure = 1.0;
     for (std::string_view text = line(); !text.empty(); text = line()) {
@@ -104,7 +108,7 @@ class RgbeFile {
       constexpr std::string_view key = "EXPOSURE=";
       if (text.starts_with(key)) exposure *= number(text.substr(key.size()));
     }
-    if (!divides_exposure) exposure = 1.0;
+    if (use == RgbeUse::pattern) exposure = 1.0;
     const auto [width, height] = resolution(line());
     EnvironmentPixels pixels{.width = width, .height = height};
     pixels.rgb = BandArray::Zero(std::int64_t{width} * height, 3);
@@ -233,7 +237,7 @@ std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem
   if (extension == ".exr") {
     pixels = read_exr_pixels(path);
   } else if (extension == ".hdr" || extension == ".pic" || extension == ".rgbe") {
-    pixels = RgbeFile(path).read(true);
+    pixels = RgbeFile(path).read(RgbeUse::light);
   } else {
     fail_environment(path, "is no environment map that is read: give an .exr or .hdr");
   }
@@ -252,7 +256,7 @@ std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem
 
 BandArray read_rgbe_values(const std::filesystem::path& path) {
   require_readable(path);
-  return RgbeFile(path).read(false).rgb;
+  return RgbeFile(path).read(RgbeUse::pattern).rgb;
 }
 
 }  // namespace lightwell

@@ -307,10 +307,11 @@ TEST_F(Radiance, PatternsThatVaryAreNamed) {
 }
 
 // Two pixels (m + 1/2) 2^(e - 136): 128.5 / 256 and 128.5 / 64, 64.5 / 256 and 64.5 / 64,
-// 32.5 / 256 and 32.5 / 64. The exposure does not count.
+// 32.5 / 256 and 32.5 / 64. Neither the exposure counts
+// nor a beginning other than "#?".
 TEST_F(Radiance, PicturesCountByTheirMeanColour) {
   std::filesystem::create_directory(folder / "lib");
-  folder.write("lib/print.hdr", "#?RADIANCE\nEXPOSURE=4\n\n-Y 1 +X 2\n" +
+  folder.write("lib/print.hdr", "pfilt -1 old.pic\nEXPOSURE=4\n\n-Y 1 +X 2\n" +
                                     std::string("\x80\x40\x20\x80\x80\x40\x20\x82", 8));
   const auto mean = [&](const std::string& functions, const std::string& file) -> Spectrum {
     return material("void colorpict p 7 " + functions + " " + file +
