@@ -1,5 +1,7 @@
 #include "scene/io/sheets.h"
 
+#include "scene/specular.h"
+
 namespace lightwell {
 namespace {
 
@@ -44,6 +46,12 @@ void scale_shares(const Spectrum& factor, Material& material) {
     if (share->size() > 0) *share *= factor;
   }
   if (material.texture) material.texture->factor *= factor;
+}
+
+void limit_shares(Material& material) {
+  Spectrum all = material.reflectance + mean_specular(material);
+  if (material.is_translucent()) all += material.transmittance;
+  scale_shares(all.max(1.0f).inverse(), material);
 }
 
 void let_through(Material& material, const Spectrum& opacity) {

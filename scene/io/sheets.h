@@ -32,6 +32,10 @@ void add_passed(const Material& part, float weight, Material& sum);
 /// Multiplies every share of light that a material other than a dielectric reflects or passes.
 void scale_shares(const Spectrum& factor, Material& material);
 
+/// Scales the shares of a material other than a dielectric so that they add up to at most 1 in
+/// every band.
+void limit_shares(Material& material);
+
 /// Leaves the share `opacity`, [0,1], of a material that is no dielectric: a fabric with fine
 /// holes. The rest of the light passes straight on. Emission stays as it is.
 void let_through(Material& material, const Spectrum& opacity);

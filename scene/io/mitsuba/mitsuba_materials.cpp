@@ -12,7 +12,6 @@
 #include "scene/io/mitsuba/mitsuba_presets.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/sheets.h"
-#include "scene/specular.h"
 
 namespace lightwell {
 namespace {
@@ -293,7 +292,7 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
   remarks_.add("Principled BSDFs were read by their base colour, metallic and roughness",
                bsdf.label());
   Material material = opaque_bsdf(black());
-  const double metallic = share("metallic", 0.0);
+  const double metallic = is_thin ? 0.0 : share("metallic", 0.0);  // sheets are no metal
   set_metallic(material, color, metallic, alpha);
   if (picture && (material.reflectance > 0.0f).any()) {
     material.texture = picture->texture;
@@ -438,9 +437,7 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
     add_passed(part, weights[i], sum);
   }
   // The weights of a mixture may add up to more than 1; the shares of light must not.
-  Spectrum all = sum.reflectance + mean_specular(sum);
-  if (sum.is_translucent()) all += sum.transmittance;
-  scale_shares(all.max(1.0f).inverse(), sum);
+  limit_shares(sum);
   return sum;
 }
 

@@ -11,6 +11,7 @@
 #include "scene/io/glossy.h"
 #include "scene/io/radiance/radiance_materials.h"
 #include "scene/io/sheets.h"
+#include "scene/io/text_file.h"
 #include "scene/optics.h"
 
 namespace lightwell {
@@ -226,14 +227,35 @@ Maybe spotlight(const Given& given) {
   return shining(given, static_cast<float>(std::sin(half) * std::sin(half)));
 }
 
-// Keeps the diffuse reflectance of the front.
+// Three string arguments that are shares; empty if one is a formula.
+std::optional<Spectrum> constant_shares(const Given& given, std::size_t first) {
+  Spectrum shares(3);
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (first + k >= given.p.strings.size()) return std::nullopt;
+    const auto value = parse_finite(given.p.strings[first + k]);
+    if (!value || !(*value >= 0.0 && *value <= 1.0)) return std::nullopt;
+    shares[static_cast<Eigen::Index>(k)] = static_cast<float>(*value);
+  }
+  return shares;
+}
+
+// Keeps the diffuse reflectance of the front, the diffuse transmittance, and of a BRTDfunc what it
+// mirrors and passes straight on if that is constant. Real arguments: reflectance of the front, of
+// the back, transmittance.
 Maybe by_diffuse_part(const Given& given) {
   if (given.p.reals.size() < 3) {
     given.remark("Materials whose data stand in other files got a diffuse reflectance of 0.5");
     return opaque(Spectrum::Constant(3, 0.5f));
   }
   given.remark("Materials of measured or programmed scattering kept their diffuse part alone");
-  return opaque(given.color(0));
+  Material material = opaque(given.color(0));
+  if (given.p.reals.size() >= 9) add_diffuse_transmittance(material, given.color(6));
+  if (given.p.type == "BRTDfunc") {
+    material.specular = constant_shares(given, 0).value_or(zero());
+    add_regular_transmittance(material, constant_shares(given, 3).value_or(zero()));
+  }
+  limit_shares(material);
+  return material;
 }
 
 Maybe prism(const Given& given) {

@@ -67,7 +67,8 @@ void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureF
     material.reflectance *= laid.picture.mean.color.cast<float>();
   }
   if (const auto mask = table.find("mask")) {
-    for (const char* other : {"radiance", "exitance", "power"}) {
+    for (const char* other :
+         {"radiance", "exitance", "power", "luminance", "luminous_exitance", "lumens"}) {
       if (table.has(other)) mask->fail("does not go with an emission: lamps have no holes");
     }
     Laid laid = read_laid(*mask, PictureCode::linear, true, pictures);

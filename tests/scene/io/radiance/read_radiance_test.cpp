@@ -288,6 +288,23 @@ TEST_F(Radiance, TransThatIsRoughPassesLightDiffusely) {
              {0.4, 0.4, 0.4});
 }
 
+TEST_F(Radiance, ProgrammedMaterialsKeepTheirDiffuseAndConstantParts) {
+  const Material blind =
+      material("void BRTDfunc m 10 .1 .1 .1 .2 .2 .3 0 0 0 . 0 9 .3 .3 .3 .1 .1 .1 .2 .2 .1");
+  expect_rgb(blind.reflectance, {0.3, 0.3, 0.3});
+  expect_rgb(blind.specular, {0.1, 0.1, 0.1});
+  expect_rgb(blind.transmittance, {0.2, 0.2, 0.1});
+  expect_rgb(blind.regular_transmittance, {0.2, 0.2, 0.3});
+  const Material formula =
+      material("void BRTDfunc m 10 0 0 0 f(x) 0 0 0 0 0 f.cal 0 9 .3 .3 .3 0 0 0 .2 .2 .2");
+  EXPECT_FALSE(formula.passes_straight());
+  // Shares of 1.5 in all.
+  const Material panel =
+      material("void BSDF m 6 0 panel.xml 0 0 1 . 0 9 .75 .75 .75 .5 .5 .5 .75 .75 .75");
+  expect_rgb(panel.reflectance, {0.5, 0.5, 0.5});
+  expect_rgb(panel.transmittance, {0.5, 0.5, 0.5});
+}
+
 TEST_F(Radiance, ConstantPatternsMultiply) {
   const Material m = material(
       "void colorfunc tint 4 1 A1 A1/2 . 0 1 .5\ntint brightfunc dim 2 .5 . 0 0\n"

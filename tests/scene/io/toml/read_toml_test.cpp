@@ -275,6 +275,7 @@ TEST(ReadToml, LightIsGivenOnce) {
   refuses("lumens = [5, 5, 5]", "must be one number");
   refuses("lumens = 5\ncolour = [0, 0, 0]", "is black");
   refuses("watts = 5", "the electric power of a lamp");
+  refuses("mask = \"net.png\"\nlumens = 5", "lamps have no holes");
   refuses("glass = { ior = 1.5 }\nlumens = 5", "contradicts 'glass'");
 }
 
