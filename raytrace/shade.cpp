@@ -251,7 +251,13 @@ void RayTree::add_background(const Branch& branch, TreeState& state) const {
   Spectrum L = Spectrum::Zero(scene_.bands.count());
   for (const FreeSource& source : direct_light_.free_sources()) {
     if (source.is_dome()) {
-      if (!state.lamps_alone) L += source.light * sky_radiance(*scene_.sky, direction);
+      if (state.lamps_alone) continue;
+      Spectrum dome = source.light * sky_radiance(*scene_.sky, direction);
+      if (branch.sky) {
+        const double aimed = direct_light_.sky()->density(*branch.sky, direction);
+        dome *= static_cast<float>(branch.sky_lobe_density / (branch.sky_lobe_density + aimed));
+      }
+      L += dome;
     } else if (const auto* light = std::get_if<SunLight>(&source.shape)) {
       const Sun& sun = light->sun;
       if (branch.lobe_density > 0.0 || direction.dot(sun.direction) < sun.cosine_of_edge())
@@ -316,6 +322,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                    const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
   const int material = facets_[hit.facet].material;
   const Material& what = scene_.materials[material];
+  const bool off_lobe = sample.density > 0.0;
   Branch branch{.weight = parent.weight * sample.weight,
                 .depth = parent.depth + 1,
                 .node = node,
@@ -326,6 +333,8 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .turns = parent.turns,
                 .lobe_density = sample.density,
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
+                .sky = off_lobe || (sample.crosses && is_clear_pane(what)) ? parent.sky : nullptr,
+                .sky_lobe_density = off_lobe ? sample.density : parent.sky_lobe_density,
                 .behind_coat = parent.behind_coat + (parent.behind_coat > 0 || what.coat ? 1 : 0),
                 .cone = {.start = cone_width(parent, at), .spread = parent.cone.spread},
                 .media = parent.media,

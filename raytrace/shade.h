@@ -9,6 +9,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
+#include "radiosity/emitters/sky_light.h"
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/caustic_map.h"
@@ -83,6 +84,10 @@ struct SpecularSegment {
 /// sides in the same order. Branches that weigh less than RenderOptions::contrast are left out,
 /// since a single such branch cannot change a pixel by more than the contrast. Surfaces seen by way
 /// of rough surfaces are left out too.
+///
+/// Rough mirrors and coats draw directions towards what their site sees of the sky (see SkySites)
+/// beside those of their lobes, weighted by the balance heuristic (Veach & Guibas 1995). Otherwise
+/// a window in a rough floor would be found by chance.
 ///
 /// If a surface has normals at vertices, diffuse reflection, mirrors and glass use the interpolated
 /// normals (Phong 1975). The facets alone decide which side is seen and what is hidden. No branch
@@ -186,8 +191,12 @@ class RayTree {
     /// no such rays.
     const BrightPatches::View* bright = nullptr;
     bool is_aimed = false;  ///< aimed at a bright patch
-    int behind_coat = 0;    ///< surfaces on the way from the first coat on, that one included
-    PixelCone cone{};       ///< of the ray, from its origin on
+    /// Site by which the rough surface at the start of the path aims at the sky as well, if nothing
+    /// but clear panes followed; null: no such rays.
+    const SkySites::Site* sky = nullptr;
+    double sky_lobe_density = 0.0;  ///< lobe_density of that surface's direction
+    int behind_coat = 0;  ///< surfaces on the way from the first coat on, that one included
+    PixelCone cone{};     ///< of the ray, from its origin on
     Media media{};
     Polarisation polarisation{};
   };
@@ -239,6 +248,12 @@ class RayTree {
                         const ElementHit& hit, const ShadingPoint& at,
                         const BrightPatches::View& view, const Eigen::Array4d& u, float share,
                         TreeState& state) const;
+  const SkySites::Site* sky_site(const Branch& branch, const SurfaceInteraction& interaction,
+                                 const ElementHit& hit, const ShadingPoint& at,
+                                 const TreeState& state) const;
+  void add_sky(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
+               const ShadingPoint& at, const SkySites::Site& site, const Eigen::Array4d& u,
+               float share, TreeState& state) const;
   float share_of_bright(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   Spectrum emission(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   const RoughLobe& lobe(int material, bool from_back) const;

@@ -61,6 +61,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
   if (!state.lamps_alone && !bright_.is_empty() && !interaction.material.dielectric && !is_weak) {
     view = bright_.view(at.position, interaction.normal, usual_samples);
   }
+  const SkySites::Site* const sky = sky_site(branch, interaction, hit, at, state);
   for (int i = 0; i < count; ++i) {
     const int index = (first + i) % gloss_point_count;
     const auto sample_key = random_key(key, static_cast<std::uint64_t>(index));
@@ -80,6 +81,12 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
       add_bright_patch(branch, interaction, hit, at, view, bright_u,
                        1.0f / static_cast<float>(count), state);
     }
+    if (sky) {
+      const Eigen::Array4d sky_u =
+          gloss_points_.point(index, random_key(key, RandomPurpose::gloss_patches, 1))
+              .cast<double>();
+      add_sky(branch, interaction, hit, at, *sky, sky_u, 1.0f / static_cast<float>(count), state);
+    }
     // The number of the branch is the same in all samples of one key, so that their Sobol points
     // stay spread over surfaces behind this one as well.
     const auto node = random_key(branch.node, RandomPurpose::gloss, static_cast<std::uint64_t>(i),
@@ -87,6 +94,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
     Branch spread = branch;
     spread.is_sharp = false;
     spread.bright = view.is_empty() ? nullptr : &view;
+    spread.sky = sky;
     if (collects) {
       state.by_chance = &found.emplace_back(Spectrum::Zero(scene_.bands.count()));
     }
@@ -212,6 +220,52 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
     Media media = branch.media;
     media.cross(material, interaction.material, sample, hit.from_back);
     seen *= media.passed(scene_, -1, false, source_sample.distance);
+  }
+  add_reflected(branch, seen, state);
+}
+
+// The site whose view of the sky a rough mirror or coat aims at; null: none. A coat behind another
+// one is not worth the rays.
+const SkySites::Site* RayTree::sky_site(const Branch& branch, const SurfaceInteraction& interaction,
+                                        const ElementHit& hit, const ShadingPoint& at,
+                                        const TreeState& state) const {
+  const Material& material = interaction.material;
+  const bool is_weak = material.coat.has_value() && branch.behind_coat > 0;
+  if (state.lamps_alone || material.dielectric || is_weak || !direct_light_.sky()) return nullptr;
+  const SkySites::Site* site =
+      direct_light_.sky()->site({at.position, interaction.normal, hit.facet});
+  return site && site->sum.back() > 0.0f ? site : nullptr;
+}
+
+// Adds light of the sky off a rough surface, by a direction drawn towards what the site sees of the
+// sky. Directions of the lobe that meet the sky carry the rest of the weight (see
+// add_background()).
+void RayTree::add_sky(const Branch& branch, const SurfaceInteraction& interaction,
+                      const ElementHit& hit, const ShadingPoint& at, const SkySites::Site& site,
+                      const Eigen::Array4d& u, float share, TreeState& state) const {
+  if (branch.depth >= deepest_path(options_.max_depth, true)) return;
+  const SkyLight::Aim aim = direct_light_.sky()->aim(site, u[0], u[1], u[2]);
+  if (!(aim.density > 0.0) || !(aim.direction.dot(interaction.normal) > 0.0) ||
+      !(aim.direction.dot(at.normal) > 0.0)) {
+    return;
+  }
+  const double density =
+      lobe(facets_[hit.facet].material, hit.from_back).density(interaction, aim.direction);
+  // Directions far outside the lobe end by Russian roulette before a ray is cast.
+  constexpr double far_outside = 0.02;
+  const double chance = std::min(1.0, density / (far_outside * aim.density));
+  if (!(density > 0.0) || !(u[3] < chance)) return;
+  const ScatteringSample sample{.direction = aim.direction};
+  const Ray ray{.origin = at.position, .direction = aim.direction, .origin_group = hit.facet};
+  Spectrum seen = branch.weight * scattering_weight(interaction, sample) *
+                  direct_light_.dome()->light * sky_radiance(*scene_.sky, aim.direction) *
+                  (share * static_cast<float>(density / (density + aim.density) / chance));
+  if (!(seen > 0.0f).any()) return;
+  seen *= direct_light_.passed(*state.caster, ray);
+  if (absorbs_) {
+    Media media = branch.media;
+    media.cross(facets_[hit.facet].material, interaction.material, sample, hit.from_back);
+    seen *= media.passed(scene_, -1, false, ray.t_max);
   }
   add_reflected(branch, seen, state);
 }

@@ -113,6 +113,8 @@ class DirectLight {
   const std::vector<FreeSource>& free_sources() const { return free_sources_; }
   /// The dome of the sky; null if there is none.
   const FreeSource* dome() const;
+  /// The light of the dome; null if there is none.
+  const SkyLight* sky() const { return sky_.get(); }
   int light_count() const { return static_cast<int>(emitters_.size() + free_sources_.size()); }
   /// True if the emission of that side of a facet is direct light, which other rays must not count
   /// again. Only the outside of a sphere is; its inside sees itself all around.

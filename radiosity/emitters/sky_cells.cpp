@@ -153,6 +153,29 @@ SkyCells::Sample SkyCells::sample(int cell, double u, double v) const {
           .density = L / power_[c]};
 }
 
+Eigen::Vector2d SkyCells::place_of(const Eigen::Vector3d& direction) const {
+  const Eigen::Vector3d d = axes_.transpose() * direction;
+  const double turn = std::atan2(d.y(), d.x()) / (2.0 * pi);
+  return {around * (turn < 0.0 ? turn + 1.0 : turn), 0.5 * rings * (d.z() + 1.0)};
+}
+
+int SkyCells::cell_of(const Eigen::Vector3d& direction) const {
+  const Eigen::Vector2d place = place_of(direction);
+  return std::clamp(static_cast<int>(place.y()), 0, rings - 1) * around +
+         std::clamp(static_cast<int>(place.x()), 0, around - 1);
+}
+
+double SkyCells::density(int cell, const Eigen::Vector3d& direction) const {
+  const Eigen::Vector2d place = place_of(direction);
+  const auto step = [](double along, int first) {
+    return std::clamp(static_cast<int>((along - first) * fine), 0, fine - 1);
+  };
+  const int column = step(place.x(), cell % around), row = step(place.y(), cell / around);
+  const auto c = static_cast<std::size_t>(cell);
+  const std::size_t at = c * fine * fine + static_cast<std::size_t>(row * fine + column);
+  return power_[c] > 0.0 ? static_cast<double>(radiance_[at]) / power_[c] : 0.0;
+}
+
 // int L cos dw over the part of a cell that the horizon may cut.
 float SkyCells::cut_irradiance(int c, const Eigen::Vector3f& normal, float whole) const {
   // Made once, for all points.

@@ -26,6 +26,10 @@ class SkyCells {
   };
   /// The direction for random numbers (u, v) in [0,1)^2.
   Sample sample(int cell, double u, double v) const;
+  /// The cell that holds a unit direction.
+  int cell_of(const Eigen::Vector3d& direction) const;
+  /// Density of sample()'s directions at a unit direction of the cell, 1/sr.
+  double density(int cell, const Eigen::Vector3d& direction) const;
   /// The unit direction of the point (u, v) of a cell, in [0,1]^2.
   Eigen::Vector3d direction(int cell, double u, double v) const;
 
@@ -47,6 +51,8 @@ class SkyCells {
 
  private:
   static constexpr int fine = 8;  // squares of the grid within a cell, each way
+  // Coordinates of a unit direction on the grid of cells: column and row, with the place within.
+  Eigen::Vector2d place_of(const Eigen::Vector3d& direction) const;
   void tabulate(const Sky& sky, int c);
   float cut_irradiance(int c, const Eigen::Vector3f& normal, float whole) const;
 

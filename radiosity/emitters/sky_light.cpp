@@ -299,6 +299,34 @@ SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at
   return Estimate(*this, caster, at, key).glow(effort);
 }
 
+// A cell of a site, and its step of the running sum.
+struct SkyLight::Draw {
+  int cell = 0;
+  float step = 0.0f;
+};
+
+SkyLight::Draw SkyLight::draw_cell(const SkySites::Site& site, double which) {
+  const auto wanted = static_cast<float>(which * static_cast<double>(site.sum.back()));
+  const auto drawn = std::upper_bound(site.sum.begin(), site.sum.end() - 1, wanted);
+  const float before = drawn == site.sum.begin() ? 0.0f : *(drawn - 1);
+  return {static_cast<int>(drawn - site.sum.begin()), *drawn - before};
+}
+
+SkyLight::Aim SkyLight::aim(const SkySites::Site& site, double which, double u, double v) const {
+  const auto [cell, step] = draw_cell(site, which);
+  if (!(step > 0.0f)) return {};
+  const SkyCells::Sample sample = cells_.sample(cell, u, v);
+  return {sample.direction, sample.density * static_cast<double>(step / site.sum.back())};
+}
+
+double SkyLight::density(const SkySites::Site& site, const Eigen::Vector3d& direction) const {
+  const int cell = cells_.cell_of(direction);
+  const auto c = static_cast<std::size_t>(cell);
+  const float step = site.sum[c] - (c == 0 ? 0.0f : site.sum[c - 1]);
+  if (!(step > 0.0f)) return 0.0;
+  return cells_.density(cell, direction) * static_cast<double>(step / site.sum.back());
+}
+
 Spectrum SkyLight::irradiance_by_one_ray(const ElementCaster& caster, const SurfacePoint& at,
                                          std::uint64_t key) const {
   const SkySites::Site* found = sites_.find(at);
@@ -306,10 +334,7 @@ Spectrum SkyLight::irradiance_by_one_ray(const ElementCaster& caster, const Surf
   const auto u = [&](std::uint64_t i) {
     return random_uniform(random_key(key, RandomPurpose::sky_rays, i));
   };
-  const auto wanted = static_cast<float>(u(0) * static_cast<double>(site.sum.back()));
-  const auto drawn = std::upper_bound(site.sum.begin(), site.sum.end() - 1, wanted);
-  const auto cell = static_cast<int>(drawn - site.sum.begin());
-  const float step = *drawn - (drawn == site.sum.begin() ? 0.0f : *(drawn - 1));
+  const auto [cell, step] = draw_cell(site, u(0));
   const SkyCells::Sample sample = cells_.sample(cell, u(1), u(2));
   const double cosine = sample.direction.dot(at.normal);
   if (!(cosine > 0.0) || !(sample.density > 0.0) || !(step > 0.0f)) return Spectrum::Zero(bands_);

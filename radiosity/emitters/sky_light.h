@@ -67,11 +67,25 @@ class SkyLight {
   Spectrum irradiance_by_one_ray(const ElementCaster& caster, const SurfacePoint& at,
                                  std::uint64_t key) const;
 
+  /// A direction towards the dome, drawn as for irradiance_by_one_ray().
+  struct Aim {
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+    double density = 0.0;                                  ///< 1/sr; 0: no direction was found
+  };
+  /// The site that holds a point; null: nothing is known of the sky there.
+  const SkySites::Site* site(const SurfacePoint& at) const { return sites_.find(at); }
+  /// A direction by three random numbers in [0,1), towards what points of the site see of the dome.
+  Aim aim(const SkySites::Site& site, double which, double u, double v) const;
+  /// Density of aim()'s directions at a unit direction, 1/sr.
+  double density(const SkySites::Site& site, const Eigen::Vector3d& direction) const;
+
   /// Irradiance of an unobstructed point: see SkyCells::unobstructed.
   Spectrum unobstructed(const Eigen::Vector3d& normal) const { return cells_.unobstructed(normal); }
 
  private:
   class Estimate;
+  struct Draw;
+  static Draw draw_cell(const SkySites::Site& site, double which);
   struct Share;
   struct Shares;
   void set_weights(Shares& shares) const;

@@ -138,7 +138,7 @@ TEST(BrightPatches, AreHiddenByWhatStandsBefore) {
 
 TEST(BrightPatches, HaveDirectionsOfTheStatedDensity) {
   const Room room{.side = 1.2, .with_shelf = false};
-  const BrightPatches bright(room.scene, room.mesh, room.radiosity(100.0f));
+  const BrightPatches bright(room.scene, room.caster, room.radiosity(100.0f));
   const Eigen::Vector3d receiver{1.0, 0.5, 2.0};
   const BrightPatches::View view = bright.view(receiver, {0, 0, 1}, 64);
   ASSERT_FALSE(view.is_empty());
