@@ -132,6 +132,7 @@ class TomlSurfaces::Reader {
     if (shape == "polygon") add_polygon(given, mesh);
     if (shape == "polygons") add_polygons(given, mesh);
     if (shape == "box") add_box(given, mesh);
+    note_bent();
     add_surface(name_, material, mesh.mesh());
   }
 
@@ -234,10 +235,22 @@ class TomlSurfaces::Reader {
       mesh.add(corners, uv.empty() ? uv : UvLoop{uv[t[0]], uv[t[1]], uv[t[2]]});
     }
     if (is_planar) return;
+    if (bent_++ == 0) first_bent_ = value.what();
+    made_of_bent_ += triangles.size();
+    farthest_ = std::max(farthest_, distance);
+  }
+
+  // Adds one note for all polygons of the surface that were split.
+  void note_bent() const {
+    if (bent_ == 0) return;
     scene_.notes.push_back(
-        fmt::format("{} is not planar (a vertex is {:.3g} {} off its plane) and was split into {} "
-                    "triangles.",
-                    value.what(), distance, scene_.unit_name, triangles.size()));
+        bent_ == 1
+            ? fmt::format("{} is not planar (a vertex is {:.3g} {} off its plane) and was split "
+                          "into {} triangles.",
+                          first_bent_, farthest_, scene_.unit_name, made_of_bent_)
+            : fmt::format("{} polygons of surface '{}' are not planar (a vertex is up to {:.3g} {} "
+                          "off its plane) and were split into {} triangles.",
+                          bent_, name_, farthest_, scene_.unit_name, made_of_bent_));
   }
 
   void add_box(const TomlValue& value, MeshBuilder& mesh) const {
@@ -341,6 +354,10 @@ class TomlSurfaces::Reader {
   TomlSurfaces& all_;
   Scene& scene_;
   Placement place_;
+  int bent_ = 0;  // polygons that were not planar
+  std::size_t made_of_bent_ = 0;
+  std::string first_bent_{};
+  double farthest_ = 0.0;  // of their vertices off the plane, in the file's unit
   int motion_ = -1;
 };
 

@@ -354,6 +354,24 @@ TEST(ReadToml, SaysWhatItSplits) {
   EXPECT_TRUE(noted);
 }
 
+// One note for all polygons of a surface.
+TEST(ReadToml, SaysInOneNoteWhatItSplits) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "bent.toml";
+  std::ofstream(file) << "[materials.m]\nreflectance = 0.5\n[[surfaces]]\nname = \"shade\"\n"
+                         "material = \"m\"\npolygons = [[[0,0,0],[1,0,0],[1,1,0.1],[0,1,0]],\n"
+                         "[[0,0,1],[1,0,1],[1,1,1.2],[0,1,1]]]\n";
+  const Scene s = read_scene(file);
+  int said = 0;
+  for (const std::string& note : s.notes) {
+    if (note.find("planar") == std::string::npos) continue;
+    ++said;
+    EXPECT_NE(note.find("2 polygons of surface 'shade'"), std::string::npos) << note;
+    EXPECT_NE(note.find("4 triangles"), std::string::npos) << note;
+  }
+  EXPECT_EQ(said, 1);
+}
+
 TEST(ReadToml, MeshesComeWithTheirMaterialsUnlessReplaced) {
   const Scene& s = everything();
   EXPECT_EQ(material_of(s, "block").name, "door");
