@@ -20,6 +20,7 @@
 #include "radiosity/solution/solution_file.h"
 #include "raytrace/image.h"
 #include "raytrace/ugr_table.h"
+#include "scene/coat.h"
 #include "scene/errors.h"
 #include "scene/io/luminaires/luminaire_file.h"
 #include "scene/io/read_scene.h"
@@ -136,6 +137,10 @@ std::string kind_of(const Material& material, bool relative_units) {
     words.push_back(fmt::format("texture {} x {}", picture.width(), picture.height()));
   }
   if (material.mask) words.emplace_back("mask");
+  if (material.relief) {
+    const Texture& picture = *material.relief->slopes.picture;
+    words.push_back(fmt::format("relief {} x {}", picture.width(), picture.height()));
+  }
   if (material.coat) {
     words.push_back(
         fmt::format("coat {:.4g}{}", material.coat->index_of_refraction,
@@ -143,7 +148,7 @@ std::string kind_of(const Material& material, bool relative_units) {
                         ? fmt::format(" of roughness {:.3g}", material.specular_roughness)
                         : ""));
   } else if ((material.specular > 0.0f).any()) {
-    words.push_back(fmt::format("mirror {:.3g}", mean(material.specular)));
+    words.push_back(fmt::format("mirror {:.3g}", mean(mean_mirrored(material))));
   }
   if (material.is_emitter()) {
     words.push_back(fmt::format("exitance {:.4g}{}{}", material.emission.cast<double>().sum(),

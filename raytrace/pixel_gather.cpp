@@ -106,8 +106,9 @@ void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
     if (hit.element != aim.element || !paths_.is_diffuse(hit.facet)) continue;
     if (gaps_.is_gap(at.normal, ray, hit)) continue;
     if (!place.portals.is_empty() && gaps_.is_near_portal(*portals_, ray, hit)) continue;
-    const double share =
+    double share =
         bright_.share(place.bright, cosine, place.rays, ray, hit, aimed_density(place, ray, hit));
+    if (at.relief) share *= at.relief->gain(ray.direction);
     sum += share * paths_.base_factor(place.caster, ray, hit) *
            interpolate(place.caster.mesh(), radiosity_, hit).cast<double>();
   }
@@ -131,10 +132,19 @@ void PixelGather::aim_at_portals(const Place& place, Eigen::ArrayXd& sum) const 
   }
 }
 
-// Adds what a ray finds, by the balance heuristic. `aimed` is aimed_density(); `index` numbers the
-// rays of the place.
+// Adds what a ray finds, times the gain of the relief.
 void PixelGather::add(const Place& place, const Ray& ray, const ElementHit& hit,
                       std::uint64_t index, double aimed, Eigen::ArrayXd& sum) const {
+  if (!place.at.relief) return add_flat(place, ray, hit, index, aimed, sum);
+  Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+  add_flat(place, ray, hit, index, aimed, found);
+  sum += place.at.relief->gain(ray.direction) * found;
+}
+
+// Adds what a ray finds, by the balance heuristic. `aimed` is aimed_density(); `index` numbers the
+// rays of the place.
+void PixelGather::add_flat(const Place& place, const Ray& ray, const ElementHit& hit,
+                           std::uint64_t index, double aimed, Eigen::ArrayXd& sum) const {
   if (hit.facet < 0) return;
   const std::uint64_t key = random_key(place.key, RandomPurpose::pixel_gather_paths, index);
   const double cosine = measure(place.at, ray.direction);

@@ -13,6 +13,7 @@
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/solution.h"
 #include "scene/hemisphere_sets.h"
+#include "scene/relief.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -22,6 +23,7 @@ struct ShadingPoint {
   Eigen::Vector3d position, normal;  ///< geometric normal, unit, on the side of the eye
   Eigen::Vector3d smooth_normal;     ///< shading normal, the axis of the gather's hemisphere, unit
   int facet = -1;
+  const ReliefSlope* relief = nullptr;  ///< light counts times its gain; null: flat
 };
 
 /// Final gather (Reichert 1992) at points of a picture: indirect irradiance E = (1/N) sum B over N
@@ -66,6 +68,8 @@ class PixelGather {
   void aim_at_portals(const Place& place, Eigen::ArrayXd& sum) const;
   void add(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
            double aimed, Eigen::ArrayXd& sum) const;
+  void add_flat(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
+                double aimed, Eigen::ArrayXd& sum) const;
   Spectrum arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                     std::uint64_t key, const Shares& shares) const;
 

@@ -22,6 +22,7 @@
 #include "raytrace/shade.h"
 #include "scene/errors.h"
 #include "scene/facet_normals.h"
+#include "scene/facet_relief.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -64,7 +65,7 @@ class Eye {
   }
   std::uint64_t fingerprint(double x, double y, int panel) const {
     const auto ray = ray_at(x, y, panel);
-    return ray ? tree_.fingerprint(*ray) : 0;
+    return ray ? tree_.fingerprint(*ray, rays_.cone(step * x, step * y, panel)) : 0;
   }
   /// Returns the panel of a pixel.
   int panel_of_pixel(int x, int y) const { return rays_.panel_at(x + 0.5, y + 0.5); }
@@ -543,6 +544,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
     add_inputs(print, caster, solution, camera, options);
     if (exposure) add_exposure(print, scene, *exposure);
     if (const FacetNormals normals(scene); !normals.is_empty()) print.add(normals.hash());
+    if (const FacetRelief relief(scene); !relief.is_empty()) print.add(relief.hash());
     for (const std::string& name : image.layers.names) print.add(name);
   });
   const Sampled sampled = sampled_pixels(scene, rays, exposure.has_value(), options);

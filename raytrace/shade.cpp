@@ -77,6 +77,7 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       options_(options),
       textures_(std::make_shared<const FacetTextures>(scene)),
       normals_(scene),
+      relief_(scene),
       with_layers_(std::any_of(options.layers.begin(), options.layers.end(),
                                [](Layer layer) { return first_sampled_column(layer) >= 0; })),
       white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
@@ -181,9 +182,9 @@ void RayTree::trace_chain(const Ray& ray, const ChainTurns& turns,
 }
 
 // Traces a ray without shading: the result has no radiance.
-RaySample RayTree::outline(const Ray& ray) const {
+RaySample RayTree::outline(const Ray& ray, const PixelCone& cone) const {
   TreeState state{.caster = &caster_, .shades = false};
-  follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, state);
+  follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count()), .cone = cone}, state);
   return state.result;
 }
 
@@ -212,7 +213,8 @@ void RayTree::follow(Branch branch, TreeState& state) const {
                                          (at.position - branch.ray.origin).norm());
   }
   if (state.shades && with_layers_ && branch.node == 1) {
-    const Eigen::Vector3d normal = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
+    const Eigen::Vector3d smooth = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
+    const Eigen::Vector3d normal = bent_normal(branch, hit, at, smooth, state);
     result.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
   }
   if (state.shades && hit.element >= 0) {
@@ -294,9 +296,10 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
                                  .normal = at.normal,
                                  .from_back = hit.from_back,
                                  .polarisation = branch.polarisation};
-  if (normals_.is_given(hit.facet)) {
+  if (has_own_normals(hit.facet)) {
     const Eigen::Vector3d smooth = at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
-    interaction.normal = visible_normal(branch.ray.direction, at.normal, smooth);
+    interaction.normal = visible_normal(branch.ray.direction, at.normal,
+                                        bent_normal(branch, hit, at, smooth, state));
   }
   Branch here = branch;
   if (!goes_on_at_coat(interaction, here, state)) return;
@@ -354,7 +357,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
   branch.media.cross(material, what, sample, hit.from_back);
   branch.ray = {
       .origin = at.position, .direction = sample.direction.normalized(), .origin_group = hit.facet};
-  if (normals_.is_given(hit.facet)) {
+  if (has_own_normals(hit.facet)) {
     branch.ray.direction = on_its_side(branch.ray.direction, at.normal, sample.crosses);
   }
   follow(branch, state);
@@ -472,6 +475,11 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
   if (!textures_ || !textures_->is_textured(hit.facet) || is_black_back) {
     return mesh.reflectance.row(patch).transpose();
   }
+  return textures_->reflectance(hit.facet, at.rest, footprint(branch, at));
+}
+
+// Sides of the pixel's footprint on the surface, in the rest pose.
+Eigen::Matrix<double, 3, 2> RayTree::footprint(const Branch& branch, const ShadingPoint& at) const {
   const double width = cone_width(branch, at);
   const Eigen::Vector3d direction = at.turned_back(branch.ray.direction.normalized());
   const Eigen::Vector3d& normal = at.rest_normal;
@@ -481,9 +489,29 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
   const double sine = across.norm();
   const Eigen::Vector3d side =
       sine > grazing ? Eigen::Vector3d(across / sine) : normal.unitOrthogonal();
-  Eigen::Matrix<double, 3, 2> footprint;
-  footprint << width * side, width / cosine * side.cross(normal);
-  return textures_->reflectance(hit.facet, at.rest, footprint);
+  Eigen::Matrix<double, 3, 2> sides;
+  sides << width * side, width / cosine * side.cross(normal);
+  return sides;
+}
+
+// Slope of the relief about `normal`, that of the smooth surface; empty: the surface is flat there.
+std::optional<ReliefSlope> RayTree::relief_at(const Branch& branch, const ElementHit& hit,
+                                              const ShadingPoint& at, const Eigen::Vector3d& normal,
+                                              const TreeState& state) const {
+  if (!relief_.is_given(hit.facet) || state.lamps_alone) return std::nullopt;
+  const Eigen::Vector3d rest = relief_.rise(hit.facet, at.rest, footprint(branch, at));
+  const Eigen::Vector3d rise = at.turned(rest);
+  // Seen from behind, a rise is a hollow.
+  const double side = facets_[hit.facet].normal.dot(at.rest_normal) < 0.0 ? -1.0 : 1.0;
+  return ReliefSlope{.normal = normal, .rise = side * (rise - rise.dot(normal) * normal)};
+}
+
+// Normal of the relief about `normal`.
+Eigen::Vector3d RayTree::bent_normal(const Branch& branch, const ElementHit& hit,
+                                     const ShadingPoint& at, const Eigen::Vector3d& normal,
+                                     const TreeState& state) const {
+  const auto relief = relief_at(branch, hit, at, normal, state);
+  return relief ? relief->bent() : normal;
 }
 
 // Irradiance behind a translucent sheet.
@@ -507,7 +535,10 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   Spectrum tau;
   if (is_translucent) tau = share * caster_.mesh().transmittance.row(patch).transpose();
   if (const CoatedBase* base = base_at(hit)) {
-    const double cosine = -branch.ray.direction.normalized().dot(smooth_normal(hit, at));
+    const Eigen::Vector3d direction = branch.ray.direction.normalized();
+    const Eigen::Vector3d normal = visible_normal(
+        direction, at.normal, bent_normal(branch, hit, at, smooth_normal(hit, at), state));
+    const double cosine = -direction.dot(normal);
     rho *= static_cast<float>(base->factor(cosine));
     tau *= static_cast<float>(base->factor(cosine));
   }
@@ -535,24 +566,34 @@ void RayTree::shade_lamp(const Branch& branch, const ElementHit& hit, const Shad
   state.result.radiance += branch.weight * one_over_pi * emission(branch, hit, at);
 }
 
+// Irradiance of the solution. Closed forms of all lights cost more than the ray, so a dim hit takes
+// direct light as even.
+RayTree::Arriving RayTree::arriving_from_mesh(const ElementHit& hit, const ShadingPoint& at,
+                                              bool is_dim, const Eigen::Vector3d& normal,
+                                              const std::optional<ReliefSlope>& relief) const {
+  const PatchMesh& mesh = caster_.mesh();
+  Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
+             .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
+  const CoatedBase* base = base_at(hit);
+  if (is_dim || !(base || relief)) return E;
+  E.direct_on_facet = E.direct;
+  const SurfacePoint point{at.position, normal, hit.facet};
+  if (base) E.direct *= static_cast<float>(direct_light_.base_gain(point, *base));
+  if (relief) E.direct *= static_cast<float>(direct_light_.relief_gain(point, *relief));
+  return E;
+}
+
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,
                                     const Branch& branch, const TreeState& state) const {
   const PatchMesh& mesh = caster_.mesh();
   const Eigen::Vector3d normal = smooth_normal(hit, at);
   const CoatedBase* base = base_at(hit);
+  const std::optional<ReliefSlope> relief = relief_at(branch, hit, at, normal, state);
   constexpr float weak = 0.25f;
   const bool is_dim =
       branch.behind_coat > 0 && (!branch.is_sharp || branch.weight.maxCoeff() < weak);
   if (options_.pass == Pass::interpolate || is_dim) {
-    Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
-               .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
-    // Closed forms of all lights cost more than the ray, so a dim hit takes direct light as even.
-    if (base && !is_dim) {
-      E.direct_at_coat = E.direct;
-      E.direct *=
-          static_cast<float>(direct_light_.base_gain({at.position, normal, hit.facet}, *base));
-    }
-    return E;
+    return arriving_from_mesh(hit, at, is_dim, normal, relief);
   }
   const float share = state.effort * branch.weight.maxCoeff();
   ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? 4 : 8);
@@ -561,7 +602,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   if (state.number) shadows.max_rays = shadows.min_rays;
   Arriving E;
   const ShadowOrigin from = shadow_origin(hit, at);
-  const bool has_dome = dome_.is_fine(hit.element);
+  const bool has_dome = !relief && dome_.is_fine(hit.element);
   LightQuery query{.at = {from.position, normal, from.facet},
                    .key = random_key(state.key, branch.node, RandomPurpose::ray_tree_shadows),
                    .shadows = shadows,
@@ -571,13 +612,18 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
     if (has_dome) sum += interpolate(mesh, dome_.irradiance, hit);
     return sum;
   };
-  if (base && with_layers_) E.direct_at_coat = direct();
+  if ((base || relief) && with_layers_) E.direct_on_facet = direct();
   query.base = base;
+  query.relief = relief ? &*relief : nullptr;
   E.direct = direct();
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
         *state.caster,
-        {.position = at.position, .normal = at.normal, .smooth_normal = normal, .facet = hit.facet},
+        {.position = at.position,
+         .normal = at.normal,
+         .smooth_normal = normal,
+         .facet = hit.facet,
+         .relief = query.relief},
         random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers), share);
   } else {
     E.indirect = interpolate(mesh, solution_.indirect_irradiance, hit);
@@ -630,7 +676,7 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
   // ones.
   const bool is_straight = branch.is_sharp && (branch.node & (branch.node + 1)) == 0;
   if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
-    const Spectrum all = (E.direct_at_coat.size() > 0 ? E.direct_at_coat : E.direct) + E.indirect;
+    const Spectrum all = (E.direct_on_facet.size() > 0 ? E.direct_on_facet : E.direct) + E.indirect;
     state.result.layers[first_sampled_column(Layer::illuminance)] =
         static_cast<float>(luminous(bands, all));
   }

@@ -21,6 +21,7 @@
 #include "raytrace/visible_lamps.h"
 #include "scene/coat.h"
 #include "scene/facet_normals.h"
+#include "scene/facet_relief.h"
 #include "scene/facet_textures.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
@@ -96,6 +97,12 @@ struct SpecularSegment {
 /// 2021, "Hacking the Shadow Terminator"); since the start lies before the facet, no light comes
 /// through the facet.
 ///
+/// Relief bends the normal of mirrors, glass and coats by its slope, and gives each light that
+/// falls on a diffuse surface a gain (see ReliefSlope). Light without a direction, which is the
+/// solution's indirect light and caustics, counts as even and has none; in Pass::automatic the
+/// light of the dome gets rays. Where no picture is made (trace_lamps, trace_chain), surfaces are
+/// flat.
+///
 /// Branches that meet a coat behind another coat end by Russian roulette: far from grazing they
 /// have less than a hundredth of the light.
 ///
@@ -145,9 +152,11 @@ class RayTree {
   void trace_chain(const Ray& ray, const ChainTurns& turns,
                    const std::function<void(const SpecularSegment&)>& visit) const;
   /// Returns the fingerprint of a ray, without shadow rays.
-  std::uint64_t fingerprint(const Ray& ray) const { return outline(ray).fingerprint; }
+  std::uint64_t fingerprint(const Ray& ray, const PixelCone& cone = {}) const {
+    return outline(ray, cone).fingerprint;
+  }
   /// Returns RaySample::sees_gloss of a ray, without shadow rays.
-  bool sees_gloss(const Ray& ray) const { return outline(ray).sees_gloss; }
+  bool sees_gloss(const Ray& ray) const { return outline(ray, {}).sees_gloss; }
 
  private:
   /// Geometry and material of a facet.
@@ -204,7 +213,8 @@ class RayTree {
   /// angle (see LightQuery::base).
   struct Arriving {
     Spectrum direct{}, indirect{};
-    Spectrum direct_at_coat{};  ///< before the coat, for layers; empty: as `direct`
+    /// On the facet, before coat and relief, for layers; empty: as `direct`.
+    Spectrum direct_on_facet{};
   };
   /// Diffuse radiosity towards a ray without emission, W/m^2, of direct and of indirect light.
   struct Scattered {
@@ -227,7 +237,7 @@ class RayTree {
     Spectrum* by_chance = nullptr;
   };
 
-  RaySample outline(const Ray& ray) const;
+  RaySample outline(const Ray& ray, const PixelCone& cone) const;
   void follow(Branch branch, TreeState& state) const;
   bool shows_lamp(const Branch& branch, const ElementHit& hit, TreeState& state) const;
   void add_background(const Branch& branch, TreeState& state) const;
@@ -281,6 +291,10 @@ class RayTree {
   };
   ShadowOrigin shadow_origin(const ElementHit& hit, const ShadingPoint& at) const;
   Eigen::Vector3d smooth_normal(const ElementHit& hit, const ShadingPoint& at) const;
+  /// True if normals for shading may differ from the facet's.
+  bool has_own_normals(int facet) const {
+    return normals_.is_given(facet) || relief_.is_given(facet);
+  }
   void shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
              TreeState& state) const;
   void shade_lamp(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
@@ -293,6 +307,15 @@ class RayTree {
   Arriving arriving_behind(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
                            const TreeState& state) const;
   Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
+  Eigen::Matrix<double, 3, 2> footprint(const Branch& branch, const ShadingPoint& at) const;
+  std::optional<ReliefSlope> relief_at(const Branch& branch, const ElementHit& hit,
+                                       const ShadingPoint& at, const Eigen::Vector3d& normal,
+                                       const TreeState& state) const;
+  Eigen::Vector3d bent_normal(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+                              const Eigen::Vector3d& normal, const TreeState& state) const;
+  Arriving arriving_from_mesh(const ElementHit& hit, const ShadingPoint& at, bool is_dim,
+                              const Eigen::Vector3d& normal,
+                              const std::optional<ReliefSlope>& relief) const;
   double cone_width(const Branch& branch, const ShadingPoint& at) const {
     return branch.cone.start + branch.cone.spread * (at.position - branch.ray.origin).norm();
   }
@@ -308,6 +331,7 @@ class RayTree {
   const RenderOptions& options_;
   std::shared_ptr<const FacetTextures> textures_{};  ///< null: no textures
   FacetNormals normals_;
+  FacetRelief relief_;
   /// Least height of a shadow ray's origin over its facet, m, beyond rounding.
   double least_lift_ = 0.0;
   bool with_layers_ = false;

@@ -122,6 +122,7 @@ CoatedBases::CoatedBases(const std::vector<Material>& materials) : bases_(materi
 }
 
 Spectrum mean_mirrored(const Material& material) {
+  if (material.metal) return mean_reflectance(*material.metal) * material.specular;
   if (!material.coat) return material.specular;
   return static_cast<float>(CoatedBase(material).mean_mirrored()) * material.specular;
 }

@@ -53,8 +53,8 @@ class CoatedBases {
   std::vector<std::optional<CoatedBase>> bases_{};
 };
 
-/// Share of even light, per band, that a material mirrors: `specular`, with a coat times the mean
-/// of Fresnel's reflectance.
+/// Share of even light, per band, that a material mirrors: `specular`, with a coat or a metal
+/// times the mean of Fresnel's reflectance.
 Spectrum mean_mirrored(const Material& material);
 /// mean_mirrored() of each material.
 std::vector<Spectrum> mean_mirrored(const std::vector<Material>& materials);

@@ -10,9 +10,11 @@
 
 #include "scene/bands.h"
 #include "scene/camera.h"
+#include "scene/conductor.h"
 #include "scene/lamp.h"
 #include "scene/motion.h"
 #include "scene/normal_map.h"
+#include "scene/relief.h"
 #include "scene/sky.h"
 #include "scene/texture.h"
 
@@ -80,6 +82,9 @@ struct Material {
   /// incidence. `reflectance` is that of base and coat together for even light, without the light
   /// that the coat mirrors.
   std::optional<Coat> coat{};
+  /// If set, the surface mirrors Fresnel's share of the metal times `specular`, by the angle of
+  /// incidence.
+  std::optional<Conductor> metal{};
   std::optional<Dielectric> dielectric{};  ///< if set, the surface is clear; rho and specular are 0
   Spectrum emission{};            ///< exitance M = pi L of a Lambertian emitter, W/m^2, >= 0
   bool one_sided = false;         ///< nothing is reflected from behind; the back is black
@@ -87,7 +92,11 @@ struct Material {
   /// Diffuse rho that varies over facets with UV; only in scenes of RGB bands.
   std::optional<ReflectanceTexture> texture{};
   std::optional<Mask> mask{};  ///< holes in facets with UV; of materials that emit nothing
+  /// Bends the normals of facets with UV in pictures. Solutions do not depend on it.
+  std::optional<Relief> relief{};
 
+  /// True if a picture is laid over facets with UV.
+  bool shows_picture() const { return texture || mask || relief; }
   /// True if light is mirrored, refracted or passes straight on, sharply or spread by roughness.
   bool is_specular() const {
     return dielectric.has_value() || (specular > 0.0f).any() || passes_straight();
@@ -213,8 +222,8 @@ Bounds scene_bounds(const Scene& scene);
 void validate(const Scene& scene);
 
 /// 64-bit hash of everything that decides the light: geometry, materials, lamps, sky and bands, not
-/// cameras, names or notes. Solutions store the hash, so that a solution of another scene is
-/// refused.
+/// cameras, relief, names or notes. Solutions store the hash, so that a solution of another scene
+/// is refused.
 std::uint64_t scene_hash(const Scene& scene);
 
 }  // namespace lightwell

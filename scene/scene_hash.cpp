@@ -38,7 +38,7 @@ class Hash {
 void add_gloss(const Material& m, Hash& hash) {
   constexpr std::uint64_t rough_mirror = 0x6d17707e, glass_body = 0x61a55b0d,
                           body_of_pane = 0x9a4eb0d1, coat = 0xc0a7ba5e, translucent = 0x7a0d1ff5,
-                          straight = 0x57a1647;
+                          straight = 0x57a1647, metal = 0x3e7a1;
   if (m.specular_roughness > 0.0f && (m.specular > 0.0f).any()) {
     hash.add(rough_mirror);
     hash.add(static_cast<double>(m.specular_roughness));
@@ -46,6 +46,11 @@ void add_gloss(const Material& m, Hash& hash) {
   if (m.coat) {
     hash.add(coat);
     hash.add(static_cast<double>(m.coat->index_of_refraction));
+  }
+  if (m.metal) {
+    hash.add(metal);
+    hash.add(m.metal->eta);
+    hash.add(m.metal->k);
   }
   if (m.is_translucent()) {
     hash.add(translucent);

@@ -234,6 +234,10 @@ Spectrum scattering_weight(const SurfaceInteraction& interaction, const Scatteri
     const double F = fresnel_reflectance(cosine, double{coat->index_of_refraction});
     return static_cast<float>(F) * interaction.material.specular;
   }
+  if (const auto& metal = interaction.material.metal) {
+    const double cosine = std::min(1.0, cosine_at_facet(interaction, sample));
+    return reflectance_at(*metal, cosine) * interaction.material.specular;
+  }
   if (!glass) return interaction.material.specular;
   if (has_absorbing_body(*glass)) {
     const BodyShares shares = body_shares(*glass, cosine_at_facet(interaction, sample));

@@ -39,10 +39,10 @@ struct SmoothScattering {
 SmoothScattering smooth_scattering(const SurfaceInteraction& interaction);
 
 /// Share of light, per band, that continues once a sample's direction and side have been chosen:
-/// the reflectance of a mirror; that of a coat by Fresnel's equations at the microfacet; the
-/// regular transmittance of a sheet; for a dielectric, 1 if reflected and the tint if crossing. The
-/// body of a thin pane that absorbs leaves less of both, by the angle to the microfacet. The weight
-/// that the sample carries does not count.
+/// the reflectance of a mirror; that of a coat by Fresnel's equations at the microfacet, as that
+/// of a metal; the regular transmittance of a sheet; for a dielectric, 1 if reflected and the tint
+/// if crossing. The body of a thin pane that absorbs leaves less of both, by the angle to the
+/// microfacet. The weight that the sample carries does not count.
 Spectrum scattering_weight(const SurfaceInteraction& interaction, const ScatteringSample& sample);
 
 /// Share, per band, of the light not reflected that crosses a clear surface along its normal: the

@@ -149,6 +149,17 @@ void check_pictures(const Scene& scene, const Material& m) {
                        m.name));
     }
   }
+  if (m.relief) {
+    const double most = m.relief->is_in_metres ? most_relief_depth : most_relief_scale;
+    if (!m.relief->slopes.picture) {
+      fail(scene, fmt::format("material '{}' has a relief without a picture", m.name));
+    }
+    if (!(std::abs(m.relief->scale) <= most) || !(m.relief->steepest > 0.0)) {
+      fail(scene, fmt::format("material '{}' has a relief of the scale {}; it must lie between {} "
+                              "and {}",
+                              m.name, m.relief->scale, -most, most));
+    }
+  }
   if (!m.mask) return;
   if (!m.mask->image.picture || !(m.mask->cutoff > 0.0f && m.mask->cutoff <= 1.0f)) {
     fail(scene, fmt::format("material '{}': a mask needs a picture, and a cutoff above 0 and up to "
@@ -177,11 +188,29 @@ void check_coat(const Scene& scene, const Material& m) {
   }
 }
 
+void check_metal(const Scene& scene, const Material& m) {
+  if (!m.metal) return;
+  for (const Spectrum* part : {&m.metal->eta, &m.metal->k}) {
+    if (part->size() != scene.bands.count() ||
+        !((*part >= 0.0f) && (*part <= highest_metal_index)).all()) {
+      fail(scene,
+           fmt::format("material '{}' is a metal; eta and k must be one number between 0 and "
+                       "{} per band",
+                       m.name, highest_metal_index));
+    }
+  }
+  if (m.dielectric || m.coat) {
+    fail(scene, fmt::format("material '{}' is a metal and has {}; remove one", m.name,
+                            m.coat ? "a coat" : "a dielectric"));
+  }
+}
+
 void check_material(const Scene& scene, const Material& m) {
   check_share(scene, m, "reflectance", m.reflectance);
   check_share(scene, m, "specular reflectance", m.specular);
   check_roughness(scene, m, m.specular_roughness);
   check_coat(scene, m);
+  check_metal(scene, m);
   constexpr float rounding = 1e-5f;  // decimals of a file that should add up to 1
   check_sheet(scene, m);
   const Spectrum mirrored = mean_mirrored(m), sum = m.reflectance + passed_on(m);

@@ -43,12 +43,14 @@ std::vector<BoxTree::Box> boxes_of(const std::vector<FacetPlane>& planes) {
 /// The properties of a surface, except its shape, that determine its light; empty for a surface
 /// that is not joined.
 std::vector<double> light_key(const Surface& surface, const Material& material) {
-  if (material.is_emitter() || material.dielectric || material.texture || material.mask) return {};
+  if (material.is_emitter() || material.dielectric || material.shows_picture()) return {};
   std::vector<double> key{static_cast<double>(surface.motion), material.one_sided ? 1.0 : 0.0,
                           static_cast<double>(material.specular_roughness),
                           material.coat ? double{material.coat->index_of_refraction} : 0.0};
-  for (const Spectrum* spectrum : {&material.reflectance, &material.specular,
-                                   &material.transmittance, &material.regular_transmittance}) {
+  const Conductor metal = material.metal.value_or(Conductor{});
+  for (const Spectrum* spectrum :
+       {&material.reflectance, &material.specular, &material.transmittance,
+        &material.regular_transmittance, &metal.eta, &metal.k}) {
     key.push_back(static_cast<double>(spectrum->size()));
     key.insert(key.end(), spectrum->begin(), spectrum->end());
   }

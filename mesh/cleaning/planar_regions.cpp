@@ -143,7 +143,7 @@ std::optional<PolygonMesh> cleaned(const PolygonMesh& mesh, const std::vector<in
   }
   CleanUpReport found;
   found.welded_vertices = used - static_cast<int>(points.size());
-  const bool shows_picture = material.texture || material.mask;
+  const bool shows_picture = material.shows_picture();
   FacetLoops facets = welded_loops(mesh, point, shows_picture);
 
   const std::vector<char> is_degenerate = find_degenerate(facets, points, diagonal);

@@ -392,14 +392,21 @@ SkyGlow DirectLight::dome_glow(const ElementCaster& caster, const LightQuery& qu
                                std::uint64_t key) const {
   NoiseGoal goal = query.sky_noise;
   if (!goal.is_set() && query.shadows.is_one_ray()) {
-    return {sky_->irradiance_by_one_ray(caster, query.at, key)};
+    return {sky_->irradiance_by_one_ray(caster, query.at, key, query.relief)};
   }
   if (full > 0.0) goal.irradiance /= full;
-  return sky_->irradiance(caster, query.at, key, sky_effort(query.shadows, goal));
+  return sky_->irradiance(caster, query.at, key, sky_effort(query.shadows, goal), query.relief);
 }
 
-// Mean of the base's factor over four points of a light, by the light that they send.
-double DirectLight::base_factor(int light, const SurfacePoint& at, const CoatedBase& base) const {
+double DirectLight::Receiver::factor(const Eigen::Vector3d& direction,
+                                     const Eigen::Vector3d& normal) const {
+  double result = base ? base->factor(direction.normalized().dot(normal)) : 1.0;
+  if (relief) result *= relief->gain(direction);
+  return result;
+}
+
+// Mean of the receiver's factor over four points of a light, by the light that they send.
+double DirectLight::factor(int light, const SurfacePoint& at, const Receiver& receiver) const {
   const auto emitter_count = static_cast<int>(emitters_.size());
   const Emitter* emitter = light < emitter_count ? &emitters_[light] : nullptr;
   const SolidAngleSampler sampler =
@@ -411,15 +418,16 @@ double DirectLight::base_factor(int light, const SurfacePoint& at, const CoatedB
           emitter ? emitter_shadow_sample(*emitter, sampler, at, u, v)
                   : shadow_sample(free_sources_[light - emitter_count], at, u, v);
       if (!(sample.weight > 0.0)) continue;
-      sum += sample.weight * base.factor(sample.ray.direction.normalized().dot(at.normal));
+      sum += sample.weight * receiver.factor(sample.ray.direction, at.normal);
       all += sample.weight;
     }
   }
   return all > 0.0 ? sum / all : 1.0;
 }
 
-// Light per channel that a base gets at a point, with its factor and without, unoccluded.
-Eigen::ArrayX2d DirectLight::light_at_base(const SurfacePoint& at, const CoatedBase& base) const {
+// Light per channel that arrives at a point, with the receiver's factor and without, unoccluded.
+Eigen::ArrayX2d DirectLight::light_with_factor(const SurfacePoint& at,
+                                               const Receiver& receiver) const {
   Eigen::ArrayX2d sum = Eigen::ArrayX2d::Zero(channel_count_, 2);
   if (dome() && dome()->is_on()) return sum;
   constexpr int most = 64;
@@ -434,18 +442,26 @@ Eigen::ArrayX2d DirectLight::light_at_base(const SurfacePoint& at, const CoatedB
     const double E = F * static_cast<double>(light.mean());
     if (!(E > 0.0)) continue;
     const int channel = emitter ? first_column(emitter->facet) / bands_ : source->channel;
-    sum.row(channel) += Eigen::Array2d(E * base_factor(i, at, base), E).transpose();
+    sum.row(channel) += Eigen::Array2d(E * factor(i, at, receiver), E).transpose();
   }
   return sum;
 }
 
-double DirectLight::base_gain(const SurfacePoint& at, const CoatedBase& base) const {
-  const Eigen::Array2d all = light_at_base(at, base).colwise().sum();
+double DirectLight::gain(const SurfacePoint& at, const Receiver& receiver) const {
+  const Eigen::Array2d all = light_with_factor(at, receiver).colwise().sum();
   return all[1] > 0.0 ? all[0] / all[1] : 1.0;
 }
 
+double DirectLight::base_gain(const SurfacePoint& at, const CoatedBase& base) const {
+  return gain(at, {.base = &base});
+}
+
+double DirectLight::relief_gain(const SurfacePoint& at, const ReliefSlope& relief) const {
+  return gain(at, {.relief = &relief});
+}
+
 Eigen::ArrayXd DirectLight::base_gains(const SurfacePoint& at, const CoatedBase& base) const {
-  const Eigen::ArrayX2d sum = light_at_base(at, base);
+  const Eigen::ArrayX2d sum = light_with_factor(at, {.base = &base});
   return (sum.col(1) > 0.0).select(sum.col(0) / sum.col(1), 1.0);
 }
 
@@ -453,6 +469,7 @@ template <class Add>
 void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
                                  EmitterVisibility* visibility, Add&& add) const {
   const auto& [point, normal, facet] = query.at;
+  const Receiver receiver{.base = query.base, .relief = query.relief};
   const auto emitter_count = static_cast<int>(emitters_.size());
   std::vector<LightShadow> shadows;
   std::optional<LightShadow> dome;
@@ -493,7 +510,7 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     const ShadowTally& tally = tallies[i];
     const double share = tally.share();
     const bool is_dimmed = tally.dimmed > 0.0;
-    const double F = query.base ? s.F * base_factor(s.index, query.at, *query.base) : s.F;
+    const double F = receiver.is_plain() ? s.F : s.F * factor(s.index, query.at, receiver);
     Spectrum through;
     if (is_dimmed) through = static_cast<float>(F / tally.all) * tally.through;
     if (share > 0.0) add(s.channel, s.light(), static_cast<float>(F * share));

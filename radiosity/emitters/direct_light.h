@@ -14,6 +14,7 @@
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/coat.h"
+#include "scene/relief.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/surface_point.h"
@@ -81,6 +82,10 @@ struct LightQuery {
   /// If set, each light counts times CoatedBase::factor() at its angle: irradiance as the base
   /// under a coat gets it. The light of the sky's dome is taken as even.
   const CoatedBase* base = nullptr;
+  /// If set, light counts times ReliefSlope::gain() of its direction: that of an emitter or a lamp
+  /// by the mean over some of its points, as if all of it were visible; the dome's by what its rays
+  /// find.
+  const ReliefSlope* relief = nullptr;
 };
 
 /// Direct light: closed form times visibility, for small bright emitters, a single large one and
@@ -158,6 +163,8 @@ class DirectLight {
   /// of CoatedBase::factor() over emitters and lamps, by their unoccluded light. Of more than 64
   /// lights some stand for all. 1 under a sky, whose light is not known here.
   double base_gain(const SurfacePoint& at, const CoatedBase& base) const;
+  /// The same for ReliefSlope::gain().
+  double relief_gain(const SurfacePoint& at, const ReliefSlope& relief) const;
   /// The same for the light of each channel.
   Eigen::ArrayXd base_gains(const SurfacePoint& at, const CoatedBase& base) const;
 
@@ -168,8 +175,17 @@ class DirectLight {
 
  private:
   int first_light(Lights lights) const;
-  double base_factor(int light, const SurfacePoint& at, const CoatedBase& base) const;
-  Eigen::ArrayX2d light_at_base(const SurfacePoint& at, const CoatedBase& base) const;
+  /// What light of a direction counts times.
+  struct Receiver {
+    const CoatedBase* base = nullptr;
+    const ReliefSlope* relief = nullptr;
+
+    bool is_plain() const { return !base && !relief; }
+    double factor(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal) const;
+  };
+  double factor(int light, const SurfacePoint& at, const Receiver& receiver) const;
+  Eigen::ArrayX2d light_with_factor(const SurfacePoint& at, const Receiver& receiver) const;
+  double gain(const SurfacePoint& at, const Receiver& receiver) const;
   SkyGlow dome_glow(const ElementCaster& caster, const LightQuery& query, double full,
                     std::uint64_t key) const;
   template <class Add>

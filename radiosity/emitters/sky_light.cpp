@@ -134,8 +134,16 @@ std::shared_ptr<const SkyLight::Shares> SkyLight::shares_at(const ElementCaster&
 class SkyLight::Estimate {
  public:
   Estimate(const SkyLight& sky, const ElementCaster& caster, const SurfacePoint& at,
-           std::uint64_t key)
-      : sky_(sky), caster_(caster), at_(at), key_(key), shares_(sky.shares_at(caster, at, key)) {}
+           std::uint64_t key, const ReliefSlope* relief)
+      : sky_(sky),
+        caster_(caster),
+        at_(at),
+        key_(key),
+        relief_(relief),
+        shares_(sky.shares_at(caster, at, key)) {}
+
+  // Mean of the relief's gain over the light that all rays so far have found.
+  float gain() const { return found_ > 0.0 ? static_cast<float>(gained_ / found_) : 1.0f; }
 
   SkyGlow glow(const SkyEffort& effort) {
     if (cells().empty()) return {Spectrum::Zero(sky_.bands_)};
@@ -194,7 +202,7 @@ class SkyLight::Estimate {
 
   const std::vector<Share>& cells() const { return shares_->cells; }
 
-  Tally tally_of(int rays, std::uint64_t round) const {
+  Tally tally_of(int rays, std::uint64_t round) {
     Tally tally{.seen_open = Eigen::ArrayXd::Zero(sky_.bands_),
                 .all_open = Eigen::ArrayXd::Zero(sky_.bands_),
                 .seen_elsewhere = Eigen::ArrayXd::Zero(sky_.bands_)};
@@ -204,7 +212,7 @@ class SkyLight::Estimate {
   }
 
   // Casts one ray in each of `rays` equal steps through the running sum of the weights.
-  void cast(int rays, std::uint64_t key, Tally& tally) const {
+  void cast(int rays, std::uint64_t key, Tally& tally) {
     struct Sample {
       double weight = 0.0;
       int cell = 0;
@@ -264,6 +272,11 @@ class SkyLight::Estimate {
       add(sample, passed, seen);
       ++tally.clear;
     }
+    for (std::size_t i = 0; relief_ && i < ray.size(); ++i) {
+      const double found = samples[i].weight * passed_share[i];
+      found_ += found;
+      gained_ += found * relief_->gain(ray[i].direction);
+    }
     const double visible = tally.all_open.sum() > 0.0 ? seen_share(tally).mean() : 0.0;
     const auto term = [&](std::size_t i) {
       return samples[i].weight * (passed_share[i] - (samples[i].is_open ? visible : 0.0));
@@ -291,12 +304,17 @@ class SkyLight::Estimate {
   const ElementCaster& caster_;
   const SurfacePoint& at_;
   std::uint64_t key_;
+  const ReliefSlope* relief_;
+  double found_ = 0.0, gained_ = 0.0;
   std::shared_ptr<const Shares> shares_;
 };
 
 SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key,
-                             const SkyEffort& effort) const {
-  return Estimate(*this, caster, at, key).glow(effort);
+                             const SkyEffort& effort, const ReliefSlope* relief) const {
+  Estimate estimate(*this, caster, at, key, relief);
+  SkyGlow glow = estimate.glow(effort);
+  glow.irradiance *= estimate.gain();
+  return glow;
 }
 
 // A cell of a site, and its step of the running sum.
@@ -328,7 +346,7 @@ double SkyLight::density(const SkySites::Site& site, const Eigen::Vector3d& dire
 }
 
 Spectrum SkyLight::irradiance_by_one_ray(const ElementCaster& caster, const SurfacePoint& at,
-                                         std::uint64_t key) const {
+                                         std::uint64_t key, const ReliefSlope* relief) const {
   const SkySites::Site* found = sites_.find(at);
   const SkySites::Site& site = found ? *found : sites_.unknown();
   const auto u = [&](std::uint64_t i) {
@@ -347,7 +365,8 @@ Spectrum SkyLight::irradiance_by_one_ray(const ElementCaster& caster, const Surf
     passed = panes_.passed(caster, ray);
   }
   // L cos over the density of the direction: its density within the cell times step / all.
-  const double weight = cosine * cells_.power(cell) * static_cast<double>(site.sum.back() / step);
+  double weight = cosine * cells_.power(cell) * static_cast<double>(site.sum.back() / step);
+  if (relief) weight *= relief->gain(sample.direction);
   return passed * (weight * cells_.colour(cell)).cast<float>();
 }
 

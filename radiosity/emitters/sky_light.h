@@ -9,6 +9,7 @@
 #include "radiosity/emitters/sky_cells.h"
 #include "radiosity/emitters/sky_sites.h"
 #include "radiosity/visibility/clear_panes.h"
+#include "scene/relief.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/surface_point.h"
@@ -58,14 +59,15 @@ class SkyLight {
   SkyLight& operator=(const SkyLight&) = delete;
 
   /// E per band, W/m^2, at a point. `key` decides the directions of the rays; panes dim the light
-  /// that passes through them.
+  /// that passes through them. With `relief`, E counts times the mean of ReliefSlope::gain() over
+  /// the light that the rays find.
   SkyGlow irradiance(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key,
-                     const SkyEffort& effort = {}) const;
+                     const SkyEffort& effort = {}, const ReliefSlope* relief = nullptr) const;
 
   /// An estimate of E by a single ray, unbiased, for points that are themselves many samples: the
   /// noise is that of the light through the cells that the site knows as open.
   Spectrum irradiance_by_one_ray(const ElementCaster& caster, const SurfacePoint& at,
-                                 std::uint64_t key) const;
+                                 std::uint64_t key, const ReliefSlope* relief = nullptr) const;
 
   /// A direction towards the dome, drawn as for irradiance_by_one_ray().
   struct Aim {

@@ -48,6 +48,8 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
     print.add(material.specular);
     print.add(material.specular_roughness);
     print.add(material.coat ? material.coat->index_of_refraction : 0.0f);
+    if (material.metal) print.add(material.metal->eta);
+    if (material.metal) print.add(material.metal->k);
     print.add(material.dielectric.has_value());
     if (!material.dielectric) continue;
     const auto& [index_of_refraction, tint, absorption, roughness, thin, transmissivity] =

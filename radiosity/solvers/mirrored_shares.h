@@ -11,8 +11,8 @@ namespace lightwell {
 
 /// Shares, [0,1], of arriving light that surfaces mirror or pass straight on, for energy balances.
 /// Mirrors and sheets have theirs.
-/// Coats mirror less of steep light and more of grazing light than mean_mirrored(): the light that
-/// arrived or was lost beyond what was sent, and which no mirror sent on, is theirs.
+/// Coats and metals mirror less of steep light and more of grazing light than mean_mirrored(): the
+/// light that arrived or was lost beyond what was sent, and which no mirror sent on, is theirs.
 class MirroredShares {
  public:
   MirroredShares(const Scene& scene, Eigen::Index columns)
@@ -24,12 +24,12 @@ class MirroredShares {
       shares_.push_back(repeated(mean_mirrored(material)));
       straight_.push_back(material.passes_straight() ? repeated(material.regular_transmittance)
                                                      : Eigen::ArrayXd());
-      is_coat_.push_back(material.coat.has_value());
-      has_coats_ = has_coats_ || material.coat;
+      is_coat_.push_back(material.coat || material.metal);
+      has_coats_ = has_coats_ || is_coat_.back();
     }
   }
 
-  /// True if there are coats, whose light is to be counted before kept() is right.
+  /// True if there are coats or metals, whose light is to be counted before kept() is right.
   bool has_coats() const { return has_coats_; }
 
   /// Counts light, W per column, that arrives at a surface of a material.

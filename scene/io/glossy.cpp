@@ -2,47 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <functional>
 #include <memory>
 
 #include "scene/coat.h"
-#include "scene/optics.h"
 
 namespace lightwell {
-namespace {
-
-// Cosine-weighted mean over the hemisphere of a function of the cosine.
-template <class F>
-double diffuse_mean(F&& of_cosine) {
-  // Midpoint rule in cos^2: 2 cos dcos = d(cos^2), so the weights are equal.
-  constexpr int steps = 1000;
-  double sum = 0.0;
-  for (int i = 0; i < steps; ++i) sum += of_cosine(std::sqrt((i + 0.5) / steps));
-  return sum / steps;
-}
-
-// Fresnel reflectance of a metal for unpolarised light; `index` = eta + i k.
-double metal_reflectance(double cosine, std::complex<double> index) {
-  if (!(std::abs(index) > 0.0)) return 1.0;
-  const std::complex<double> inside = std::sqrt(1.0 - (1.0 - cosine * cosine) / (index * index));
-  const auto across = (cosine - index * inside) / (cosine + index * inside);
-  const auto along = (index * cosine - inside) / (index * cosine + inside);
-  return 0.5 * (std::norm(across) + std::norm(along));
-}
-
-}  // namespace
-
-Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k) {
-  Spectrum mean(eta.size());
-  for (Eigen::Index i = 0; i < mean.size(); ++i) {
-    const std::complex<double> index(static_cast<double>(eta[i]), static_cast<double>(k[i]));
-    mean[i] = static_cast<float>(
-        diffuse_mean([&](double cosine) { return metal_reflectance(cosine, index); }));
-  }
-  return mean;
-}
-
 namespace {
 
 // Replaces the base's reflectance, and that of its picture, by `coated` of it.

@@ -20,12 +20,6 @@ inline constexpr double least_metallic = 0.02;
 /// smaller share are read as opaque.
 inline constexpr double mostly_clear = 0.5;
 
-/// Reflectance of a metal of refractive index eta + i k for diffuse light, by Fresnel's equations
-/// (Born & Wolf, 14.2). The diffuse mean is used because a Material reflects the same at every
-/// angle: a dim metal such as tungsten reflects a tenth more of diffuse light than at normal
-/// incidence.
-Spectrum diffuse_metal_reflectance(const Spectrum& eta, const Spectrum& k);
-
 /// Lays a clear coat over a material whose `reflectance` is that of base and coat together (see
 /// Material::coat); arguments as for lay_coat().
 void set_coat(Material& material, double index, double alpha, const Spectrum& specular);

@@ -86,7 +86,7 @@ void fail_without_surfaces(const std::filesystem::path& file, std::string_view p
 void remark_pictures_without_uv(const Scene& scene, Remarks& remarks) {
   for (const Surface& surface : scene.surfaces) {
     const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
-    if (!material.texture && !material.mask) continue;
+    if (!material.shows_picture()) continue;
     const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
     const auto has_uv = [](const Facet& facet) { return facet.uv_map >= 0; };
     if (mesh && std::ranges::all_of(mesh->facets, has_uv)) continue;
@@ -97,6 +97,9 @@ void remark_pictures_without_uv(const Scene& scene, Remarks& remarks) {
     if (material.mask) {
       remarks.add("Masks on surfaces without texture coordinates were left out", surface.name);
     }
+    if (material.relief) {
+      remarks.add("Relief on surfaces without texture coordinates was left out", surface.name);
+    }
   }
 }
 
@@ -104,7 +107,7 @@ void drop_unused_uv(Scene& scene) {
   for (Surface& surface : scene.surfaces) {
     const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
     auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
-    if (!mesh || material.texture || material.mask || mesh->uv_maps.empty()) continue;
+    if (!mesh || material.shows_picture() || mesh->uv_maps.empty()) continue;
     mesh->uv_maps = {};
     for (Facet& facet : mesh->facets) facet.uv_map = -1;
   }

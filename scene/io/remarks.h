@@ -71,11 +71,11 @@ void note_repairs(const Repairs& repairs, Scene& scene);
 [[noreturn]] void fail_without_surfaces(const std::filesystem::path& file, std::string_view problem,
                                         const Remarks& remarks);
 
-/// Adds a remark on surfaces whose material has a picture or a mask and whose facets lack texture
-/// coordinates: there the mean of the picture is used, and no mask.
+/// Adds a remark on surfaces whose material has a picture, a mask or relief and whose facets lack
+/// texture coordinates: there the mean of the picture is used, no mask and no relief.
 void remark_pictures_without_uv(const Scene& scene, Remarks& remarks);
 
-/// Removes texture coordinates from surfaces whose material has neither picture nor mask.
+/// Removes texture coordinates from surfaces whose material shows no picture.
 void drop_unused_uv(Scene& scene);
 
 /// Adds a note if the scene has no light source.

@@ -179,6 +179,28 @@ TEST(Coat, BlackBasesAbsorbWhatTheirCoatDoesNotMirror) {
   }
 }
 
+// The same square as a dim metal: it absorbs what its angle does not mirror.
+TEST(Metal, AbsorbsWhatItDoesNotMirror) {
+  Scene scene = LampOverCoat::with_lamp();
+  Material& metal = scene.materials[0];
+  metal.reflectance.setZero();
+  metal.coat.reset();
+  metal.metal = Conductor{.eta = Spectrum::Constant(3, 2.0f), .k = Spectrum::Constant(3, 1.0f)};
+  double expected = 0.0;
+  constexpr int steps = 40;
+  for (int i = 0; i < steps * steps; ++i) {
+    const Eigen::Vector3d point(2.0 * (i % steps + 0.5) / steps - 1.0,
+                                2.0 * (i / steps + 0.5) / steps - 1.0, 0.0);
+    const auto [E, cosine] = LampOverCoat::arriving(point);
+    const auto mirrored = double{reflectance_at(*metal.metal, cosine)[0]};
+    expected += 3.0 * (1.0 - mirrored) * E * 4.0 / (steps * steps);
+  }
+  SolveOptions options{.gather = {.rays = 64}, .refine = {.tolerance = 0.0}};
+  options.caustic_rays = 1 << 14;
+  const EnergyBalance energy = solve_scene(scene, options).solution.energy;
+  EXPECT_NEAR(energy.absorbed / expected, 1.0, 0.01);
+}
+
 // A black lacquer below a lamp, whose highlight a thin pane in between dims by what both of its
 // faces mirror: 2 R / (1 + R) = 0.077 at normal incidence of index 1.5. The lobe of alpha 0.1 meets
 // the lamp by chance behind the pane; 400 rays of 4 directions and more leave 3 % of noise.

@@ -108,6 +108,13 @@ Eigen::Matrix<double, 2, 3> placement_of(const GltfObject& info) {
   return placement;
 }
 
+// Name of the set of texture coordinates of a texture's use.
+std::string coordinates_of(const GltfObject& info) {
+  const auto transform = info.extension("KHR_texture_transform");
+  const std::size_t set = info.index_or("texCoord", 0);
+  return fmt::format("TEXCOORD_{}", transform ? transform->index_or("texCoord", set) : set);
+}
+
 bool is_cut_by_alpha(const GltfObject& from) {
   const std::string mode = from.string_or("alphaMode", "OPAQUE");
   return mode == "MASK" || mode == "BLEND";
@@ -165,18 +172,39 @@ Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
     remarks_.add("Lamps have no holes, so their transparency by alpha was left out", material.name);
     material.mask.reset();
   }
-  if (from.has("normalTexture")) remarks_.add("Normal maps were left out", material.name);
+  set_relief(from, material);
   return material;
+}
+
+void GltfMaterials::set_relief(const GltfObject& from, Material& material) {
+  const auto info = from.object("normalTexture");
+  if (!info) return;
+  const auto base = BaseColor(from).info();
+  if (base && coordinates_of(*base) != coordinates_of(*info)) {
+    return remarks_.add("Normal maps with texture coordinates of their own were left out",
+                        material.name);
+  }
+  remarks_.attempt("Normal maps that cannot be used were left out", material.name, [&] {
+    const auto texture = info->index("index");
+    if (!texture) info->fail("lacks the index of a texture");
+    const auto picture = file_.texture_picture(*texture, PictureCode::linear, *info);
+    if (!picture) info->fail("has a picture of a format that is not read");
+    const double scale = info->number_or("scale", 1.0);
+    if (!(std::abs(scale) <= most_relief_scale)) {
+      info->fail(fmt::format("has the scale {}; give one between {} and {}", scale,
+                             -most_relief_scale, most_relief_scale));
+    }
+    material.relief = relief_of_normals(laid_on(*info, picture->color), scale);
+  });
 }
 
 std::string GltfMaterials::texture_coordinates(const GltfObject& primitive) const {
   const auto index = primitive.index("material");
   if (!index || *index >= file_.count("materials")) return {};
-  const auto info = BaseColor(file_.at("materials", *index, primitive)).info();
-  if (!info) return {};
-  const auto transform = info->extension("KHR_texture_transform");
-  const std::size_t set = info->index_or("texCoord", 0);
-  return fmt::format("TEXCOORD_{}", transform ? transform->index_or("texCoord", set) : set);
+  const GltfObject material = file_.at("materials", *index, primitive);
+  const auto base = BaseColor(material).info();
+  const auto info = base ? base : material.object("normalTexture");
+  return info ? coordinates_of(*info) : std::string();
 }
 
 std::optional<Picture> GltfMaterials::base_picture(const GltfObject& from) {

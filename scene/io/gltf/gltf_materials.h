@@ -22,8 +22,8 @@ class GltfMaterials {
   /// On an open sheet a clear material is a thin pane, and emission leaves on both sides where the
   /// file declares the material double-sided.
   int of_primitive(const GltfObject& primitive, bool is_closed);
-  /// Name of the primitive's set of texture coordinates for its base colour ("TEXCOORD_0"); empty
-  /// if the base colour has no picture.
+  /// Name of the primitive's set of texture coordinates for its base colour ("TEXCOORD_0"), or
+  /// for its normal map if the base colour has no picture; empty if neither has one.
   std::string texture_coordinates(const GltfObject& primitive) const;
 
  private:
@@ -34,6 +34,7 @@ class GltfMaterials {
   void pass_light(const GltfObject& from, const Spectrum& base, float dielectric, double clear,
                   double alpha, Material& material);
   void cut_by_alpha(const GltfObject& from, Material& material);
+  void set_relief(const GltfObject& from, Material& material);
   void set_coat(const GltfObject& from, double alpha, Material& material);
   void set_clear(const GltfObject& from, const Spectrum& base, double alpha, bool is_closed,
                  Material& material);

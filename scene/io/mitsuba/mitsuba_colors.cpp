@@ -172,6 +172,37 @@ std::optional<Mask> MitsubaColors::mask(const MitsubaNode& owner, std::string_vi
   return Mask{.image = laid_on(*node, picture->alpha ? picture->alpha : picture->color)};
 }
 
+std::optional<Relief> MitsubaColors::relief(const MitsubaNode& owner) {
+  const auto textures = tree_.children(owner, "texture");
+  if (textures.empty()) owner.fail("holds no texture");
+  double scale = owner.number_or("scale", 1.0);
+  const MitsubaNode* node = &tree_.resolved(*textures.front());
+  for (int depth = 0; node->type == "scale" && depth < deepest_texture; ++depth) {
+    scale *= number_or(*node, "scale", 1.0) * number_or(*node, "value", 1.0);
+    const auto inner = tree_.children(*node, "texture");
+    if (inner.empty()) node->fail("holds no texture");
+    node = &tree_.resolved(*inner.front());
+  }
+  if (node->type != "bitmap") {
+    owner.fail(fmt::format("has a texture of the plugin '{}'; relief is read from a bitmap alone",
+                           node->type));
+  }
+  const bool is_normal_map = owner.type == "normalmap";
+  const double most = is_normal_map ? most_relief_scale : most_relief_depth;
+  if (!(std::abs(scale) <= most)) {
+    owner.fail(fmt::format("has the scale {}; give one between {} and {}", scale, -most, most));
+  }
+  const auto picture = picture_of(*node, is_normal_map ? PictureCode::linear : code_of(*node));
+  if (!picture) return std::nullopt;
+  const SurfaceTexture image = laid_on(*node, picture->color);
+  if (!is_normal_map) return relief_of_heights(image, scale, DepthUnit::metre);
+  try {
+    return relief_of_normals(image, scale);
+  } catch (const InputError& error) {
+    node->fail(error.what());
+  }
+}
+
 SurfaceTexture MitsubaColors::laid_on(const MitsubaNode& node,
                                       std::shared_ptr<const Texture> picture) {
   SurfaceTexture image{.picture = std::move(picture)};

@@ -51,6 +51,9 @@ class MitsubaColors {
   /// Mask of an opacity bitmap: the picture's alpha, or its red channel if the picture is opaque.
   /// Empty if the property is no bitmap, or one that cannot be read.
   std::optional<Mask> mask(const MitsubaNode& owner, std::string_view property);
+  /// Relief of the texture within a `normalmap`, `bumpmap` or `bump`; empty, with a remark, if its
+  /// picture cannot be read. Heights are in the scene's unit.
+  std::optional<Relief> relief(const MitsubaNode& owner);
 
  private:
   const MitsubaNode* texture_node(const MitsubaNode& owner, std::string_view property) const;

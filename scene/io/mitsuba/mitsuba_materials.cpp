@@ -168,9 +168,11 @@ Material MitsubaMaterials::transmitter(const MitsubaNode& bsdf, Pixels pixels) {
 
 Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
   Spectrum reflectance = Spectrum::Ones(3);
+  std::optional<Conductor> metal;
   const auto eta = colors_.positive(bsdf, "eta"), k = colors_.positive(bsdf, "k");
   if (eta && k) {
-    reflectance = diffuse_metal_reflectance(*eta, *k);
+    metal = Conductor{.eta = *eta, .k = *k};
+    reflectance = mean_reflectance(*metal);
   } else if (bsdf.type != "mirror") {
     const std::string name = bsdf.string_or("material", eta || k ? "none" : "Cu");
     if (const auto known = metal_preset(name)) {
@@ -182,13 +184,18 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
       reflectance.setConstant(0.6f);
     }
   }
-  reflectance *= colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
+  const Spectrum share = colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
+  reflectance *= share;
   const double alpha = bsdf.type == "roughconductor" ? roughness(bsdf) : 0.0;
   if (bsdf.type == "roughconductor") {
     if (alpha > glossy_alpha) remarks_.add(rough_metal, bsdf.label());
   }
   Material material = opaque_bsdf(black());
   set_metallic(material, reflectance, 1.0, alpha);
+  if (metal && (material.specular > 0.0f).any()) {
+    material.metal = metal;
+    material.specular = share;
+  }
   return material;
 }
 
@@ -368,8 +375,11 @@ Material MitsubaMaterials::wrapped(const MitsubaNode& bsdf, Pixels pixels) {
     return coated(bsdf, read(*inner.front(), pixels), pixels);
   }
   if (bsdf.type == "mask") return masked(bsdf, *inner.front());
-  remarks_.add(fmt::format("BSDF '{}' was read as what it covers", bsdf.type), bsdf.label());
-  return read(*inner.front(), pixels);
+  Material material = read(*inner.front(), pixels);
+  remarks_.attempt("Relief that cannot be used was left out", bsdf.label(), [&] {
+    if (auto relief = colors_.relief(bsdf)) material.relief = std::move(relief);
+  });
+  return material;
 }
 
 Material MitsubaMaterials::two_sided(const MitsubaNode& bsdf, Pixels pixels) {
@@ -400,7 +410,8 @@ void MitsubaMaterials::add_gloss(const Material& part, float weight, const Mitsu
     sum.specular_roughness = 0.0f;
   }
   sum.coat = part.coat;
-  sum.specular += weight * part.specular;
+  // Metals by angle count by their mean.
+  sum.specular += weight * (part.metal ? mean_mirrored(part) : part.specular);
   sum.specular_roughness = std::max(sum.specular_roughness, part.specular_roughness);
 }
 
@@ -422,6 +433,10 @@ Material MitsubaMaterials::blend(const MitsubaNode& bsdf, Pixels pixels) {
   if (std::ranges::any_of(inner,
                           [&](const auto* b) { return read(*b, pixels).texture.has_value(); })) {
     remarks_.add("Pictures in blended BSDFs were read as their mean colour", bsdf.label());
+  }
+  if (std::ranges::any_of(inner,
+                          [&](const auto* b) { return read(*b, pixels).relief.has_value(); })) {
+    remarks_.add("Relief in blended BSDFs was left out", bsdf.label());
   }
   Material sum = opaque_bsdf(black());
   sum.one_sided =

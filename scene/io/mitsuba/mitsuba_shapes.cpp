@@ -188,7 +188,7 @@ PolygonMesh MitsubaShapes::mesh(const MitsubaNode& shape, const Eigen::Affine3d&
   const bool sides_differ =
       material.one_sided || material.dielectric.has_value() || material.is_emitter();
   const bool by_normals = sides_differ && !shape.boolean_or("face_normals", false);
-  const bool with_uv = material.texture || material.mask;
+  const bool with_uv = material.shows_picture();
   const MeshFile& file =
       mesh_file(shape, with_uv, by_normals ? MeshFronts::from_normals : MeshFronts::from_winding);
   account(shape, file.triangles);

@@ -26,6 +26,7 @@ struct MtlBlock {
   std::optional<float> index{}, dissolve{}, transparency{};
   int illumination = -1;
   std::string diffuse_map{}, dissolve_map{};  ///< options and file
+  std::string normal_map{}, bump_map{};
   bool has_other_map = false;
 };
 
@@ -91,7 +92,11 @@ class MtlParser {
       block.diffuse_map = trimmed(rest);
     } else if (key == "map_d") {
       block.dissolve_map = trimmed(rest);
-    } else if (key.starts_with("map_") || key == "bump" || key == "norm" || key == "disp") {
+    } else if (key == "norm" || key == "map_Kn") {
+      block.normal_map = trimmed(rest);
+    } else if (key == "bump" || key == "map_bump" || key == "map_Bump") {
+      block.bump_map = trimmed(rest);
+    } else if (key.starts_with("map_") || key == "disp") {
       block.has_other_map = true;
     }
   }
@@ -207,6 +212,7 @@ Material make_material(const TextFile& file, const MtlBlock& b, MtlRemarks& rema
 struct MapStatement {
   std::string file{};
   SurfaceTexture image{};
+  double bump = 1.0;  ///< of -bm
 };
 
 MapStatement read_map_statement(std::string_view text) {
@@ -230,6 +236,7 @@ MapStatement read_map_statement(std::string_view text) {
     }
     if (values.empty()) break;
     if (option == "-clamp" && values[0] == "on") map.image.wrap.fill(TextureWrap::clamp);
+    if (option == "-bm") map.bump = parse_finite(values[0]).value_or(1.0);
     if (option == "-s" || option == "-o") {
       Eigen::Vector2d& to = option == "-s" ? scale : offset;
       for (std::size_t i = 0; i < std::min<std::size_t>(2, values.size()); ++i) {
@@ -245,13 +252,14 @@ MapStatement read_map_statement(std::string_view text) {
   return map;
 }
 
-// Adds the pictures of map_Kd and map_d to a finished material.
+// Adds the pictures of map_Kd, norm, bump and map_d to a finished material.
 class MapReader {
  public:
   MapReader(const TextFile& file, MtlRemarks& remarks) : file_(file), remarks_(remarks) {}
 
   void add_maps(const MtlBlock& b, Material& material) {
     if (!b.diffuse_map.empty()) lay_on_diffuse_map(b, material);
+    if (!b.normal_map.empty() || !b.bump_map.empty()) set_relief(b, material);
     if (b.dissolve_map.empty()) return;
     MapStatement map = read_map_statement(b.dissolve_map);
     if (material.is_emitter()) {
@@ -276,6 +284,26 @@ class MapReader {
     map.image.picture = picture->color;
     material.texture = {.image = map.image, .factor = material.reflectance};
     material.reflectance *= picture->mean.color.cast<float>();
+  }
+
+  // Programs write pictures of normals to `bump`, too.
+  void set_relief(const MtlBlock& b, Material& material) {
+    const bool is_named = !b.normal_map.empty();
+    MapStatement map = read_map_statement(is_named ? b.normal_map : b.bump_map);
+    const auto picture = open(map.file, b, PictureCode::linear);
+    if (!picture) return;
+    map.image.picture = picture->color;
+    try {
+      if (!(std::abs(map.bump) <= most_relief_scale)) {
+        throw InputError(fmt::format("-bm is {}; give a number between {} and {}", map.bump,
+                                     -most_relief_scale, most_relief_scale));
+      }
+      material.relief = is_named || shows_normals(*picture->color)
+                            ? relief_of_normals(map.image, map.bump)
+                            : relief_of_heights(map.image, map.bump, DepthUnit::texel);
+    } catch (const InputError& fault) {
+      remarks_.add_unusable("relief that cannot be used was left out in", b.name, fault.what());
+    }
   }
 
   std::optional<Picture> open(const std::string& name, const MtlBlock& b,

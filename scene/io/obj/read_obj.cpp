@@ -124,7 +124,7 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
   // coordinates.
   const auto keeps_uv = [&](int material) {
     const Material& m = scene.materials[static_cast<std::size_t>(material)];
-    return wanted == MeshMaterials::with_uv || m.texture || m.mask;
+    return wanted == MeshMaterials::with_uv || m.shows_picture();
   };
   std::map<std::pair<int, int>, std::size_t> surface_of;  // (group, material)
   std::vector<std::pair<int, int>> keys;

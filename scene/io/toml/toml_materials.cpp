@@ -174,6 +174,29 @@ void read_glass(const TomlTable& table, const TomlBands& bands, Material& materi
   }
 }
 
+// A metal mirrors by Fresnel's equations alone; `specular` is a factor.
+void read_metal(const TomlTable& table, const TomlBands& bands, Material& material) {
+  const auto metal = table.find("metal");
+  if (!metal) return;
+  for (const char* other :
+       {"reflectance", "texture", "glass", "coat", "translucent", "transparent"}) {
+    if (const auto value = table.find(other)) {
+      value->fail("contradicts 'metal', which mirrors alone; remove one of the two keys");
+    }
+  }
+  const TomlTable t = metal->table({"eta", "k"});
+  const auto part = [&](const char* key) {
+    const TomlValue value = t.require(key);
+    const Spectrum result = spectral(value, bands, Quantity::emission);
+    if (!(result <= highest_metal_index).all()) {
+      value.fail(fmt::format("is above {}, which no metal has", highest_metal_index));
+    }
+    return result;
+  };
+  material.metal = Conductor{.eta = part("eta"), .k = part("k")};
+  if (!table.has("specular")) material.specular.setOnes();
+}
+
 // A coat: its index of refraction alone, or { ior = ..., roughness = ..., share = ..., base = ...
 // }.
 struct GivenCoat {
@@ -406,9 +429,11 @@ Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands) {
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures) {
   const TomlTable table =
-      value.table({"reflectance", "specular", "roughness", "glass", "sides", "radiance", "exitance",
-                   "power", "luminance", "luminous_exitance", "lumens", "colour", "watts", "emits",
-                   "texture", "mask", "coat", "translucent", "transparent"});
+      value.table({"reflectance", "specular", "roughness", "glass",     "sides",
+                   "radiance",    "exitance", "power",     "luminance", "luminous_exitance",
+                   "lumens",      "colour",   "watts",     "emits",     "texture",
+                   "mask",        "relief",   "metal",     "coat",      "translucent",
+                   "transparent"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
@@ -423,13 +448,15 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
               bands.bands.names[static_cast<std::size_t>(k)]));
     }
   }
-  if (table.has("roughness") && !table.has("specular") && !table.has("glass")) {
+  if (table.has("roughness") && !table.has("specular") && !table.has("glass") &&
+      !table.has("metal")) {
     table.require("roughness").fail("spreads what 'specular' mirrors; give that too, or remove it");
   }
   material.specular_roughness = read_roughness(table);
   if (const auto sides = table.find("sides")) {
     material.one_sided = sides->one_of({"one", "two"}) == "one";
   }
+  read_metal(table, bands, material);
   const std::optional<GivenCoat> coat = read_coat(table, bands, material);
   read_glass(table, bands, material);
   const bool has_reflectance = table.has("reflectance") || (coat && coat->has_base);

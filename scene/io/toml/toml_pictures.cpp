@@ -11,26 +11,24 @@ namespace {
 struct Laid {
   Picture picture{};
   SurfaceTexture image{};
-  std::optional<TomlValue> cutoff{};
 };
 
-Laid read_laid(const TomlValue& value, PictureCode code, bool is_mask, PictureFiles& pictures) {
+// `value` is the file's name, or `table`.
+Laid read_laid(const TomlValue& value, const std::optional<TomlTable>& table, PictureCode code,
+               PictureFiles& pictures) {
   Laid laid;
   std::optional<TomlValue> file;
-  if (value.is_table()) {
-    const TomlTable table = is_mask ? value.table({"file", "wrap", "filter", "cutoff"})
-                                    : value.table({"file", "wrap", "filter"});
-    file = table.require("file");
-    if (const auto wrap = table.find("wrap")) {
+  if (table) {
+    file = table->require("file");
+    if (const auto wrap = table->find("wrap")) {
       const std::string mode = wrap->one_of({"repeat", "mirror", "clamp"});
       laid.image.wrap.fill(mode == "mirror"  ? TextureWrap::mirror
                            : mode == "clamp" ? TextureWrap::clamp
                                              : TextureWrap::repeat);
     }
-    if (const auto filter = table.find("filter")) {
+    if (const auto filter = table->find("filter")) {
       laid.image.is_smooth = filter->one_of({"smooth", "nearest"}) == "smooth";
     }
-    laid.cutoff = table.find("cutoff");
   } else {
     file = value;
   }
@@ -49,6 +47,41 @@ Laid read_laid(const TomlValue& value, PictureCode code, bool is_mask, PictureFi
   return laid;
 }
 
+// The table of a picture's placement, with further `keys`; empty: `value` is the file's name alone.
+std::optional<TomlTable> table_of(const TomlValue& value, std::initializer_list<const char*> keys) {
+  if (!value.is_table()) return std::nullopt;
+  return value.table(keys);
+}
+
+Relief read_relief(const TomlValue& value, PictureFiles& pictures) {
+  const auto table = table_of(value, {"file", "wrap", "filter", "kind", "scale", "depth"});
+  const auto find = [&](const char* key) { return table ? table->find(key) : std::nullopt; };
+  const auto kind = find("kind"), scale = find("scale"), depth = find("depth");
+  const bool has_heights = kind && kind->one_of({"normal", "height"}) == "height";
+  if (scale && has_heights) {
+    scale->fail("goes with kind = \"normal\"; heights have a 'depth' in metres");
+  }
+  if (depth && !has_heights) {
+    depth->fail("goes with kind = \"height\"; slopes of normals are multiplied by a 'scale'");
+  }
+  if (has_heights && !depth) {
+    kind->fail("needs a 'depth', the metres by which white lies above black");
+  }
+  constexpr double most_depth = 1.0, most_scale = 10.0;
+  Laid laid = read_laid(value, table, PictureCode::linear, pictures);
+  laid.image.picture = laid.picture.color;
+  if (has_heights) {
+    return relief_of_heights(laid.image, depth->number_within(-most_depth, most_depth),
+                             DepthUnit::metre);
+  }
+  const double factor = scale ? scale->number_within(-most_scale, most_scale) : 1.0;
+  try {
+    return relief_of_normals(laid.image, factor);
+  } catch (const InputError& error) {
+    value.fail(error.what());
+  }
+}
+
 }  // namespace
 
 void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureFiles& pictures,
@@ -61,7 +94,8 @@ void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureF
       texture->fail("is red, green and blue, but the scene's bands are wavelengths; remove it");
     }
     if (!has_reflectance) material.reflectance = Spectrum::Ones(3) - material.specular;
-    Laid laid = read_laid(*texture, PictureCode::srgb, false, pictures);
+    Laid laid = read_laid(*texture, table_of(*texture, {"file", "wrap", "filter"}),
+                          PictureCode::srgb, pictures);
     laid.image.picture = laid.picture.color;
     material.texture = {.image = laid.image, .factor = material.reflectance};
     material.reflectance *= laid.picture.mean.color.cast<float>();
@@ -71,14 +105,16 @@ void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureF
          {"radiance", "exitance", "power", "luminance", "luminous_exitance", "lumens"}) {
       if (table.has(other)) mask->fail("does not go with an emission: lamps have no holes");
     }
-    Laid laid = read_laid(*mask, PictureCode::linear, true, pictures);
+    const auto mask_table = table_of(*mask, {"file", "wrap", "filter", "cutoff"});
+    Laid laid = read_laid(*mask, mask_table, PictureCode::linear, pictures);
     laid.image.picture = laid.picture.alpha ? laid.picture.alpha : laid.picture.color;
     material.mask = Mask{.image = laid.image};
-    if (laid.cutoff) {
+    if (const auto cutoff = mask_table ? mask_table->find("cutoff") : std::nullopt) {
       constexpr double least = 1e-3;
-      material.mask->cutoff = static_cast<float>(laid.cutoff->number_within(least, 1.0));
+      material.mask->cutoff = static_cast<float>(cutoff->number_within(least, 1.0));
     }
   }
+  if (const auto relief = table.find("relief")) material.relief = read_relief(*relief, pictures);
 }
 
 }  // namespace lightwell

@@ -6,9 +6,10 @@
 
 namespace lightwell {
 
-/// Reads the keys `texture` and `mask` of a [materials.NAME] table: a file's name, or a table {
-/// file, wrap, filter } (and `cutoff` for a mask). A texture multiplies the material's reflectance,
-/// which is 1 unless `has_reflectance`. Throws InputError naming file, line, key and remedy.
+/// Reads the keys `texture`, `mask` and `relief` of a [materials.NAME] table: a file's name, or a
+/// table { file, wrap, filter } (and `cutoff` for a mask; `kind`, `scale` and `depth` for relief).
+/// A texture multiplies the material's reflectance, which is 1 unless `has_reflectance`. Throws
+/// InputError naming file, line, key and remedy.
 void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureFiles& pictures,
                         bool has_reflectance, Material& material);
 

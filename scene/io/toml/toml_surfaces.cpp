@@ -147,8 +147,7 @@ class TomlSurfaces::Reader {
   }
 
   bool shows_picture(int material) const {
-    const Material& m = scene_.materials[static_cast<std::size_t>(material)];
-    return m.texture || m.mask;
+    return scene_.materials[static_cast<std::size_t>(material)].shows_picture();
   }
 
   void add_surface(const std::string& name, int material, std::variant<PolygonMesh, Sphere> shape) {

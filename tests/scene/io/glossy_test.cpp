@@ -52,21 +52,6 @@ TEST(Glossy, ExponentsOfPhongBecomeWidths) {
   EXPECT_DOUBLE_EQ(alpha_of_exponent(198.0), 0.1);
 }
 
-// A metal without absorption reflects as glass; with a huge one it reflects everything.
-TEST(Glossy, MetalsReflectByTheirComplexIndex) {
-  EXPECT_NEAR(diffuse_metal_reflectance(grey(1.5f), grey(0.0f))[0], diffuse_fresnel(1.5), 1e-7);
-  EXPECT_NEAR(diffuse_metal_reflectance(grey(1.5f), grey(1e6f))[0], 1.0, 1e-6);
-}
-
-// Tungsten in red, green and blue: Fresnel's equations in real numbers (Born & Wolf, 14.2), by a
-// Gauss rule of 64 points in the cosine, from which the midpoint rule differs by 1e-5.
-TEST(Glossy, MetalsReflectTheMeanOverTheHemisphere) {
-  const Spectrum eta{{2.8656f, 2.11918f, 1.94008f}}, k{{3.03233f, 2.05611f, 1.61629f}};
-  const Spectrum mean = diffuse_metal_reflectance(eta, k);
-  const Spectrum expected{{0.521393f, 0.412530f, 0.344282f}};
-  EXPECT_LT((mean - expected).abs().maxCoeff(), 3e-5f);
-}
-
 TEST(Glossy, SmoothMetalsAreMirrorsAndRoughOnesDiffuse) {
   Material material;
   set_metallic(material, grey(0.8f), 0.25, 0.0);

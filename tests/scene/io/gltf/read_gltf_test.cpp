@@ -239,6 +239,26 @@ TEST_F(Gltf, PicturesOfBlendedAlphaCutHoles) {
   EXPECT_FLOAT_EQ(leaf.texture.value().factor[0], 0.4f);
 }
 
+// square_gltf() has no texture coordinates, which leaves the material's relief as it is.
+TEST_F(Gltf, NormalMapsAreRelief) {
+  const auto relief = [&](const char* picture, const std::string& use) {
+    const std::string png = content_of(std::string(LIGHTWELL_TEST_DATA "/scene/") + picture);
+    return read(square_gltf(one_node + R"(,"images":[{"uri":"data:image/png;base64,)" +
+                                base64(png) + R"("}],"textures":[{"source":0}],"materials":[{
+          "pbrMetallicRoughness":{"metallicFactor":0},"normalTexture":{"index":0)" +
+                                use + "}}]",
+                            R"(,"material":0)"));
+  };
+  const Scene scene = relief("normals.png", R"(,"scale":0.5,"extensions":{
+          "KHR_texture_transform":{"scale":[2,3]}})");
+  ASSERT_TRUE(scene.materials.at(0).relief);
+  EXPECT_EQ(scene.materials[0].relief->scale, 0.5);
+  EXPECT_NEAR(scene.materials[0].relief->steepest, 76.0 / 102.0, 1e-4);
+  EXPECT_EQ(scene.materials[0].relief->slopes.placement(1, 1), 3.0);
+  EXPECT_FALSE(relief("heights.png", "").materials.at(0).relief);
+  EXPECT_FALSE(relief("normals.png", R"(,"scale":1e9)").materials.at(0).relief);
+}
+
 // Two texels of alpha 0.2 and 0.6: neither clear nor opaque.
 TEST_F(Gltf, PicturesOfGauzeCountByTheirMeanAlpha) {
   const std::string png = content_of(LIGHTWELL_TEST_DATA "/scene/gauze.png");

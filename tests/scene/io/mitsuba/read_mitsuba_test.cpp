@@ -245,7 +245,7 @@ TEST_F(Mitsuba, OneSidedUnlessTheFileSaysTwosided) {
 TEST_F(Mitsuba, MetalsAndGlassKeepTheirGloss) {
   const Material chrome = material(R"(<bsdf type="conductor"><rgb name="eta" value="1.5"/>
       <rgb name="k" value="0"/><rgb name="specular_reflectance" value="0.5"/></bsdf>)");
-  EXPECT_NEAR(chrome.specular[1], 0.5 * diffuse_fresnel(1.5), 1e-7);
+  EXPECT_NEAR(mean_mirrored(chrome)[1], 0.5 * diffuse_fresnel(1.5), 1e-7);
   EXPECT_FLOAT_EQ(
       material(R"(<bsdf type="conductor"><string name="material" value="none"/></bsdf>)")
           .specular[0],
@@ -383,6 +383,40 @@ TEST_F(Mitsuba, PicturesBecomeTheirMeanColour) {
                            "</bsdf></bsdf>")
                       .reflectance[0],
                   1.0f);
+}
+
+TEST_F(Mitsuba, NormalAndBumpMapsAreRelief) {
+  for (const char* name : {"normals.png", "heights.png"}) {
+    std::filesystem::copy(std::filesystem::path(LIGHTWELL_TEST_DATA "/scene") / name,
+                          folder / name);
+  }
+  const auto relief = [&](const std::string& plugin, const std::string& picture,
+                          const std::string& more = "") {
+    return material("<bsdf type='" + plugin + "'><texture type='bitmap' name='t'><string " +
+                    "name='filename' value='" + picture + "'/><boolean name='raw' value='true'/>" +
+                    "</texture>" + more + "<bsdf type='diffuse'/></bsdf>")
+        .relief;
+  };
+  const auto normals = relief("normalmap", "normals.png");
+  ASSERT_TRUE(normals);
+  EXPECT_NEAR(normals->steepest, 76.0 / 102.0, 1e-4);
+  const auto heights = relief("bumpmap", "heights.png", "<float name='scale' value='0.02'/>");
+  ASSERT_TRUE(heights);
+  EXPECT_TRUE(heights->is_in_metres);
+  EXPECT_EQ(heights->scale, 0.02);
+  EXPECT_FALSE(relief("normalmap", "heights.png"));
+  EXPECT_FALSE(relief("bumpmap", "gone.png"));
+}
+
+TEST_F(Mitsuba, ConductorsReflectByAngle) {
+  const Material metal = material(
+      "<bsdf type='roughconductor'><rgb name='eta' value='0.2, 0.9, 1.1'/><rgb name='k' "
+      "value='3.9, "
+      "2.5, 2.1'/><rgb name='specular_reflectance' value='0.5'/></bsdf>");
+  ASSERT_TRUE(metal.metal);
+  EXPECT_FLOAT_EQ(metal.metal->k[2], 2.1f);
+  EXPECT_FLOAT_EQ(metal.specular[0], 0.5f);
+  EXPECT_FLOAT_EQ(metal.specular_roughness, 0.1f);
 }
 
 TEST_F(Mitsuba, AMaskCutsOnlyWhereItIs) {

@@ -165,6 +165,36 @@ TEST(ReadObj, APictureOfGauzeCountsByItsMeanOpacity) {
   EXPECT_NEAR(scene.materials[0].regular_transmittance[0], 0.6f, 2e-5f);
 }
 
+// Programs write pictures of normals to map_Bump; a grey picture has heights.
+TEST(ReadObj, BumpsAndNormalMapsAreRelief) {
+  const TemporaryFolder folder;
+  for (const char* name : {"normals.png", "heights.png"}) {
+    std::filesystem::copy(std::filesystem::path(LIGHTWELL_TEST_DATA "/scene") / name,
+                          folder / name);
+  }
+  const std::string mapped = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n";
+  const auto read = [&](const std::string& map) {
+    folder.write("text.mtl", "newmtl m\nKd 0.5\n" + map + "\n");
+    return read_scene(
+        folder.write("text.obj", "mtllib text.mtl\nusemtl m\n" + mapped + "f 1/1 2/2 3/3\n"));
+  };
+  for (const std::string key : {"norm", "map_Bump", "bump"}) {
+    const Scene scene = read(key + " -bm 0.5 normals.png");
+    EXPECT_EQ(scene.materials[0].relief.value().scale, 0.5) << key;
+    EXPECT_NEAR(scene.materials[0].relief->steepest, 76.0 / 102.0, 1e-4) << key;
+    EXPECT_GE(std::get<PolygonMesh>(scene.surfaces[0].shape).facets[0].uv_map, 0);
+  }
+  const Scene heights = read("map_bump -bm 3 heights.png");
+  EXPECT_EQ(heights.materials[0].relief.value().scale, 3.0);
+  EXPECT_FALSE(heights.materials[0].relief->is_in_metres);
+  EXPECT_NEAR(heights.materials[0].relief->steepest, 0.5, 1e-4);  // per texel
+  for (const std::string map : {"norm heights.png", "bump gone.png", "bump -bm 1e9 heights.png"}) {
+    const Scene scene = read(map);
+    EXPECT_FALSE(scene.materials[0].relief) << map;
+    EXPECT_EQ(scene.losses.size(), 1u) << map;
+  }
+}
+
 TEST(ReadObj, KeIsRadiance) {
   const float pi = std::numbers::pi_v<float>;
   expect_rgb(material(room(), "lamp").emission, 5 * pi, 4 * pi, 3 * pi);

@@ -186,6 +186,75 @@ TEST(ReadToml, TexturesOfSheetsLeaveRoomForWhatPasses) {
   EXPECT_FLOAT_EQ(factor("translucent = 0.25\nreflectance = 0.3\n"), 0.3f);
 }
 
+TEST(ReadToml, ReliefIsOfNormalsOrOfHeights) {
+  const TemporaryFolder folder;
+  for (const char* name : {"normals.png", "heights.png"}) {
+    std::filesystem::copy(std::filesystem::path(LIGHTWELL_TEST_DATA "/scene") / name,
+                          folder / name);
+  }
+  const auto read = [&](const std::string& relief) {
+    return read_scene(folder.write("wall.toml", "[materials.white]\nrelief = " + relief +
+                                                    one_polygon +
+                                                    "uv = [[0, 0], [1, 0], [1, 1], [0, 1]]\n"));
+  };
+  const Scene normals = read("\"normals.png\"\n");
+  const Relief& first = normals.materials[0].relief.value();
+  EXPECT_FALSE(first.is_in_metres);
+  EXPECT_EQ(first.scale, 1.0);
+  // Normals of (76, 0, 102) / 127: a slope of 76 / 102 downwards.
+  EXPECT_NEAR(first.steepest, 76.0 / 102.0, 1e-4);
+  EXPECT_NEAR(first.slopes.at({0.25, 0.25})[0], 0.0f, 1e-4f);
+  EXPECT_EQ(read("{ file = \"normals.png\", scale = -2 }\n").materials[0].relief->scale, -2.0);
+  const Scene heights =
+      read("{ file = \"heights.png\", kind = \"height\", depth = 0.01, wrap = \"clamp\" }\n");
+  const Relief& second = heights.materials[0].relief.value();
+  EXPECT_TRUE(second.is_in_metres);
+  EXPECT_EQ(second.scale, 0.01);
+  EXPECT_EQ(second.slopes.wrap[0], TextureWrap::clamp);
+  const auto refuses = [&](const std::string& relief, const std::string& why) {
+    try {
+      read(relief + "\n");
+      FAIL() << relief;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  refuses("\"gone.png\"", "cannot be used");
+  refuses("\"heights.png\"", "grey picture, which has no normals");
+  refuses("{ file = \"normals.png\", scale = 1000 }", "between -10 and 10");
+  refuses("{ file = \"normals.png\", depth = 0.1 }", "goes with kind = \"height\"");
+  refuses("{ file = \"heights.png\", kind = \"height\" }", "needs a 'depth'");
+  refuses("{ file = \"heights.png\", kind = \"height\", depth = 5 }", "between -1 and 1");
+  refuses("{ file = \"heights.png\", kind = \"height\", depth = 0.1, scale = 2 }",
+          "goes with kind = \"normal\"");
+}
+
+TEST(ReadToml, MetalsHaveAComplexIndex) {
+  const auto metal = [](const std::string& keys) {
+    return read_text("[materials.white]\n" + keys + one_polygon).materials[0];
+  };
+  const Material gold =
+      metal("metal = { eta = [0.14, 0.37, 1.44], k = [3.98, 2.39, 1.6] }\nroughness = 0.2");
+  expect_spectrum(gold.metal.value().eta, {0.14f, 0.37f, 1.44f});
+  expect_spectrum(gold.metal->k, {3.98f, 2.39f, 1.6f});
+  expect_spectrum(gold.specular, {1, 1, 1});
+  EXPECT_FLOAT_EQ(gold.specular_roughness, 0.2f);
+  EXPECT_FLOAT_EQ(metal("metal = { eta = 1, k = 2 }\nspecular = 0.5").specular[0], 0.5f);
+  const auto refuses = [&](const std::string& keys, const std::string& why) {
+    try {
+      metal(keys);
+      FAIL() << keys;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  refuses("metal = { eta = 1 }", "'k'");
+  refuses("metal = { eta = 1, k = -1 }", "at least 0");
+  refuses("metal = { eta = 1, k = 1e9 }", "no metal has");
+  refuses("metal = { eta = 1, k = 2 }\nreflectance = 0.1", "contradicts 'metal'");
+  refuses("metal = { eta = 1, k = 2 }\ncoat = 1.5", "contradicts 'metal'");
+}
+
 TEST(ReadToml, GlossGlassAndLensesAreAsTheySay) {
   const Scene scene = read_text(R"(
 unit = "cm"
