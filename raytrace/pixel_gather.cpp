@@ -83,6 +83,38 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
   return (sum / static_cast<double>(points.size())).cast<float>();
 }
 
+Eigen::Vector3d PixelGather::slant(const ElementCaster& caster, const ShadingPoint& at,
+                                   std::uint64_t key) const {
+  const HemisphereSets::Draw draw =
+      sets_.front().draw(random_key(key, RandomPurpose::pixel_gather_rays));
+  const Eigen::Matrix3d frame = draw.frame(at.normal);
+  const auto points = draw.all();
+  const Place place{
+      .caster = caster, .at = at, .key = key, .rays = static_cast<int>(2 * points.size())};
+  constexpr double steepest = 3.0;  // tangent of the angle to the normal
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  double all = 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const HemispherePoint& p = points[i];
+    for (const double side : {1.0, -1.0}) {
+      const Ray ray{.origin = at.position,
+                    .direction = frame * Eigen::Vector3d(side * p.x, side * p.y, p.z),
+                    .origin_group = at.facet};
+      ElementHit hit;
+      caster.closest_hits({&ray, 1}, {&hit, 1});
+      Eigen::ArrayXd found = Eigen::ArrayXd::Zero(radiosity_.cols());
+      add_flat(place, ray, hit, 2 * i + (side < 0.0 ? 1 : 0), 0.0, found);
+      const double height = ray.direction.dot(at.normal);
+      const Eigen::Vector3d across = ray.direction - height * at.normal;
+      const double run = across.norm();
+      if (!(run > 0.0)) continue;
+      sum += found.sum() * std::min(run / height, steepest) / run * across;
+      all += found.sum();
+    }
+  }
+  return all > 0.0 ? Eigen::Vector3d(sum / all) : Eigen::Vector3d::Zero();
+}
+
 // Number times density, 1/sr, of rays aimed at the portals that the ray passes.
 double PixelGather::aimed_density(const Place& place, const Ray& ray, const ElementHit& hit) const {
   if (place.portals.is_empty()) return 0.0;

@@ -49,6 +49,12 @@ class PixelGather {
   Spectrum indirect_irradiance(const ElementCaster& caster, const ShadingPoint& at,
                                std::uint64_t key, float share) const;
 
+  /// Slant of the indirect light at a point, int L (w - (w . n) n) dw / int L (w . n) dw, all bands
+  /// together, from two rays for each of `most_rays`: the second lies opposite about the normal.
+  /// Light below 18 degrees counts as light at that height. 0 without light.
+  Eigen::Vector3d slant(const ElementCaster& caster, const ShadingPoint& at,
+                        std::uint64_t key) const;
+
  private:
   // Balance-heuristic weights of light straight from a hit, and of light through mirrors and glass.
   struct Shares {

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "radiosity/gather/final_gather.h"
+#include "raytrace/indirect_slant.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -90,6 +91,9 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (!normals_.is_empty()) least_lift_ = rounding * scene_bounds(scene).diagonal();
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
+  }
+  if (!relief_.is_empty() && options.pass != Pass::gather) {
+    slant_ = indirect_slant(scene, caster, direct_light, solution, relief_, options.max_depth);
   }
   if (options.pass == Pass::automatic) dome_ = dome_on_mesh(caster.mesh(), direct_light, solution);
   if (needs_caustic_photons(solution, options)) {
@@ -574,6 +578,7 @@ RayTree::Arriving RayTree::arriving_from_mesh(const ElementHit& hit, const Shadi
   const PatchMesh& mesh = caster_.mesh();
   Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
              .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
+  if (!is_dim) E.indirect *= indirect_gain(hit, at, relief);
   const CoatedBase* base = base_at(hit);
   if (is_dim || !(base || relief)) return E;
   E.direct_on_facet = E.direct;
@@ -626,25 +631,38 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
          .relief = query.relief},
         random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers), share);
   } else {
-    E.indirect = interpolate(mesh, solution_.indirect_irradiance, hit);
+    E.indirect = indirect_of_mesh(hit, at, relief);
   }
   add_caustics(hit, at, E.indirect);
   return E;
 }
 
-// Adds caustics. Gathered light has none yet; the solution's indirect light includes the solution's
-// own, which photons replace.
+// Factor of the solution's indirect light on a slope of the relief.
+float RayTree::indirect_gain(const ElementHit& hit, const ShadingPoint& at,
+                             const std::optional<ReliefSlope>& relief) const {
+  if (!relief || slant_.size() == 0) return 1.0f;
+  const Eigen::Vector3d slant = interpolate(caster_.mesh(), slant_, hit).matrix().cast<double>();
+  return static_cast<float>(std::clamp(1.0 - relief->rise.dot(at.turned(slant)), 0.0, 2.0));
+}
+
+// The solution's indirect light, without its own caustics if photons replace these.
+Spectrum RayTree::indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
+                                   const std::optional<ReliefSlope>& relief) const {
+  Spectrum E = interpolate(caster_.mesh(), solution_.indirect_irradiance, hit);
+  if (caustics_ && solution_.caustic_irradiance.size() > 0) {
+    // The difference may be slightly negative by rounding.
+    E = (E - interpolate(caster_.mesh(), solution_.caustic_irradiance, hit)).max(0.0f);
+  }
+  return indirect_gain(hit, at, relief) * E;
+}
+
+// Adds caustics, which neither gathered light nor indirect_of_mesh() has.
 void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at,
                            Spectrum& indirect) const {
   if (solution_.caustic_irradiance.size() == 0) return;
   if (!caustics_) {
     if (gather_) indirect += interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
     return;
-  }
-  if (!gather_) {
-    // The difference may be slightly negative by rounding.
-    indirect -= interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
-    indirect = indirect.max(0.0f);
   }
   indirect += caustics_->irradiance(at.rest, at.rest_normal, hit.element);
 }

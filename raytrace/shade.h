@@ -98,9 +98,9 @@ struct SpecularSegment {
 /// through the facet.
 ///
 /// Relief bends the normal of mirrors, glass and coats by its slope, and gives each light that
-/// falls on a diffuse surface a gain (see ReliefSlope). Light without a direction, which is the
-/// solution's indirect light and caustics, counts as even and has none; in Pass::automatic the
-/// light of the dome gets rays. Where no picture is made (trace_lamps, trace_chain), surfaces are
+/// falls on a diffuse surface a gain (see ReliefSlope). The solution's indirect light has
+/// the gain of its indirect_slant(); caustics have none. In Pass::automatic the light of the dome
+/// gets rays. Where no picture is made (trace_lamps, trace_chain), surfaces are
 /// flat.
 ///
 /// Branches that meet a coat behind another coat end by Russian roulette: far from grazing they
@@ -319,6 +319,10 @@ class RayTree {
   double cone_width(const Branch& branch, const ShadingPoint& at) const {
     return branch.cone.start + branch.cone.spread * (at.position - branch.ray.origin).norm();
   }
+  float indirect_gain(const ElementHit& hit, const ShadingPoint& at,
+                      const std::optional<ReliefSlope>& relief) const;
+  Spectrum indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
+                            const std::optional<ReliefSlope>& relief) const;
   void add_caustics(const ElementHit& hit, const ShadingPoint& at, Spectrum& indirect) const;
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
                    const Spectrum& rho, const Scattered& scattered, const Arriving& E,
@@ -332,6 +336,7 @@ class RayTree {
   std::shared_ptr<const FacetTextures> textures_{};  ///< null: no textures
   FacetNormals normals_;
   FacetRelief relief_;
+  BandArray slant_{};  ///< see indirect_slant(); empty: none
   /// Least height of a shadow ray's origin over its facet, m, beyond rounding.
   double least_lift_ = 0.0;
   bool with_layers_ = false;

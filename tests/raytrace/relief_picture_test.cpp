@@ -188,6 +188,32 @@ TEST(ReliefInPictures, FurnaceIsKeptByGatheredLightInTheMean) {
   EXPECT_LT((L - 1.0f).square().mean(), 0.03f * 0.03f);
 }
 
+// A black screen to the left of the wall leaves light of the right half of a room, for which slopes
+// to the right and to the left differ by some 0.6. The mesh's light has a slant of 128 rays for
+// each element, of which four share a vertex: 0.5 / sqrt(512) = 0.02 times a slope of 0.3; the
+// gather's light has an error of 0.03 / 16 in the mean of 16 x 16 pixels.
+TEST(ReliefInPictures, IndirectLightHasADirectionToo) {
+  const auto mean = [](const std::optional<Relief>& relief, Pass pass) {
+    Scene scene = SceneBuilder()
+                      .box({.exitance = pi_f}, {-6, -6, -6}, {6, 6, 6}, true)
+                      .square({}, {-0.05, 0.5, 0}, {1, 0, 0}, 5.9)
+                      .build();
+    add_wall(scene, white, relief);
+    TracedScene lit(scene);
+    lit.set_indirect([](const auto&) { return pi_f; });
+    return double{lit.render(above(5, 16), {.pass = pass, .gather_rays = 256, .photons = 0})
+                      .radiance.col(0)
+                      .mean()};
+  };
+  for (const double slope : {-0.3, 0.3}) {
+    const double gathered = mean(lean(slope), Pass::gather) / mean({}, Pass::gather);
+    EXPECT_GT(std::abs(gathered - 1.0), 0.1);
+    for (const Pass pass : {Pass::direct, Pass::interpolate}) {
+      EXPECT_NEAR(mean(lean(slope), pass) / mean({}, pass), gathered, 0.02) << slope;
+    }
+  }
+}
+
 // Under an even sky every slope gets the same: the gain is a mean over the first rays of the dome,
 // at least 16, of the same variance as above; 4096 pixels with rays of their own.
 TEST(ReliefInPictures, AnEvenSkyShowsNoReliefInTheMean) {
