@@ -287,10 +287,11 @@ void read_sheet(const TomlTable& table, const TomlBands& bands, bool has_reflect
         material.is_translucent() ? Spectrum(others + material.transmittance) : others;
     constexpr float rounding = 1e-5f;
     if ((all > 1.0f + rounding).any()) {
-      value->fail(fmt::format(
-          "({}) and what the material reflects and passes besides add up to {}; more light would "
-          "leave than arrives, lower one so that they add up to at most 1",
-          share.maxCoeff(), all.maxCoeff()));
+      value->fail(
+          fmt::format("({:.4g}) and what the material reflects and passes besides add up to "
+                      "{:.4g}; more light would "
+                      "leave than arrives, lower one so that they add up to at most 1",
+                      share.maxCoeff(), all.maxCoeff()));
     }
   };
   read("translucent", material.transmittance);
