@@ -3,13 +3,16 @@
 #include <vector>
 
 #include "raytrace/pixel_gather.h"
+#include "scene/facet_relief.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
 
 BandArray indirect_slant(const Scene& scene, const ElementCaster& caster,
                          const DirectLight& direct_light, const RadiositySolution& solution,
-                         const FacetRelief& relief, int max_specular_depth) {
+                         int max_specular_depth) {
+  const FacetRelief relief(scene);
+  if (relief.is_empty()) return {};
   const PatchMesh& mesh = caster.mesh();
   std::vector<int> elements;
   for (int e = 0; e < mesh.element_count(); ++e) {

@@ -387,9 +387,9 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
                focus_distance, blades, shutter_open, shutter_close, motion, projection, view_width,
                near_distance, far_distance, shift, window, distortion, circle_degrees,
                eye_separation] = camera;
-  // Left out are `caustics`, which follows from `photons`; `layers`, whose names render() adds;
-  // `run` and `rows_done`, which change no bit.
-  const auto& [pass, max_depth, min_contribution, shadows, gather_rays, photons, caustics,
+  // Left out are `caustics` and `slant`, which follow from the rest; `layers`, whose names render()
+  // adds; `run` and `rows_done`, which change no bit.
+  const auto& [pass, max_depth, min_contribution, shadows, gather_rays, photons, caustics, slant,
                glossy_rays, sampling, max_subdivision, contrast, layers, run, rows_done] = options;
   const auto& [min_shadow_rays, max_shadow_rays, sky_rays] = shadows;
   const auto& [most_samples, least_samples, noise] = sampling;

@@ -54,6 +54,9 @@ struct RenderOptions {
   /// Result of trace_caustics() for the same number of photons and depth, shared by several
   /// pictures (see SceneRenderer). Null: traced for this picture.
   std::shared_ptr<const CausticMap> caustics{};
+  /// Result of indirect_slant() for the same depth, shared as `caustics` is. Null: found for this
+  /// picture.
+  std::shared_ptr<const BandArray> slant{};
   /// Rays from the first rough surface of a path, 1 to 256; one from each rough surface behind it.
   int glossy_rays = 8;
   SampleOptions sampling{};

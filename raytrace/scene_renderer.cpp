@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "raytrace/caustic_map.h"
+#include "raytrace/indirect_slant.h"
 
 namespace lightwell {
 
@@ -23,9 +24,21 @@ std::shared_ptr<const CausticMap> SceneRenderer::caustics(const RenderOptions& o
   return caustics_;
 }
 
+std::shared_ptr<const BandArray> SceneRenderer::slant(const RenderOptions& options) {
+  if (options.pass == Pass::gather) return nullptr;
+  const std::lock_guard lock(mutex_);
+  if (!slant_ || slant_depth_ != options.max_depth) {
+    slant_ = std::make_shared<const BandArray>(
+        indirect_slant(scene_, caster_, direct_light_, solution_, options.max_depth));
+    slant_depth_ = options.max_depth;
+  }
+  return slant_;
+}
+
 Image SceneRenderer::render(const Camera& camera, RenderOptions options, RenderReport* report) {
   validate(options);
   options.caustics = caustics(options);
+  options.slant = slant(options);
   return lightwell::render(scene_, caster_, direct_light_, solution_, camera, options, report);
 }
 

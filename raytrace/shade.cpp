@@ -93,7 +93,9 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
   }
   if (!relief_.is_empty() && options.pass != Pass::gather) {
-    slant_ = indirect_slant(scene, caster, direct_light, solution, relief_, options.max_depth);
+    slant_ = options.slant ? options.slant
+                           : std::make_shared<const BandArray>(indirect_slant(
+                                 scene, caster, direct_light, solution, options.max_depth));
   }
   if (options.pass == Pass::automatic) dome_ = dome_on_mesh(caster.mesh(), direct_light, solution);
   if (needs_caustic_photons(solution, options)) {
@@ -640,8 +642,8 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
 // Factor of the solution's indirect light on a slope of the relief.
 float RayTree::indirect_gain(const ElementHit& hit, const ShadingPoint& at,
                              const std::optional<ReliefSlope>& relief) const {
-  if (!relief || slant_.size() == 0) return 1.0f;
-  const Eigen::Vector3d slant = interpolate(caster_.mesh(), slant_, hit).matrix().cast<double>();
+  if (!relief || !slant_ || slant_->size() == 0) return 1.0f;
+  const Eigen::Vector3d slant = interpolate(caster_.mesh(), *slant_, hit).matrix().cast<double>();
   return static_cast<float>(std::clamp(1.0 - relief->rise.dot(at.turned(slant)), 0.0, 2.0));
 }
 

@@ -336,7 +336,7 @@ class RayTree {
   std::shared_ptr<const FacetTextures> textures_{};  ///< null: no textures
   FacetNormals normals_;
   FacetRelief relief_;
-  BandArray slant_{};  ///< see indirect_slant(); empty: none
+  std::shared_ptr<const BandArray> slant_{};  ///< see indirect_slant(); null or empty: none
   /// Least height of a shadow ray's origin over its facet, m, beyond rounding.
   double least_lift_ = 0.0;
   bool with_layers_ = false;
