@@ -43,8 +43,8 @@ std::optional<Spectrum> patch_irradiance(const PatchMesh& mesh, const BandArray&
     return (patch_radiosity.row(p) - mesh.emission.row(p)).transpose();
   };
   Eigen::ArrayXf reflected = scattered(patch);
-  if (!mesh.behind.empty() && mesh.behind[patch] >= 0) {
-    reflected = 0.5f * (reflected + scattered(mesh.behind[patch]));
+  if (const int behind = mesh.patch_behind(patch); behind >= 0) {
+    reflected = 0.5f * (reflected + scattered(behind));
   }
   const Spectrum E = (rho > 0.0f).select(reflected / rho.max(1e-30f), 0.0f);
   const auto mean = static_cast<float>(E.cast<double>().sum() / known);

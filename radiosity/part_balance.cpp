@@ -133,7 +133,7 @@ class ReflectedPower {
   }
 
   // Sheets scatter light of both sides, which points on one side do not tell.
-  bool is_translucent(int patch) const { return !mesh_.behind.empty() && mesh_.behind[patch] >= 0; }
+  bool is_translucent(int patch) const { return mesh_.patch_behind(patch) >= 0; }
 
   // Points on the surfaces of a part, half of them by area and half by the light that is reflected.
   std::vector<BalanceSample> draw(int part) const {

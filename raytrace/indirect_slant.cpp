@@ -19,6 +19,8 @@ BandArray indirect_slant(const Scene& scene, const ElementCaster& caster,
     if (relief.is_given(mesh.facet[e])) elements.push_back(e);
   }
   if (elements.empty()) return {};
+  // 20000 elements of 64 pairs are 2.5 million rays, some seconds on two cores. The slant of more
+  // elements, which are smaller in a picture, may have twice the noise.
   constexpr int many_elements = 20000, pairs = 64, fewer_pairs = 16;
   const auto count = static_cast<int>(elements.size());
   const PixelGather gather(scene, caster, direct_light, solution,

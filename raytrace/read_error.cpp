@@ -86,7 +86,7 @@ class ReadErrors {
   double reflected(int element) const {
     const double sum = reflectance(element) * double{error_[element]};
     const int patch = mesh_.patch[element];
-    if (mesh_.behind.empty() || mesh_.behind[patch] < 0) return sum;
+    if (mesh_.patch_behind(patch) < 0) return sum;
     return sum +
            double{mesh_.transmittance.row(patch).mean()} * double{error_[mesh_.twin[element]]};
   }

@@ -9,8 +9,6 @@
 namespace lightwell {
 namespace {
 
-constexpr double most_rise = 4.0;
-
 // Returns the gradient of the height for slopes of 1 to the right and downwards of the picture.
 // Zero where the coordinates do not span the facet.
 //
@@ -100,7 +98,7 @@ Eigen::Vector3d FacetRelief::rise(int facet, const Eigen::Vector3d& point,
   }
   const Eigen::Vector3d rise = entry.of_slopes * slope;
   const double length = rise.norm();
-  return length > most_rise ? Eigen::Vector3d(rise * (most_rise / length)) : rise;
+  return length > steepest_relief ? Eigen::Vector3d(rise * (steepest_relief / length)) : rise;
 }
 
 }  // namespace lightwell

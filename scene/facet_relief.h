@@ -20,8 +20,8 @@ class FacetRelief {
     return !entry_of_.empty() && entry_of_[static_cast<std::size_t>(facet)] >= 0;
   }
   /// Gradient, in the facet's plane, of the height over the facet's front about `point` (metres),
-  /// the mean over the parallelogram with sides `footprint` (columns, metres). At most 4 long. The
-  /// facet has relief.
+  /// the mean over the parallelogram with sides `footprint` (columns, metres). At most
+  /// steepest_relief long. The facet has relief.
   Eigen::Vector3d rise(int facet, const Eigen::Vector3d& point,
                        const Eigen::Matrix<double, 3, 2>& footprint) const;
   /// Hash of all that decides the relief; 0 if is_empty().

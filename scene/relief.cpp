@@ -13,7 +13,7 @@ namespace lightwell {
 namespace {
 
 // Slopes of a picture are limited to 76 degrees: normals at the horizon have no finite slope.
-constexpr float most_slope = 4.0f;
+constexpr auto most_slope = static_cast<float>(steepest_relief);
 
 // Returns the component of a normal for a share in [0,1]. Files of eight bits have no middle, and
 // programs write 127 or 128 for 0.

@@ -226,9 +226,32 @@ ScatteringSample sample_smooth(const SurfaceInteraction& interaction, double whi
 
 }  // namespace
 
+Spectrum mean_sent_on(const Material& material) {
+  Spectrum share = material.reflectance + mean_specular(material);
+  if (material.is_translucent()) share += material.transmittance;
+  return share;
+}
+
+namespace {
+
+// Share of light, per band, that passes a sheet straight on. Light under a coat passes by the
+// factor of the coated base, so that coat, base and passing light together never exceed the light
+// that arrives; holes, which are what the coat does not cover, pass all light.
+Spectrum straight_share(const SurfaceInteraction& interaction) {
+  const Material& material = interaction.material;
+  const Spectrum& all = material.regular_transmittance;
+  if (!material.coat) return all;
+  const Spectrum holes = all.min(1.0f - material.specular);
+  if (!(all > holes).any()) return all;
+  const double cosine = -interaction.direction.dot(interaction.normal);
+  return holes + static_cast<float>(CoatedBase(material).factor(cosine)) * (all - holes);
+}
+
+}  // namespace
+
 Spectrum scattering_weight(const SurfaceInteraction& interaction, const ScatteringSample& sample) {
   const auto& glass = interaction.material.dielectric;
-  if (!glass && sample.crosses) return interaction.material.regular_transmittance;
+  if (!glass && sample.crosses) return straight_share(interaction);
   if (const auto& coat = interaction.material.coat) {
     const double cosine = std::min(1.0, cosine_at_facet(interaction, sample));
     const double F = fresnel_reflectance(cosine, double{coat->index_of_refraction});
@@ -265,7 +288,7 @@ Spectrum mean_specular(const Material& material) {
 
 ScatteringSample straight_sample(const SurfaceInteraction& interaction) {
   return {.direction = interaction.direction,
-          .weight = interaction.material.regular_transmittance,
+          .weight = straight_share(interaction),
           .crosses = true,
           .polarisation = interaction.polarisation};
 }
@@ -286,8 +309,8 @@ ScatteringSample sample_scattering(const SurfaceInteraction& interaction,
                                    const ScatteringRandom& first) {
   const Material& material = interaction.material;
   if (!material.passes_straight()) return sample_lobe(interaction, first);
-  // A coat's mean is no more than its greatest reflectance, so that neither weight exceeds 1 by
-  // far.
+  // Chances in proportion to the greatest share of either kind: no weight exceeds their sum, at
+  // most 2.
   const double straight = static_cast<double>(material.regular_transmittance.maxCoeff());
   const double mirrored = static_cast<double>(material.specular.maxCoeff());
   const double chance = straight / (straight + mirrored);

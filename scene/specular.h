@@ -58,6 +58,10 @@ bool is_clear_pane(const Material& material);
 /// is that of the rest of the material.
 Spectrum mean_specular(const Material& material);
 
+/// Share of even light, per band, that a material sends on in all: reflectance, transmittance and
+/// mean_specular(). At most 1; the rest is absorbed. A picture of reflectance counts by its mean.
+Spectrum mean_sent_on(const Material& material);
+
 /// Random numbers in [0,1) that choose a sample. `key` gives further numbers where the first ones
 /// are rejected.
 struct ScatteringRandom {
@@ -80,7 +84,8 @@ ScatteringSample sample_scattering(const SurfaceInteraction& interaction,
 /// sample_scattering() without the light that passes a sheet straight on: the lobe of its mirror.
 ScatteringSample sample_lobe(const SurfaceInteraction& interaction, const ScatteringRandom& random);
 
-/// Light that passes a sheet of regular transmittance straight on.
+/// Light that passes a sheet of regular transmittance straight on. Under a coat less of grazing
+/// light passes, by CoatedBase::factor(); holes (1 - specular) pass light of all angles.
 ScatteringSample straight_sample(const SurfaceInteraction& interaction);
 
 /// Most mirrors and clear surfaces along a path: `most`, or once the path has met glass or a rough

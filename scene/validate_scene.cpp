@@ -100,12 +100,7 @@ bool is_sheet(const Material& m) {
   return m.is_translucent() || m.passes_straight();
 }
 
-// Share of light, per band, that is mirrored or passes.
-Spectrum passed_on(const Material& m) {
-  return m.is_translucent() ? Spectrum(mean_specular(m) + m.transmittance) : mean_specular(m);
-}
-
-// Checks what passes a thin sheet.
+// Checks the light that passes a thin sheet.
 void check_sheet(const Scene& scene, const Material& m) {
   for (const Spectrum* share : {&m.transmittance, &m.regular_transmittance}) {
     if (share->size() > 0) check_share(scene, m, "transmittance", *share);
@@ -136,7 +131,7 @@ void check_pictures(const Scene& scene, const Material& m) {
     check_share(scene, m, "texture factor", m.texture->factor);
     constexpr float rounding = 1e-5f;
     const Spectrum brightest = m.texture->factor * m.texture->image.picture->largest();
-    const Spectrum others = passed_on(m);
+    const Spectrum others = mean_sent_on(m) - m.reflectance;
     if (!((brightest + others) <= 1.0f + rounding).all()) {
       fail(scene, fmt::format("material '{}': where its texture is brightest, reflectance {} + "
                               "specular and transmitted {} exceed 1; lower one",
@@ -199,6 +194,14 @@ void check_metal(const Scene& scene, const Material& m) {
                        m.name, highest_metal_index));
     }
   }
+  // Metals mirror nearly all of grazing light.
+  constexpr float rounding = 1e-5f;
+  const Spectrum others = mean_sent_on(m) - mean_mirrored(m);
+  if (!((others + m.specular) <= 1.0f + rounding).all()) {
+    fail(scene, fmt::format("material '{}' is a metal; its specular factor {:.4g} and what it "
+                            "scatters and passes besides, {:.4g}, must add up to at most 1",
+                            m.name, m.specular.maxCoeff(), others.maxCoeff()));
+  }
   if (m.dielectric || m.coat) {
     fail(scene, fmt::format("material '{}' is a metal and has {}; remove one", m.name,
                             m.coat ? "a coat" : "a dielectric"));
@@ -213,7 +216,7 @@ void check_material(const Scene& scene, const Material& m) {
   check_metal(scene, m);
   constexpr float rounding = 1e-5f;  // decimals of a file that should add up to 1
   check_sheet(scene, m);
-  const Spectrum mirrored = mean_mirrored(m), sum = m.reflectance + passed_on(m);
+  const Spectrum mirrored = mean_mirrored(m), sum = mean_sent_on(m);
   for (int k = 0; k < scene.bands.count(); ++k) {
     if (!(sum[k] <= 1.0f + rounding)) {
       fail(scene,
@@ -221,7 +224,9 @@ void check_material(const Scene& scene, const Material& m) {
                "material '{}': reflectance {} + specular {}{} = {} in band {}; more light would "
                "leave than arrives, lower one so that they add up to at most 1",
                m.name, m.reflectance[k], mirrored[k],
-               is_sheet(m) ? fmt::format(" + transmittance {}", passed_on(m)[k] - mirrored[k]) : "",
+               is_sheet(m)
+                   ? fmt::format(" + transmittance {:.4g}", sum[k] - m.reflectance[k] - mirrored[k])
+                   : "",
                sum[k], scene.bands.names[k]));
     }
   }

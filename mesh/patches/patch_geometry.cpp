@@ -156,4 +156,12 @@ void build_parted_topology(PatchMesh& mesh, const std::vector<Vector3d>& positio
   set_vertex_normals(mesh, vertex_count);
 }
 
+std::vector<int> vertex_patches(const PatchMesh& mesh) {
+  std::vector<int> patch(mesh.vertex_count(), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
+  }
+  return patch;
+}
+
 }  // namespace lightwell

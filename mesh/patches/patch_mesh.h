@@ -122,6 +122,10 @@ struct PatchMesh {
     }
     return first;
   }
+  /// The patch whose irradiance passes through a sheet to patch p; -1: none.
+  int patch_behind(int p) const {
+    return behind.empty() ? -1 : behind[static_cast<std::size_t>(p)];
+  }
   int corner_count(int element) const { return corners[element][3] < 0 ? 3 : 4; }
   Eigen::Vector3d position(int vertex) const {
     const auto& p = elements->point(HalfedgeMesh::VertexHandle(vertex));
@@ -139,6 +143,10 @@ struct PatchPoint {
 /// The mean of the element's corners (on spheres moved out to the exact sphere), with the unit
 /// normal there.
 PatchPoint element_center(const PatchMesh& mesh, int element);
+
+/// A patch that each vertex belongs to. A vertex belongs to several patches only where patches meet
+/// smoothly.
+std::vector<int> vertex_patches(const PatchMesh& mesh);
 
 /// Rebuilds `elements` from `positions` (metres) and `corners`, and vertex normals from faces
 /// (weighted by area; exact on spheres): completes a PatchMesh read from a file. Throws

@@ -42,7 +42,7 @@ std::vector<int> vertices_behind(const PatchMesh& mesh) {
   std::vector<int> behind(static_cast<std::size_t>(mesh.vertex_count()), -1);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int twin = mesh.twin[e];
-    if (twin < 0 || mesh.behind[mesh.patch[e]] < 0) continue;
+    if (twin < 0 || mesh.patch_behind(mesh.patch[e]) < 0) continue;
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       // The corners of the other side run the other way around.
       const int count = mesh.corner_count(e), turned = (count - c) % count;
@@ -68,8 +68,8 @@ BandArray scattered_by_patches(const PatchMesh& mesh, const BandArray& irradianc
   BandArray radiosity(irradiance.rows(), irradiance.cols());
   for (int p = 0; p < mesh.patch_count(); ++p) {
     radiosity.row(p) = times(irradiance, p, mesh.reflectance.row(p));
-    if (mesh.behind.empty() || mesh.behind[p] < 0) continue;
-    radiosity.row(p) += times(irradiance, mesh.behind[p], mesh.transmittance.row(p));
+    const int behind = mesh.patch_behind(p);
+    if (behind >= 0) radiosity.row(p) += times(irradiance, behind, mesh.transmittance.row(p));
   }
   return radiosity;
 }
@@ -85,10 +85,7 @@ BandArray scattered_at_vertices(const PatchMesh& mesh, const BandArray& irradian
 void add_transmitted(const PatchMesh& mesh, const BandArray& irradiance, BandArray& radiosity) {
   const std::vector<int> behind = vertices_behind(mesh);
   if (behind.empty()) return;
-  std::vector<int> patch(behind.size(), -1);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
-  }
+  const std::vector<int> patch = vertex_patches(mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     if (behind[v] < 0) continue;
     radiosity.row(v) += times(irradiance, behind[v], mesh.transmittance.row(patch[v]));

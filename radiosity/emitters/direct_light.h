@@ -175,7 +175,7 @@ class DirectLight {
 
  private:
   int first_light(Lights lights) const;
-  /// What light of a direction counts times.
+  /// Factor of the light that arrives from a direction: that of a coated base, of relief, or both.
   struct Receiver {
     const CoatedBase* base = nullptr;
     const ReliefSlope* relief = nullptr;

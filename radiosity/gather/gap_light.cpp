@@ -84,8 +84,7 @@ bool GapLight::may_be_followed(const ElementHit& hit) const {
   const PatchMesh& mesh = lit_.mesh();
   const int patch = mesh.patch[hit.element];
   return paths_.is_mostly_diffuse(hit.facet) && !(mesh.emission.row(patch) > 0.0f).any() &&
-         (mesh.reflectance.row(patch) > 0.0f).any() &&
-         (mesh.behind.empty() || mesh.behind[patch] < 0);
+         (mesh.reflectance.row(patch) > 0.0f).any() && mesh.patch_behind(patch) < 0;
 }
 
 bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const {

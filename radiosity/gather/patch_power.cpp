@@ -5,14 +5,6 @@
 
 namespace lightwell {
 
-std::vector<int> vertex_patches(const PatchMesh& mesh) {
-  std::vector<int> patch(mesh.vertex_count(), 0);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
-  }
-  return patch;
-}
-
 Eigen::ArrayXXd patch_integral(const PatchMesh& mesh, const BandArray& vertex_values) {
   Eigen::ArrayXXd integral = Eigen::ArrayXXd::Zero(mesh.patch_count(), vertex_values.cols());
   for (int e = 0; e < mesh.element_count(); ++e) {

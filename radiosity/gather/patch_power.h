@@ -1,14 +1,8 @@
 #pragma once
 
-#include <vector>
-
 #include "mesh/patches/patch_mesh.h"
 
 namespace lightwell {
-
-/// A patch that each vertex belongs to. A vertex belongs to several patches only where patches meet
-/// smoothly.
-std::vector<int> vertex_patches(const PatchMesh& mesh);
 
 /// Integral over each patch of values interpolated between vertices (vertices x columns): patches x
 /// columns, in m^2 times the unit of the values. The integral of radiosity is power, W.

@@ -21,10 +21,7 @@ Eigen::ArrayXf error_bound(const RadiositySolution& solution) {
 
 BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution) {
   BandArray B = scattered_at_vertices(mesh, solution.irradiance());
-  std::vector<int> patch(mesh.vertex_count(), 0);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    for (int c = 0; c < mesh.corner_count(e); ++c) patch[mesh.corners[e][c]] = mesh.patch[e];
-  }
+  const std::vector<int> patch = vertex_patches(mesh);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     B.row(v) += mesh.emission.row(patch[v]);
   }

@@ -260,8 +260,8 @@ float ProgressiveRadiosity::scatter(int j, Eigen::Index column, Eigen::Index ban
     return share;
   };
   const float reflected = add(j, mesh_.reflectance(j, band));
-  if (mesh_.behind.empty() || mesh_.behind[j] < 0) return reflected;
-  return reflected + add(mesh_.behind[j], mesh_.transmittance(mesh_.behind[j], band));
+  const int behind = mesh_.patch_behind(j);
+  return behind < 0 ? reflected : reflected + add(behind, mesh_.transmittance(behind, band));
 }
 
 void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {

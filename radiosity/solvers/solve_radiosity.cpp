@@ -30,7 +30,7 @@ SolverMethod chosen(const SolverRun& run, SolverMethod asked) {
   if (!needs_reciprocity) return asked;
   const double found = asymmetry(run.system);
   const bool is_reciprocal = found < most_asymmetry;
-  // Where a sheet passes more light than it reflects, the matrix is not positive definite.
+  // The matrix is not positive definite where a sheet passes more light than it reflects.
   const bool is_definite = !run.system.is_translucent();
   if (asked == SolverMethod::automatic) {
     return is_reciprocal && is_definite ? SolverMethod::conjugate_gradients

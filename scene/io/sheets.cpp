@@ -49,9 +49,7 @@ void scale_shares(const Spectrum& factor, Material& material) {
 }
 
 void limit_shares(Material& material) {
-  Spectrum all = material.reflectance + mean_specular(material);
-  if (material.is_translucent()) all += material.transmittance;
-  scale_shares(all.max(1.0f).inverse(), material);
+  scale_shares(mean_sent_on(material).max(1.0f).inverse(), material);
 }
 
 void let_through(Material& material, const Spectrum& opacity) {

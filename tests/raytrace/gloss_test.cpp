@@ -317,7 +317,8 @@ TEST(Gloss, ShowsAWindowWithoutBiasAndWithLittleNoise) {
     std::printf("window in rough metal%s: %.4f, exact %.4f, spread %.1f %%\n",
                 has_pane ? ", with a pane" : "", mean, exact, 100.0 * spread / mean);
     EXPECT_NEAR(mean, exact, 4.0 * spread / std::sqrt(keys) + 0.005 * exact);
-    // As many independent directions of the lobe alone, of which the share meets the window.
+    // Spread of as many independent directions of the lobe alone, a share of which meets the
+    // window. Half of that spread is a quarter of the rays for the same noise.
     const double of_lobe = std::sqrt((1.0 - share) / (share * RenderOptions{}.glossy_rays));
     EXPECT_LT(spread / mean, 0.5 * of_lobe);
   }

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "raytrace/shade.h"
+#include "scene/optics.h"
 #include "tests/raytrace/lit_scene.h"
 
 namespace lightwell::translucency_picture_test {
@@ -42,6 +43,32 @@ TEST(SheetInAFurnace, IsInvisible) {
             1e-5)
             << degrees << " degrees, pass " << static_cast<int>(pass);
       }
+    }
+  }
+}
+
+// The same for sheets under a coat, whose mirrored share goes from 4 % to nearly all with the
+// angle: light that passes straight on makes way for it. The half of a perforated sheet that is not
+// there passes all light. A smooth coat takes exact shares, so floats alone round.
+TEST(SheetInAFurnace, IsInvisibleUnderACoatAtAnyAngle) {
+  const auto mean = static_cast<float>(diffuse_fresnel(1.5));
+  for (const bool has_holes : {false, true}) {
+    const float covered = has_holes ? 0.5f : 1.0f;
+    Scene scene = SceneBuilder()
+                      .box({.exitance = static_cast<float>(pi)}, {-3, -3, -3}, {3, 3, 3}, true)
+                      .square({.coat = 1.5f}, {0, 0, 0}, up, 1.0)
+                      .build();
+    Material& sheet = scene.materials.back();
+    sheet.specular.setConstant(covered);
+    sheet.transmittance = Spectrum::Constant(3, 0.3f * covered);
+    sheet.regular_transmittance = Spectrum::Constant(3, 1.0f - covered + covered * (0.7f - mean));
+    TracedScene lit(scene);
+    lit.set_indirect([](const Eigen::Vector3d&) { return static_cast<float>(pi); });
+    for (const double degrees : {0.0, 60.0, 80.0, 88.0}) {
+      const double angle = degrees * pi / 180.0;
+      const Eigen::Vector3d from(2.0 * std::sin(angle), 0.1, 2.0 * std::cos(angle));
+      EXPECT_NEAR(radiance(lit, {.origin = from, .direction = -from.normalized()}), 1.0, 1e-5)
+          << degrees << (has_holes ? " with holes" : "");
     }
   }
 }

@@ -60,7 +60,7 @@ PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArr
   reading.lux = luminous(bands, reading.irradiance);
   const Spectrum emission = mesh.emission.row(reading.patch).transpose();
   Spectrum B = emission + reading.reflectance * reading.irradiance;
-  if (!mesh.behind.empty() && mesh.behind[reading.patch] >= 0) {
+  if (mesh.patch_behind(reading.patch) >= 0) {
     const Spectrum behind = interpolate(mesh, irradiance, hit_behind(mesh, seen.hit));
     B += mesh.transmittance.row(reading.patch).transpose() * behind;
   }

@@ -270,7 +270,7 @@ void make_room(const Spectrum& share, Material& material) {
   factor = left;
 }
 
-// What passes a thin sheet, diffusely or straight on.
+// Reads the light that passes a thin sheet, diffusely or straight on.
 void read_sheet(const TomlTable& table, const TomlBands& bands, bool has_reflectance,
                 Material& material) {
   const auto read = [&](const char* key, Spectrum& share) {
@@ -282,9 +282,7 @@ void read_sheet(const TomlTable& table, const TomlBands& bands, bool has_reflect
     }
     share = spectral(*value, bands, Quantity::share);
     if (!has_reflectance) make_room(share, material);
-    const Spectrum others = material.reflectance + mean_specular(material);
-    const Spectrum all =
-        material.is_translucent() ? Spectrum(others + material.transmittance) : others;
+    const Spectrum all = mean_sent_on(material);
     constexpr float rounding = 1e-5f;
     if ((all > 1.0f + rounding).any()) {
       value->fail(

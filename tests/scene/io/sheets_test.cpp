@@ -83,8 +83,9 @@ TEST(Sheets, LampsAreClosed) {
   EXPECT_FALSE(lamp.passes_straight() || close_lamp(lamp));
 }
 
-// Of even light on both sides, a coated sheet sends on what a coated base of the reflectance rho +
-// tau does. A sheet of rho = tau lets no opposite light through: rho and tau stay alike.
+// A coated sheet under even light on both sides sends on the share of a coated base of the
+// reflectance rho + tau. Light that is opposite on both sides leaves a sheet of rho = tau as
+// nothing, so rho and tau stay alike.
 TEST(Sheets, CoatsCoverBothSidesOfATranslucentBase) {
   Material opal = opaque(0.5f), white = opaque(0.8f), even = opaque(0.3f);
   opal.transmittance = grey(0.3f);

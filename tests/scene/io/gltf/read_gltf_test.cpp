@@ -224,14 +224,18 @@ TEST_F(Gltf, BlendedAlphaLetsTheRestThrough) {
   EXPECT_FALSE(lamp.passes_straight());
 }
 
-TEST_F(Gltf, PicturesOfBlendedAlphaCutHoles) {
-  const std::string png = content_of(LIGHTWELL_TEST_DATA "/scene/two-pixels.png");
-  const Scene scene =
-      read(square_gltf(one_node + R"(,"images":[{"uri":"data:image/png;base64,)" + base64(png) +
-                           R"("}],"textures":[{"source":0}],"materials":[{"alphaMode":"BLEND",
+// A square of blended alpha 0.5 times that of a picture of the tests' data.
+std::string blended_gltf(const char* picture) {
+  const std::string png = content_of(std::string(LIGHTWELL_TEST_DATA "/scene/") + picture);
+  return square_gltf(one_node + R"(,"images":[{"uri":"data:image/png;base64,)" + base64(png) +
+                         R"("}],"textures":[{"source":0}],"materials":[{"alphaMode":"BLEND",
           "pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0},
           "baseColorFactor":[0.8,0.8,0.8,0.5]}}])",
-                       R"(,"material":0)"));
+                     R"(,"material":0)");
+}
+
+TEST_F(Gltf, PicturesOfBlendedAlphaCutHoles) {
+  const Scene scene = read(blended_gltf("two-pixels.png"));
   const Material& leaf = scene.materials.at(0);
   ASSERT_TRUE(leaf.mask);
   EXPECT_FLOAT_EQ(leaf.mask->cutoff, 0.5f);
@@ -261,13 +265,7 @@ TEST_F(Gltf, NormalMapsAreRelief) {
 
 // Two texels of alpha 0.2 and 0.6: neither clear nor opaque.
 TEST_F(Gltf, PicturesOfGauzeCountByTheirMeanAlpha) {
-  const std::string png = content_of(LIGHTWELL_TEST_DATA "/scene/gauze.png");
-  const Scene scene =
-      read(square_gltf(one_node + R"(,"images":[{"uri":"data:image/png;base64,)" + base64(png) +
-                           R"("}],"textures":[{"source":0}],"materials":[{"alphaMode":"BLEND",
-          "pbrMetallicRoughness":{"metallicFactor":0,"baseColorTexture":{"index":0},
-          "baseColorFactor":[0.8,0.8,0.8,0.5]}}])",
-                       R"(,"material":0)"));
+  const Scene scene = read(blended_gltf("gauze.png"));
   const Material& gauze = scene.materials.at(0);
   EXPECT_FALSE(gauze.mask);
   // Texels have 16 bits, of the square root: steps of 2e-5 here.
