@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "raytrace/shade.h"
+#include "scene/optics.h"
 #include "scene/random_purpose.h"
 
 namespace lightwell {
