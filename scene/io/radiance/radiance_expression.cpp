@@ -15,6 +15,12 @@ double chosen(double condition, double yes, double no) {
   return condition > 0.0 ? yes : no;
 }
 
+// select(n, x1, x2, ...) is the n-th of the x.
+double selected(const double* x, int count) {
+  const double n = std::round(x[0]);
+  return n >= 1.0 && n < count ? x[static_cast<int>(n)] : std::nan("");
+}
+
 // Cubic curves over t in [0,1] by their control values; Foley et al. 1990, section 11.2.
 double hermite(double p0, double p1, double r0, double r1, double t) {
   return p0 * ((2 * t - 3) * t * t + 1) + p1 * (3 - 2 * t) * t * t + r0 * ((t - 2) * t + 1) * t +
@@ -65,8 +71,9 @@ void define_functions(mu::Parser& parser) {
       {"abs", std::abs}};
   for (const auto& [name, function] : functions) parser.DefineFun(name, function);
   parser.DefineFun("atan2", [](double y, double x) { return std::atan2(y, x); });
-  parser.DefineFun("min", [](double a, double b) { return std::min(a, b); });
-  parser.DefineFun("max", [](double a, double b) { return std::max(a, b); });
+  parser.DefineFun("min", [](const double* x, int n) { return *std::min_element(x, x + n); });
+  parser.DefineFun("max", [](const double* x, int n) { return *std::max_element(x, x + n); });
+  parser.DefineFun("select", selected);
   parser.DefineFun("sq", [](double x) { return x * x; });
   parser.DefineFun("if", chosen);
   parser.DefineFun("hermite", hermite);

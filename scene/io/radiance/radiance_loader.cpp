@@ -9,6 +9,7 @@
 #include "scene/io/nearest_name.h"
 #include "scene/io/radiance/radiance_command.h"
 #include "scene/io/radiance/radiance_compiled.h"
+#include "scene/io/radiance/radiance_daylight.h"
 #include "scene/io/radiance/radiance_generators.h"
 #include "scene/io/radiance/radiance_text.h"
 #include "scene/io/radiance/radiance_xform.h"
@@ -27,7 +28,7 @@ const std::vector<std::string> known_programs = {"xform",     "cat",      "genbo
                                                  "gensky",    "gendaylit"};
 
 bool makes_a_sky(std::string_view program) {
-  constexpr std::array<std::string_view, 4> programs = {"gensky", "gendaylit", "genssky",
+  constexpr std::array<std::string_view, 3> programs = {"genssky", "gensdaymtx",
                                                         "gencumulativesky"};
   return std::ranges::find(programs, program) != programs.end();
 }
@@ -192,6 +193,8 @@ void RadianceLoader::run_last(std::span<const Program> pipe, const RadianceLocat
     };
     const auto account = [&](std::int64_t facets) { account_facets(facets, location); };
     run_radiance_generator({program, location, remarks_, open, account}, sink);
+  } else if (is_radiance_sky(name)) {
+    pass_radiance_sky(program, location, remarks_, sink);
   } else if (makes_a_sky(name)) {
     skip_sky(program, location, sink);
   } else {
@@ -204,8 +207,18 @@ void RadianceLoader::run_last(std::span<const Program> pipe, const RadianceLocat
 
 void RadianceLoader::run_xform(std::span<const Program> pipe, const RadianceLocation& location,
                                const RadianceSink& sink) {
-  const Program& program = pipe.back();
-  const RadianceXform xform = parse_radiance_xform(std::span(program).subspan(1), location);
+  const RadianceXform xform = parse_radiance_xform(std::span(pipe.back()).subspan(1), location);
+  if (!copies_turn(xform)) return place(xform, pipe, location, sink);
+  // Patterns of an array that look up directions are other ones in each copy.
+  for (const RadianceXform::Copy& copy : xform.copies) {
+    RadianceXform one = xform;
+    one.copies = {copy};
+    place(one, pipe, location, sink);
+  }
+}
+
+void RadianceLoader::place(const RadianceXform& xform, std::span<const Program> pipe,
+                           const RadianceLocation& location, const RadianceSink& sink) {
   const RadianceSink placing = [&](const RadiancePrimitive& primitive) {
     apply_xform(xform, primitive, sink);
   };
@@ -225,7 +238,7 @@ void RadianceLoader::run_xform(std::span<const Program> pipe, const RadianceLoca
 // read.
 void RadianceLoader::skip_sky(const Program& program, const RadianceLocation& location,
                               const RadianceSink& sink) {
-  remarks_.add("Skies give no light here; they were left out", program.front());
+  remarks_.add("Skies of other programs than gensky and gendaylit were left out", program.front());
   sink({.modifier = std::string(radiance_void),
         .type = "brightfunc",
         .name = "skyfunc",

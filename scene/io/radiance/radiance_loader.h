@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "scene/io/radiance/radiance_primitive.h"
+#include "scene/io/radiance/radiance_xform.h"
 #include "scene/io/remarks.h"
 
 namespace lightwell {
@@ -52,6 +53,8 @@ class RadianceLoader {
                 const RadianceSink& sink);
   void run_xform(std::span<const Program> pipe, const RadianceLocation& location,
                  const RadianceSink& sink);
+  void place(const RadianceXform& xform, std::span<const Program> pipe,
+             const RadianceLocation& location, const RadianceSink& sink);
   void skip_sky(const Program& program, const RadianceLocation& location, const RadianceSink& sink);
   void account(std::uintmax_t bytes, const RadianceLocation& location);
   void account_facets(std::int64_t facets, const RadianceLocation& location);

@@ -197,6 +197,10 @@ Maybe mirror(const Given& given) {
   return material;
 }
 
+void require_light(const RadiancePrimitive& p) {
+  p.require_reals(p.type == "spotlight" ? 7 : p.type == "glow" ? 4 : 3);
+}
+
 Material shining(const Given& given, float scale) {
   Material material = opaque(zero());
   material.emission =
@@ -210,7 +214,7 @@ Material shining(const Given& given, float scale) {
 }
 
 Maybe light(const Given& given) {
-  given.p.require_reals(given.p.type == "glow" ? 4 : 3);
+  require_light(given.p);
   if (given.p.type == "illum") {
     given.remark("Illums were read as opaque lights, so what lies behind them is not seen");
   }
@@ -219,7 +223,7 @@ Maybe light(const Given& given) {
 
 // A Lambertian emitter sends the share sin^2(a) of its power into the cone of half angle a.
 Maybe spotlight(const Given& given) {
-  given.p.require_reals(7);
+  require_light(given.p);
   const double angle = given.p.reals[3];
   if (!(angle > 0.0)) given.p.fail(fmt::format("has a beam of {} degrees", angle));
   given.remark("Spotlights shine to all sides, with the power of their beam");
@@ -305,6 +309,12 @@ const std::map<std::string, Reader>& readers() {
 }
 
 }  // namespace
+
+Spectrum radiance_color(const RadiancePrimitive& light) {
+  require_light(light);
+  Remarks unused;
+  return Given{light, {}, unused}.rgb(0);
+}
 
 std::optional<Material> read_radiance_material(const RadiancePrimitive& material,
                                                const RadiancePattern& pattern, Remarks& remarks) {

@@ -31,6 +31,20 @@ double constant_value(const std::string& formula, const RadiancePrimitive& of) {
   }
 }
 
+// Multiplies `result` by a brightfunc or colorfunc without variables; false for other patterns.
+bool is_constant(const RadiancePrimitive& p, RadiancePattern& result) {
+  const std::size_t functions = p.type == "brightfunc" ? 1 : p.type == "colorfunc" ? 3 : 0;
+  if (functions == 0 || p.strings.size() < functions) return false;
+  Spectrum factor(3);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const std::size_t of = std::min(static_cast<std::size_t>(i), functions - 1);
+    factor[i] = static_cast<float>(constant_value(p.strings[of], p));
+  }
+  if (!(factor >= 0.0f).all() || !factor.isFinite().all()) return false;
+  result.factor *= factor;
+  return true;
+}
+
 // Functions of rayinit.cal that a colorpict applies to r, g and b.
 constexpr std::array<std::string_view, 8> picture_functions = {
     "red", "green", "blue", "clip_r", "clip_g", "clip_b", "grey", "clipgrey"};
@@ -48,7 +62,8 @@ Spectrum means_of(const BandArray& pixels) {
 }
 
 bool is_same(const RadiancePrimitive& a, const RadiancePrimitive& b) {
-  return a.type == b.type && a.name == b.name && a.strings == b.strings && a.reals == b.reals;
+  return a.type == b.type && a.name == b.name && a.strings == b.strings && a.reals == b.reals &&
+         a.turn == b.turn;
 }
 
 }  // namespace
@@ -114,6 +129,15 @@ std::optional<int> RadianceMaterials::of_surface(const RadiancePrimitive& surfac
     remarks_.add("Surfaces of no material (void) cannot be seen and were left out", surface.name);
     return std::nullopt;
   }
+  const auto material = scene_material(modifier);
+  if (!material) {
+    remarks_.add("Surfaces of a material that cannot be seen were left out", surface.name);
+  }
+  return material;
+}
+
+// Index into the scene's materials, added if new; empty for invisible ones.
+std::optional<int> RadianceMaterials::scene_material(int modifier) {
   Definition& definition = definitions_[static_cast<std::size_t>(modifier)];
   if (!definition.index) {
     std::optional<Material> material = default_material(scene_.bands);
@@ -127,8 +151,79 @@ std::optional<int> RadianceMaterials::of_surface(const RadiancePrimitive& surfac
     }
   }
   if (*definition.index != none) return definition.index;
-  remarks_.add("Surfaces of a material that cannot be seen were left out", surface.name);
   return std::nullopt;
+}
+
+Spectrum RadianceLight::radiance(const Eigen::Vector3d& ray, double cosine) const {
+  Spectrum result = color;
+  for (const DirectionPattern* pattern : patterns) result *= pattern->factor(ray, cosine);
+  return result;
+}
+
+const DirectionPattern* RadianceMaterials::direction_pattern(int index) {
+  const auto known = by_direction_.find(index);
+  if (known != by_direction_.end()) return known->second.get();
+  std::unique_ptr<const DirectionPattern> pattern;
+  try {
+    pattern = std::make_unique<const DirectionPattern>(
+        definitions_[static_cast<std::size_t>(index)].primitive, scene_.file.parent_path());
+  } catch (const LimitError&) {
+    throw;
+  } catch (const InputError&) {
+    // The pattern counts as unknown, which a remark says where the material is used.
+  }
+  return by_direction_.emplace(index, std::move(pattern)).first->second.get();
+}
+
+std::optional<RadianceLight> RadianceMaterials::light_of(const RadiancePrimitive& surface) {
+  int index = index_of(surface.modifier, surface);
+  std::optional<RadianceLight> light;
+  for (int depth = 0; index != none; ++depth) {
+    const Definition& definition = definitions_[static_cast<std::size_t>(index)];
+    const RadiancePrimitive& p = definition.primitive;
+    if (depth > deepest_modifier) p.fail("is reached by too many modifiers");
+    if (p.kind() == RadianceKind::mixture) return std::nullopt;
+    if (p.kind() == RadianceKind::material) {
+      const bool shines =
+          p.type == "light" || p.type == "glow" || p.type == "illum" || p.type == "spotlight";
+      if (!shines) return std::nullopt;
+      light = RadianceLight{.material = p, .color = radiance_color(p)};
+    } else if (light && p.kind() == RadianceKind::pattern) {
+      RadiancePattern constant;
+      if (is_constant(p, constant)) {
+        light->color *= constant.factor;
+      } else if (const DirectionPattern* pattern = direction_pattern(index)) {
+        light->patterns.push_back(pattern);
+      } else {
+        return std::nullopt;
+      }
+    }
+    index = definition.parent;
+  }
+  return light;
+}
+
+std::optional<int> RadianceMaterials::behind_illum(const RadiancePrimitive& surface) {
+  const int index = index_of(surface.modifier, surface);
+  if (index == none) return std::nullopt;
+  const std::vector<int>& parts = definitions_[static_cast<std::size_t>(index)].parts;
+  if (parts.empty() || parts.front() == none) return std::nullopt;
+  return scene_material(parts.front());
+}
+
+void RadianceMaterials::open_illums() {
+  for (const Definition& definition : definitions_) {
+    if (definition.primitive.type != "illum" || definition.parts.empty()) continue;
+    if (!definition.index || *definition.index == none) continue;
+    const auto behind = read(definition.parts.front(), 0);
+    if (!behind) continue;
+    Material& material = scene_.materials[static_cast<std::size_t>(*definition.index)];
+    const std::string name = material.name;
+    material = *behind;
+    material.name = name;
+    remarks_.add("Illums were read as the material behind them, which the sky's light meets",
+                 definition.primitive.name);
+  }
 }
 
 std::optional<Material> RadianceMaterials::read(int index, int depth) {
@@ -219,15 +314,6 @@ RadiancePattern RadianceMaterials::pattern_of(const Definition& definition) {
 
 void RadianceMaterials::apply(const Definition& pattern, RadiancePattern& result) {
   const RadiancePrimitive& p = pattern.primitive;
-  std::size_t functions = 0;
-  if (p.type == "brightfunc") functions = 1;
-  if (p.type == "colorfunc") functions = 3;
-  std::array<double, 3> factor = {};
-  bool is_constant = functions > 0 && p.strings.size() >= functions;
-  for (std::size_t i = 0; is_constant && i < 3; ++i) {
-    factor[i] = constant_value(p.strings[std::min(i, functions - 1)], p);
-    is_constant = factor[i] >= 0.0 && std::isfinite(factor[i]);
-  }
   if (p.type.ends_with("pict")) {
     if (const auto mean = mean_of_picture(p)) {
       remarks_.add("Pictures on surfaces were taken as their mean colour", p.name);
@@ -236,18 +322,14 @@ void RadianceMaterials::apply(const Definition& pattern, RadiancePattern& result
     }
     // A picture is the whole colour of its surface, over a white material.
     remarks_.add("Pictures on surfaces were taken as a medium grey of 0.5", p.name);
-    is_constant = true;
-    factor.fill(0.5);
-    result.is_known = false;
-  }
-  if (!is_constant) {
-    remarks_.add("Patterns that change from place to place were taken as 1", p.name);
+    constexpr float grey = 0.5f;
+    result.factor *= grey;
     result.is_known = false;
     return;
   }
-  for (int k = 0; k < 3; ++k) {
-    result.factor[k] *= static_cast<float>(factor[static_cast<std::size_t>(k)]);
-  }
+  if (is_constant(p, result)) return;
+  remarks_.add("Patterns that change from place to place were taken as 1", p.name);
+  result.is_known = false;
 }
 
 // Mean of a colorpict over its picture. Arguments: functions of red, green and blue, picture,

@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scene/io/numbered_names.h"
+#include "scene/io/radiance/radiance_direction.h"
 #include "scene/io/radiance/radiance_primitive.h"
 #include "scene/io/remarks.h"
 #include "scene/scene.h"
@@ -25,6 +27,21 @@ struct RadiancePattern {
 std::optional<Material> read_radiance_material(const RadiancePrimitive& material,
                                                const RadiancePattern& pattern, Remarks& remarks);
 
+/// Radiance of a light, glow, illum or spotlight, without its patterns, W/(sr m^2) of r, g and b.
+/// Throws InputError for arguments that are missing or out of range.
+Spectrum radiance_color(const RadiancePrimitive& light);
+
+/// Light of a luminous material by direction.
+struct RadianceLight {
+  RadiancePrimitive material{};                     ///< light, glow, illum or spotlight
+  Spectrum color{};                                 ///< W/(sr m^2), constant patterns included
+  std::vector<const DirectionPattern*> patterns{};  ///< valid as long as the RadianceMaterials
+
+  /// Radiance, W/(sr m^2), of a ray along the unit vector `ray` towards the light that meets the
+  /// luminous surface at an angle of this cosine.
+  Spectrum radiance(const Eigen::Vector3d& ray, double cosine) const;
+};
+
 /// The modifiers of a RADIANCE scene. A name refers to its latest definition; a name without one is
 /// a grey material of reflectance 0.5, with a remark.
 class RadianceMaterials {
@@ -35,6 +52,14 @@ class RadianceMaterials {
   void define(const RadiancePrimitive& primitive);
   /// Index of a surface's material in the scene, added if new; empty for invisible surfaces.
   std::optional<int> of_surface(const RadiancePrimitive& surface);
+  /// Light of a surface or source; empty if its material is not luminous, is a mixture, or has a
+  /// pattern that depends on more than direction.
+  std::optional<RadianceLight> light_of(const RadiancePrimitive& surface);
+  /// The material behind an illum; empty if there is none, or it cannot be seen.
+  std::optional<int> behind_illum(const RadiancePrimitive& surface);
+  /// Gives illums that were read as opaque lights their alternate material, which light from
+  /// outside passes or meets.
+  void open_illums();
 
  private:
   static constexpr int none = -1;
@@ -45,6 +70,8 @@ class RadianceMaterials {
     std::optional<int> index{};  // into the scene's materials; none: invisible
   };
   int index_of(const std::string& name, const RadiancePrimitive& user);
+  std::optional<int> scene_material(int definition);
+  const DirectionPattern* direction_pattern(int definition);
   Definition aliased(const RadiancePrimitive& alias);
   std::optional<Material> read(int definition, int depth);
   std::optional<Material> read_new(int definition, int depth);
@@ -61,6 +88,8 @@ class RadianceMaterials {
   std::map<int, std::optional<Material>> known_;
   // Means over each picture, of functions of its r, g and b.
   std::map<std::filesystem::path, std::optional<Spectrum>> means_;
+  // By definition; null for patterns that depend on more than direction.
+  std::map<int, std::unique_ptr<const DirectionPattern>> by_direction_;
   NumberedNames names_;
 };
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -31,6 +32,9 @@ struct RadiancePrimitive {
   std::vector<std::string> strings{};
   std::vector<double> reals{};
   RadianceLocation location{};
+  /// Rotation or mirroring from the coordinates in which a pattern looks directions up to those of
+  /// the scene.
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
 
   RadianceKind kind() const { return radiance_kind(type); }
   /// Throws InputError "file:line: type 'name' problem".

@@ -59,21 +59,49 @@ void RadianceShapes::add(const RadiancePrimitive& p) {
                     p.type, p.name, primitives_, most_primitives));
   }
   if (p.kind() != RadianceKind::surface) return materials_.define(p);
-  if (p.type == "source") {
-    remarks_.add("Distant sources (sun, sky) give no light here and were left out", p.name);
-    return;
-  }
+  if (p.type == "source") return add_source(p);
   require_moderate(p);
-  const auto material = materials_.of_surface(p);
+  const bool is_lamp = add_lamp(p);
+  const auto material = is_lamp ? materials_.behind_illum(p) : materials_.of_surface(p);
   if (!material) return;
   if (p.type == "polygon") return add_polygon(p, *material);
-  finish();
+  complete_surface();
   if (p.type == "sphere" || p.type == "bubble") return add_sphere(p, *material);
   if (p.type == "ring") return add_ring(p, *material);
   add_cone(p, *material);
 }
 
-void RadianceShapes::finish() {
+void RadianceShapes::add_source(const RadiancePrimitive& source) {
+  auto light = materials_.light_of(source);
+  if (!light) {
+    return remarks_.add("Distant sources whose light is not understood were left out", source.name);
+  }
+  sky_.add(source, std::move(*light));
+}
+
+// Adds a lamp for a surface whose light depends on direction; false for other surfaces.
+bool RadianceShapes::add_lamp(const RadiancePrimitive& surface) {
+  const auto light = materials_.light_of(surface);
+  if (!light || !lamps_.add(surface, *light)) return false;
+  if (light->material.type == "spotlight") {
+    remarks_.add(
+        "The light of spotlights spreads from their surface, not from the focus f behind it: at "
+        "the distance d it is (1 + f/d)^2 times RADIANCE's",
+        surface.name);
+  }
+  remarks_.mention("Luminous surfaces whose light depends on direction became lamps", surface.name);
+  return true;
+}
+
+void RadianceShapes::finish(const Eigen::Vector3d& up) {
+  complete_surface();
+  if (sky_.is_empty()) return;
+  sky_.finish(scene_, up, remarks_);
+  lamps_.remove_illums();
+  materials_.open_illums();
+}
+
+void RadianceShapes::complete_surface() {
   if (!mesh_.empty()) {
     scene_.surfaces.push_back(
         {.name = names_.unique(stem_), .material = material_, .shape = mesh_.mesh()});
@@ -101,7 +129,7 @@ void RadianceShapes::add_polygon(const RadiancePrimitive& p, int material) {
   }
   account(p, triangles_of(corners));
   const std::string stem = stem_of(p.name);
-  if (stem != stem_ || material != material_) finish();
+  if (stem != stem_ || material != material_) complete_surface();
   stem_ = stem;
   material_ = material;
   Loop loop;

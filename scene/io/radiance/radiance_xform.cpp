@@ -228,6 +228,17 @@ void place_surface(RadiancePrimitive& p, const RadianceXform::Copy& copy, bool i
   if (inverts) p.type = inverse_of(p.type);
 }
 
+bool looks_up_directions(const RadiancePrimitive& p) {
+  return p.type == "brightfunc" || p.type == "colorfunc" || p.type == "brightdata";
+}
+
+// Turns what of a definition depends on directions: patterns and the beams of spotlights.
+void turn_definition(RadiancePrimitive& p, const RadianceXform::Copy& copy) {
+  const Eigen::Matrix3d turn = copy.to_world.linear() / copy.scale;
+  if (looks_up_directions(p)) p.turn = turn * p.turn;
+  if (p.type == "spotlight") turn_reals(p.reals, 4, turn);
+}
+
 }  // namespace
 
 RadianceXform parse_radiance_xform(std::span<const std::string> arguments,
@@ -235,9 +246,22 @@ RadianceXform parse_radiance_xform(std::span<const std::string> arguments,
   return XformParser(arguments, location).parse();
 }
 
+bool copies_turn(const RadianceXform& xform) {
+  const auto turn = [](const RadianceXform::Copy& copy) {
+    return Eigen::Matrix3d(copy.to_world.linear() / copy.scale);
+  };
+  return std::ranges::any_of(xform.copies, [&](const RadianceXform::Copy& copy) {
+    return !turn(copy).isApprox(turn(xform.copies.front()), 1e-9);
+  });
+}
+
 void apply_xform(const RadianceXform& xform, const RadiancePrimitive& primitive,
                  const RadianceSink& sink) {
-  if (primitive.kind() != RadianceKind::surface) return sink(primitive);
+  if (primitive.kind() != RadianceKind::surface) {
+    RadiancePrimitive turned = primitive;
+    turn_definition(turned, xform.copies.front());
+    return sink(turned);
+  }
   for (const RadianceXform::Copy& copy : xform.copies) {
     RadiancePrimitive placed = primitive;
     if (!xform.modifier.empty()) placed.modifier = xform.modifier;

@@ -31,7 +31,11 @@ struct RadianceXform {
 RadianceXform parse_radiance_xform(std::span<const std::string> arguments,
                                    const RadianceLocation& location);
 
-/// Passes all copies of a primitive to `sink`. Materials are passed once, untransformed.
+/// True if the copies of an array are turned against each other.
+bool copies_turn(const RadianceXform& xform);
+
+/// Passes all copies of a primitive to `sink`. Other primitives than surfaces are passed once, with
+/// the directions that they depend on turned by the first copy.
 void apply_xform(const RadianceXform& xform, const RadiancePrimitive& primitive,
                  const RadianceSink& sink);
 

@@ -50,8 +50,8 @@ class RadianceReader {
   }
 
  private:
-  void finish_shapes() {
-    shapes_.finish();
+  void finish_shapes(const Eigen::Vector3d& up = Eigen::Vector3d::UnitZ()) {
+    shapes_.finish(up);
     if (scene_.surfaces.empty()) {
       fail_without_surfaces(path_, "the scene has no surfaces that can be read", remarks_);
     }
@@ -74,7 +74,9 @@ class RadianceReader {
                          [&] { loader_.read_named(name, at, sink_); });
       }
     }
-    finish_shapes();
+    Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+    for (const auto& [text, location] : project.values("UP")) up = up_axis(text, location);
+    finish_shapes(up);
     read_views(project);
     constexpr std::array used = {"materials", "scene", "illum", "objects",
                                  "view",      "UP",    "ZONE",  "RESOLUTION"};

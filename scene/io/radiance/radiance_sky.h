@@ -1,0 +1,40 @@
+#pragma once
+
+#include <vector>
+
+#include "scene/io/radiance/radiance_materials.h"
+#include "scene/io/radiance/radiance_primitive.h"
+#include "scene/io/remarks.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// The distant sources of a RADIANCE scene, which become its sky. The brightest source up to 10
+/// degrees across is the sun. The others are tabulated by direction; of several that cover a
+/// direction the narrowest is seen there.
+class RadianceSky {
+ public:
+  /// Adds a source. Throws InputError for arguments that are missing or out of range.
+  void add(const RadiancePrimitive& source, RadianceLight light);
+  bool is_empty() const { return sources_.empty(); }
+  /// Gives the scene its sky. `up` is the zenith of skies without a pattern or a hemisphere that
+  /// tell theirs.
+  void finish(Scene& scene, const Eigen::Vector3d& up, Remarks& remarks) const;
+
+ private:
+  struct Source {
+    std::string name{};
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
+    double degrees = 0.0;  // across
+    RadianceLight light{};
+
+    double cosine_of_edge() const;
+    double solid_angle() const;
+  };
+  const Source* sun() const;
+  Sky dome(const std::vector<const Source*>& sources, const Eigen::Vector3d& up) const;
+
+  std::vector<Source> sources_;
+};
+
+}  // namespace lightwell
