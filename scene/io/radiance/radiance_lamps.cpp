@@ -137,12 +137,14 @@ SharedWeb RadianceLamps::web_of(const RadianceLight& light, const Face& face,
   double last = face.shape == Face::Shape::plane ? 90.0 : 180.0;
   if (is_spot) last = std::min(last, half_beam(material) / degree);
   const Eigen::Vector3d normal = axes.transpose() * face.aim;
+  // Rounded, so that lamps of one kind share a table however they are turned.
+  const auto rounded = [](double x) { return std::llround(1e6 * x); };
   std::string key =
-      fmt::format("{} {:.6f} {:.9g} {:.6f} {:.6f} {:.6f}", static_cast<int>(face.shape), last,
-                  face.area, normal.x(), normal.y(), normal.z());
+      fmt::format("{} {} {:.9g}", static_cast<int>(face.shape), rounded(last), face.area);
+  for (const double x : normal) key += fmt::format(" {}", rounded(x));
   for (const DirectionPattern* pattern : light.patterns) {
     const Eigen::Matrix3d turn = pattern->turn().transpose() * axes;
-    for (const double value : turn.reshaped()) key += fmt::format(" {:.6f}", value + 0.0);
+    for (const double x : turn.reshaped()) key += fmt::format(" {}", rounded(x));
     key += pattern->key();
   }
   const auto known = std::ranges::find(known_, key, &Known::light);

@@ -198,11 +198,12 @@ TEST_F(Radiance, LightIsPiTimesItsRadianceFromTheFrontAt179LumensPerWatt) {
   EXPECT_NEAR(luminous(scene.bands, Spectrum::Ones(3)), 179.0, 179e-6);
 }
 
-TEST_F(Radiance, AGlowHasFourNumbersAndASpotThePowerOfItsBeam) {
+TEST_F(Radiance, AGlowHasFourNumbersAndAConeThePowerOfItsSpotlightsBeam) {
   expect_rgb(material("void glow m 0 0 4 1 1 1 0").emission / static_cast<float>(pi), {1, 1, 1});
   // Half angle 30 degrees: sin^2 = 1/4.
-  expect_rgb(material("void spotlight m 0 0 7 8 8 8 60 0 0 1").emission / static_cast<float>(pi),
-             {2, 2, 2});
+  const Scene scene =
+      read("void spotlight m 0 0 7 8 8 8 60 0 0 1\nm cone c 0 0 8 0 0 0 0 0 1 .1 .2\n");
+  expect_rgb(first_material(scene).emission / static_cast<float>(pi), {2, 2, 2});
 }
 
 // What goes on from a pane, by the angle from its normal: mirrored light, and light straight on.
@@ -394,11 +395,12 @@ TEST_F(Radiance, PrismsLetLightStraightThrough) {
 
 TEST_F(Radiance, AnIllumShinesUnlessItsPatternIsUnknown) {
   EXPECT_TRUE(material("void illum m 1 void 0 3 1 1 1").is_emitter());
-  const Scene scene =
-      read("!gensky 7 12 17\nvoid glass pane 0 0 3 1 1 1\nskyfunc illum m 1 pane 0 3 1 1 1\nm " +
-           square);
+  const Scene scene = read(
+      "!genssky 7 12 17\nvoid glass pane 0 0 3 1 1 1\nvoid brightfunc unknown 2 Px . 0 0\n"
+      "unknown illum m 1 pane 0 3 1 1 1\nm " +
+      square);
   EXPECT_TRUE(scene.materials.at(0).dielectric.has_value());
-  EXPECT_TRUE(has_note(scene, "Skies give no light here"));
+  EXPECT_TRUE(has_note(scene, "Skies of other programs"));
 }
 
 TEST_F(Radiance, WhatCannotBeSeenIsLeftOutByName) {
