@@ -94,6 +94,22 @@ std::vector<Loop> cone_loops(double radius, double top_radius, double height) {
   return loops;
 }
 
+std::vector<NormalLoop> cone_normals(const std::vector<Loop>& loops, double radius,
+                                     double top_radius, double height) {
+  std::vector<NormalLoop> normals;
+  for (const Loop& loop : loops) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const Eigen::Vector3d& p : loop) middle += p;
+    NormalLoop& of_loop = normals.emplace_back();
+    for (const Eigen::Vector3d& p : loop) {
+      // The tip of a cone has a normal in each direction; a facet there takes that of its middle.
+      const Eigen::Vector2d out = (p.head<2>().norm() > 0.0 ? p : middle).head<2>().normalized();
+      of_loop.emplace_back(out.x() * height, out.y() * height, radius - top_radius);
+    }
+  }
+  return normals;
+}
+
 Polygon ring_polygon(double inner, double outer) {
   const auto scaled = [](double radius) {
     Loop loop = disk_loops().front();

@@ -19,6 +19,9 @@ std::vector<Loop> cylinder_loops();
 /// Quadrilaterals (triangles where a radius is 0) round the z axis between circles at z = 0 and z =
 /// `height`, with the area of the truncated cone; no caps. Radii >= 0, not both 0.
 std::vector<Loop> cone_loops(double radius, double top_radius, double height);
+/// Normals of such a cone at the corners of its `loops`, for placed_loops().
+std::vector<NormalLoop> cone_normals(const std::vector<Loop>& loops, double radius,
+                                     double top_radius, double height);
 /// Regular polygon about the origin, z = 0, with the area of the ring between the radii; its hole
 /// is a regular polygon too (no hole if `inner` is 0).
 Polygon ring_polygon(double inner, double outer);

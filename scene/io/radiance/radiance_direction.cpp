@@ -7,8 +7,6 @@
 #include <cmath>
 #include <span>
 
-#include "scene/io/radiance/radiance_definitions.h"
-#include "scene/io/radiance/radiance_library.h"
 #include "scene/io/radiance/radiance_loader.h"
 #include "scene/io/radiance/radiance_xform.h"
 #include "scene/io/text_file.h"
@@ -17,21 +15,15 @@ namespace lightwell {
 namespace {
 
 // Variables of the formulas: the ray's direction in the pattern's coordinates, the cosine at the
-// surface, the table's value, and the arguments A1, A2, ...
-constexpr std::size_t first_argument = 5;
-constexpr std::size_t least_arguments = 10;  // A1 to A10 are known to every formula
+// surface, and the table's value.
+const std::vector<std::string> variables = {"Dx", "Dy", "Dz", "Rdot", "table_value"};
 
-std::string definitions_of(const std::string& file, const RadiancePrimitive& pattern,
-                           const std::filesystem::path& folder) {
-  if (file == ".") return {};  // none
-  if (const auto path = find_radiance_file(file, pattern.location, folder)) {
-    return TextFile(*path).text();
-  }
-  const std::string_view known = radiance_library(file);
-  if (known.empty()) {
-    pattern.fail(fmt::format("names the file '{}', which is not there", excerpt(file)));
-  }
-  return std::string(known);
+// Number of the string argument that names the function file.
+std::size_t file_argument(const RadiancePrimitive& pattern) {
+  if (pattern.type == "brightfunc") return 1;
+  if (pattern.type == "brightdata") return 2;
+  if (pattern.type == "colorfunc") return 3;
+  pattern.fail("does not depend on direction alone");
 }
 
 Eigen::Matrix3d turn_of(std::span<const std::string> transform, const RadianceLocation& location) {
@@ -45,17 +37,15 @@ Eigen::Matrix3d turn_of(std::span<const std::string> transform, const RadianceLo
 
 DirectionPattern::DirectionPattern(const RadiancePrimitive& pattern,
                                    const std::filesystem::path& folder)
-    : pattern_(pattern) {
+    : DirectionPattern(pattern, file_argument(pattern), folder) {}
+
+DirectionPattern::DirectionPattern(const RadiancePrimitive& pattern, std::size_t file,
+                                   const std::filesystem::path& folder)
+    : functions_(pattern, file < pattern.strings.size() ? pattern.strings[file] : ".", folder) {
   const auto& words = pattern.strings;
-  const bool is_table = pattern.type == "brightdata";
-  const std::size_t file = is_table ? 2 : pattern.type == "colorfunc" ? 3 : 1;
-  if (!is_table && pattern.type != "brightfunc" && pattern.type != "colorfunc") {
-    pattern.fail("does not depend on direction alone");
-  }
   if (words.size() <= file) pattern.fail("lacks a function or a file");
-  definitions_of_file_ = definitions_of(words[file], pattern, folder);
   std::size_t transform = file + 1;
-  if (is_table) {
+  if (pattern.type == "brightdata") {
     const auto path = find_radiance_file(words[1], pattern.location, folder);
     if (!path) {
       pattern.fail(fmt::format("names the table '{}', which is not there", excerpt(words[1])));
@@ -63,36 +53,26 @@ DirectionPattern::DirectionPattern(const RadiancePrimitive& pattern,
     data_ = std::make_shared<const RadianceData>(*path);
     for (; transform <= file + data_->dimensions(); ++transform) {
       if (transform == words.size()) pattern.fail("lacks a coordinate of its table");
-      coordinates_.push_back(formula(words[transform]));
+      coordinates_.push_back(functions_.formula(words[transform], variables));
     }
-    factors_.push_back(formula(words[0] + "(table_value)"));
+    factors_.push_back(functions_.formula(words[0] + "(table_value)", variables));
   } else {
-    for (std::size_t i = 0; i < file; ++i) factors_.push_back(formula(words[i]));
+    for (std::size_t i = 0; i < file; ++i) {
+      factors_.push_back(functions_.formula(words[i], variables));
+    }
   }
-  key_ = fmt::format("{} {} {}",
-                     fmt::join(words.begin(), words.begin() + std::ptrdiff_t(transform), " "),
-                     fmt::join(pattern.reals, " "), definitions_of_file_);
-  turn_ = pattern.turn * turn_of(std::span(words).subspan(transform), pattern.location);
-}
-
-RadianceExpression DirectionPattern::formula(const std::string& text) const {
-  RadianceDefinitions definitions;
-  definitions.add(radiance_library("rayinit.cal"), pattern_.location);
-  definitions.add(definitions_of_file_, pattern_.location);
-  definitions.add(fmt::format("AC = {}", pattern_.reals.size()), pattern_.location);
-  std::vector<std::string> variables = {"Dx", "Dy", "Dz", "Rdot", "table_value"};
-  for (std::size_t i = 1; i <= std::max(least_arguments, pattern_.reals.size()); ++i) {
-    variables.push_back(fmt::format("A{}", i));
-  }
-  return {definitions.expanded(text, pattern_.location), text, variables, pattern_.location};
+  const auto end = words.begin() + static_cast<std::ptrdiff_t>(transform);
+  key_ = fmt::format("{} {} {}", fmt::join(words.begin(), end, " "), fmt::join(pattern.reals, " "),
+                     functions_.text());
+  const Eigen::Matrix3d frame = pattern.frame.linear();
+  turn_ = frame / std::cbrt(std::abs(frame.determinant())) *
+          turn_of(std::span(words).subspan(transform), pattern.location);
 }
 
 Spectrum DirectionPattern::factor(const Eigen::Vector3d& ray, double cosine) const {
-  std::vector<double> values(first_argument + std::max(least_arguments, pattern_.reals.size()));
   const Eigen::Vector3d local = turn_.transpose() * ray;
-  std::ranges::copy(local, values.begin());
-  values[3] = cosine;
-  std::ranges::copy(pattern_.reals, values.begin() + first_argument);
+  std::vector<double> values = {local.x(), local.y(), local.z(), cosine, 0.0};
+  functions_.append_arguments(values);
   if (data_) {
     std::vector<double> at;
     for (const RadianceExpression& x : coordinates_) at.push_back(x.value_or_nan(values));

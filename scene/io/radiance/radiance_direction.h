@@ -9,6 +9,7 @@
 #include "scene/bands.h"
 #include "scene/io/radiance/radiance_data.h"
 #include "scene/io/radiance/radiance_expression.h"
+#include "scene/io/radiance/radiance_function_file.h"
 #include "scene/io/radiance/radiance_primitive.h"
 
 namespace lightwell {
@@ -33,10 +34,11 @@ class DirectionPattern {
   const Eigen::Matrix3d& turn() const { return turn_; }
 
  private:
-  RadianceExpression formula(const std::string& text) const;
+  DirectionPattern(const RadiancePrimitive& pattern, std::size_t file,
+                   const std::filesystem::path& folder);
 
-  RadiancePrimitive pattern_;
-  std::string definitions_of_file_{}, key_{};
+  RadianceFunctionFile functions_;
+  std::string key_{};
   Eigen::Matrix3d turn_ = Eigen::Matrix3d::Identity();
   std::vector<RadianceExpression> factors_{};  // one, or of r, g and b
   std::shared_ptr<const RadianceData> data_{};

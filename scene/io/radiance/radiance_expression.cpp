@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
@@ -19,6 +20,44 @@ double chosen(double condition, double yes, double no) {
 double selected(const double* x, int count) {
   const double n = std::round(x[0]);
   return n >= 1.0 && n < count ? x[static_cast<int>(n)] : std::nan("");
+}
+
+// Number in [0,1) by a cell of a lattice; the mixing steps of SplitMix64.
+double at_cell(double x, double y, double z) {
+  std::uint64_t h = 0;
+  for (const double v : {x, y, z}) {
+    h += static_cast<std::uint64_t>(static_cast<std::int64_t>(std::clamp(v, -9e15, 9e15))) +
+         0x9e3779b97f4a7c15ull;
+    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ull;
+    h = (h ^ (h >> 27)) * 0x94d049bb133111ebull;
+    h ^= h >> 31;
+  }
+  return static_cast<double>(h >> 11) * 0x1p-53;
+}
+
+// Smooth noise in [-1,1] with the mean 0, random at whole coordinates. The values differ from those
+// of RADIANCE, whose statistics are alike.
+double noise3(double x, double y, double z) {
+  const double x0 = std::floor(x), y0 = std::floor(y), z0 = std::floor(z);
+  const auto smooth = [](double t) { return t * t * (3.0 - 2.0 * t); };
+  const double u = smooth(x - x0), v = smooth(y - y0), w = smooth(z - z0);
+  double sum = 0.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    const int i = corner & 1, j = corner >> 1 & 1, k = corner >> 2;
+    sum += (i ? u : 1.0 - u) * (j ? v : 1.0 - v) * (k ? w : 1.0 - w) *
+           (2.0 * at_cell(x0 + i, y0 + j, z0 + k) - 1.0);
+  }
+  return sum;
+}
+
+// Noise of several sizes: each half as large and half as strong as the one before.
+double fnoise3(double x, double y, double z) {
+  double sum = 0.0;
+  constexpr int octaves = 6;
+  for (int i = 0; i < octaves; ++i) {
+    sum += std::ldexp(noise3(std::ldexp(x, i), std::ldexp(y, i), std::ldexp(z, i)), -i - 1);
+  }
+  return sum;
 }
 
 // Cubic curves over t in [0,1] by their control values; Foley et al. 1990, section 11.2.
@@ -74,6 +113,9 @@ void define_functions(mu::Parser& parser) {
   parser.DefineFun("min", [](const double* x, int n) { return *std::min_element(x, x + n); });
   parser.DefineFun("max", [](const double* x, int n) { return *std::max_element(x, x + n); });
   parser.DefineFun("select", selected);
+  parser.DefineFun("noise3", noise3);
+  parser.DefineFun("fnoise3", fnoise3);
+  parser.DefineFun("rand", [](double x) { return at_cell(std::round(x * 1e6), 0.0, 0.0); });
   parser.DefineFun("sq", [](double x) { return x * x; });
   parser.DefineFun("if", chosen);
   parser.DefineFun("hermite", hermite);

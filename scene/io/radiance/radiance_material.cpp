@@ -179,14 +179,23 @@ Maybe glass(const Given& given) {
   return material;
 }
 
+// Absorption, 1/m, of a body of which a metre passes these shares.
+Spectrum absorption_of(const Spectrum& transmissivity) {
+  return (-transmissivity.min(1.0f).log()).min(highest_absorption);
+}
+
 Maybe dielectric(const Given& given) {
   const bool is_interface = given.p.type == "interface";
   given.p.require_reals(is_interface ? 8 : 5);
   const double outside = is_interface ? refractive_index(given, 7) : 1.0;
-  if ((given.rgb(0) != 1.0f).any()) {
-    given.remark("What dielectrics absorb along the way through them was left out");
+  Material material = clear(refractive_index(given, 3) / outside, Spectrum::Ones(3));
+  if (const Spectrum inside = given.rgb(0); (inside < 1.0f).any()) {
+    material.dielectric->absorption = absorption_of(inside);
   }
-  return clear(refractive_index(given, 3) / outside, Spectrum::Ones(3));
+  if (is_interface && (given.rgb(4) != 1.0f).any()) {
+    given.remark("What the outer side of interfaces absorbs was left out");
+  }
+  return material;
 }
 
 Maybe mirror(const Given& given) {

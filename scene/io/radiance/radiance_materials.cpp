@@ -13,6 +13,7 @@
 #include "scene/io/pictures/environment_file.h"
 #include "scene/io/radiance/radiance_expression.h"
 #include "scene/io/radiance/radiance_loader.h"
+#include "scene/io/radiance/radiance_place.h"
 #include "scene/io/sheets.h"
 
 namespace lightwell {
@@ -63,7 +64,28 @@ Spectrum means_of(const BandArray& pixels) {
 
 bool is_same(const RadiancePrimitive& a, const RadiancePrimitive& b) {
   return a.type == b.type && a.name == b.name && a.strings == b.strings && a.reals == b.reals &&
-         a.turn == b.turn;
+         a.frame.matrix() == b.frame.matrix();
+}
+
+bool is_same(const Spectrum& a, const Spectrum& b) {
+  return a.size() == b.size() && (a == b).all();
+}
+
+// True if two materials of RADIANCE reflect, pass and emit the same light.
+bool is_same(const Material& a, const Material& b) {
+  if (a.dielectric.has_value() != b.dielectric.has_value()) return false;
+  if (a.dielectric && (a.dielectric->index_of_refraction != b.dielectric->index_of_refraction ||
+                       a.dielectric->thin != b.dielectric->thin ||
+                       !is_same(a.dielectric->tint, b.dielectric->tint) ||
+                       !is_same(a.dielectric->absorption, b.dielectric->absorption) ||
+                       !is_same(a.dielectric->transmissivity, b.dielectric->transmissivity))) {
+    return false;
+  }
+  return is_same(a.reflectance, b.reflectance) && is_same(a.transmittance, b.transmittance) &&
+         is_same(a.regular_transmittance, b.regular_transmittance) &&
+         is_same(a.specular, b.specular) && is_same(a.emission, b.emission) &&
+         a.specular_roughness == b.specular_roughness && a.one_sided == b.one_sided &&
+         a.emits_both_sides == b.emits_both_sides;
 }
 
 }  // namespace
@@ -129,7 +151,7 @@ std::optional<int> RadianceMaterials::of_surface(const RadiancePrimitive& surfac
     remarks_.add("Surfaces of no material (void) cannot be seen and were left out", surface.name);
     return std::nullopt;
   }
-  const auto material = scene_material(modifier);
+  const auto material = scene_material(modifier, surface);
   if (!material) {
     remarks_.add("Surfaces of a material that cannot be seen were left out", surface.name);
   }
@@ -137,20 +159,36 @@ std::optional<int> RadianceMaterials::of_surface(const RadiancePrimitive& surfac
 }
 
 // Index into the scene's materials, added if new; empty for invisible ones.
-std::optional<int> RadianceMaterials::scene_material(int modifier) {
+std::optional<int> RadianceMaterials::scene_material(int modifier, const RadiancePrimitive& user) {
   Definition& definition = definitions_[static_cast<std::size_t>(modifier)];
   if (!definition.index) {
     std::optional<Material> material = default_material(scene_.bands);
     remarks_.attempt("Materials that cannot be read got a diffuse reflectance of 0.5",
-                     definition.primitive.name, [&] { material = read(modifier, 0); });
+                     definition.primitive.name, [&] { material = read(modifier, user, 0); });
     definition.index = none;
-    if (material) {
-      material->name = names_.unique(definition.primitive.name);
+    const std::string& name = definition.primitive.name;
+    if (const auto same = material ? same_material(name, *material) : std::nullopt) {
+      definition.index = *same;
+    } else if (material) {
+      material->name = names_.unique(name);
       definition.index = static_cast<int>(scene_.materials.size());
+      materials_of_name_[name].push_back(*definition.index);
       scene_.materials.push_back(std::move(*material));
     }
   }
   if (*definition.index != none) return definition.index;
+  return std::nullopt;
+}
+
+// The material that an earlier definition of a name gave, if it is the same: copies of an object
+// define its materials again.
+std::optional<int> RadianceMaterials::same_material(const std::string& name,
+                                                    const Material& material) const {
+  const auto of_name = materials_of_name_.find(name);
+  if (of_name == materials_of_name_.end()) return std::nullopt;
+  for (const int i : of_name->second) {
+    if (is_same(scene_.materials[static_cast<std::size_t>(i)], material)) return i;
+  }
   return std::nullopt;
 }
 
@@ -208,14 +246,14 @@ std::optional<int> RadianceMaterials::behind_illum(const RadiancePrimitive& surf
   if (index == none) return std::nullopt;
   const std::vector<int>& parts = definitions_[static_cast<std::size_t>(index)].parts;
   if (parts.empty() || parts.front() == none) return std::nullopt;
-  return scene_material(parts.front());
+  return scene_material(parts.front(), surface);
 }
 
 void RadianceMaterials::open_illums() {
   for (const Definition& definition : definitions_) {
     if (definition.primitive.type != "illum" || definition.parts.empty()) continue;
     if (!definition.index || *definition.index == none) continue;
-    const auto behind = read(definition.parts.front(), 0);
+    const auto behind = read(definition.parts.front(), definition.primitive, 0);
     if (!behind) continue;
     Material& material = scene_.materials[static_cast<std::size_t>(*definition.index)];
     const std::string name = material.name;
@@ -226,14 +264,16 @@ void RadianceMaterials::open_illums() {
   }
 }
 
-std::optional<Material> RadianceMaterials::read(int index, int depth) {
+std::optional<Material> RadianceMaterials::read(int index, const RadiancePrimitive& user,
+                                                int depth) {
   const auto known = known_.find(index);
   if (known != known_.end()) return known->second;
-  return known_.emplace(index, read_new(index, depth)).first->second;
+  return known_.emplace(index, read_new(index, user, depth)).first->second;
 }
 
 // Follows the modifiers from patterns to the material behind them.
-std::optional<Material> RadianceMaterials::read_new(int index, int depth) {
+std::optional<Material> RadianceMaterials::read_new(int index, const RadiancePrimitive& user,
+                                                    int depth) {
   for (; index != none; ++depth) {
     const Definition& definition = definitions_[static_cast<std::size_t>(index)];
     if (depth > deepest_modifier) {
@@ -241,15 +281,15 @@ std::optional<Material> RadianceMaterials::read_new(int index, int depth) {
           fmt::format("is reached by more than {} modifiers", deepest_modifier));
     }
     const RadianceKind kind = definition.primitive.kind();
-    if (kind == RadianceKind::mixture) return mixed(definition, depth);
+    if (kind == RadianceKind::mixture) return mixed(definition, user, depth);
     if (kind == RadianceKind::material) {
-      const RadiancePattern pattern = pattern_of(definition);
+      const RadiancePattern pattern = pattern_of(definition, user);
       // An illum stands for light through a window or a luminaire; with an unknown pattern its
       // amount is unknown.
       if (definition.primitive.type == "illum" && !pattern.is_known && !definition.parts.empty()) {
         remarks_.add("Illums with a pattern were read as the material behind them, without light",
                      definition.primitive.name);
-        return read(definition.parts[0], depth + 1);
+        return read(definition.parts[0], user, depth + 1);
       }
       return read_radiance_material(definition.primitive, pattern, remarks_);
     }
@@ -258,7 +298,8 @@ std::optional<Material> RadianceMaterials::read_new(int index, int depth) {
   return std::nullopt;
 }
 
-std::optional<Material> RadianceMaterials::mixed(const Definition& mixture, int depth) {
+std::optional<Material> RadianceMaterials::mixed(const Definition& mixture,
+                                                 const RadiancePrimitive& user, int depth) {
   const RadiancePrimitive& p = mixture.primitive;
   if (mixture.parts.size() < 2) p.fail("needs the names of two materials and a mixing function");
   // mixtext and mixpict vary over the surface.
@@ -269,7 +310,8 @@ std::optional<Material> RadianceMaterials::mixed(const Definition& mixture, int 
     share = 0.5;
   }
   share = std::clamp(share, 0.0, 1.0);
-  const auto front = read(mixture.parts[0], depth + 1), back = read(mixture.parts[1], depth + 1);
+  const auto front = read(mixture.parts[0], user, depth + 1),
+             back = read(mixture.parts[1], user, depth + 1);
   const auto& larger = share >= 0.5 ? front : back;
   const auto a = static_cast<float>(share), b = static_cast<float>(1.0 - share);
   const bool has_glass = (front && front->dielectric) || (back && back->dielectric);
@@ -295,7 +337,8 @@ std::optional<Material> RadianceMaterials::mixed(const Definition& mixture, int 
   return sum;
 }
 
-RadiancePattern RadianceMaterials::pattern_of(const Definition& definition) {
+RadiancePattern RadianceMaterials::pattern_of(const Definition& definition,
+                                              const RadiancePrimitive& user) {
   RadiancePattern result;
   int depth = 0;
   for (int i = definition.parent; i != none; i = definitions_[static_cast<std::size_t>(i)].parent) {
@@ -304,7 +347,7 @@ RadiancePattern RadianceMaterials::pattern_of(const Definition& definition) {
       definition.primitive.fail(fmt::format("has more than {} modifiers", deepest_modifier));
     }
     const RadianceKind kind = modifier.primitive.kind();
-    if (kind == RadianceKind::pattern) apply(modifier, result);
+    if (kind == RadianceKind::pattern) apply(modifier, user, result);
     if (kind == RadianceKind::texture) {
       remarks_.add("Textures (bumps) were left out", modifier.primitive.name);
     }
@@ -312,7 +355,8 @@ RadiancePattern RadianceMaterials::pattern_of(const Definition& definition) {
   return result;
 }
 
-void RadianceMaterials::apply(const Definition& pattern, RadiancePattern& result) {
+void RadianceMaterials::apply(const Definition& pattern, const RadiancePrimitive& user,
+                              RadiancePattern& result) {
   const RadiancePrimitive& p = pattern.primitive;
   if (p.type.ends_with("pict")) {
     if (const auto mean = mean_of_picture(p)) {
@@ -328,6 +372,16 @@ void RadianceMaterials::apply(const Definition& pattern, RadiancePattern& result
     return;
   }
   if (is_constant(p, result)) return;
+  try {
+    result.factor *= mean_over(p, radiance_bounds(user), scene_.file.parent_path());
+    remarks_.add("Patterns that change from place to place were taken as their mean", p.name);
+    result.is_known = false;
+    return;
+  } catch (const LimitError&) {
+    throw;
+  } catch (const InputError&) {
+    // Taken as 1 below.
+  }
   remarks_.add("Patterns that change from place to place were taken as 1", p.name);
   result.is_known = false;
 }

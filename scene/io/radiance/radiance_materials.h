@@ -70,14 +70,16 @@ class RadianceMaterials {
     std::optional<int> index{};  // into the scene's materials; none: invisible
   };
   int index_of(const std::string& name, const RadiancePrimitive& user);
-  std::optional<int> scene_material(int definition);
+  std::optional<int> scene_material(int definition, const RadiancePrimitive& user);
+  std::optional<int> same_material(const std::string& name, const Material& material) const;
   const DirectionPattern* direction_pattern(int definition);
   Definition aliased(const RadiancePrimitive& alias);
-  std::optional<Material> read(int definition, int depth);
-  std::optional<Material> read_new(int definition, int depth);
-  std::optional<Material> mixed(const Definition& mixture, int depth);
-  RadiancePattern pattern_of(const Definition& definition);
-  void apply(const Definition& pattern, RadiancePattern& result);
+  std::optional<Material> read(int definition, const RadiancePrimitive& user, int depth);
+  std::optional<Material> read_new(int definition, const RadiancePrimitive& user, int depth);
+  std::optional<Material> mixed(const Definition& mixture, const RadiancePrimitive& user,
+                                int depth);
+  RadiancePattern pattern_of(const Definition& definition, const RadiancePrimitive& user);
+  void apply(const Definition& pattern, const RadiancePrimitive& user, RadiancePattern& result);
   std::optional<Spectrum> mean_of_picture(const RadiancePrimitive& colorpict);
 
   Scene& scene_;
@@ -91,6 +93,7 @@ class RadianceMaterials {
   // By definition; null for patterns that depend on more than direction.
   std::map<int, std::unique_ptr<const DirectionPattern>> by_direction_;
   NumberedNames names_;
+  std::map<std::string, std::vector<int>, std::less<>> materials_of_name_;  // in the scene
 };
 
 }  // namespace lightwell

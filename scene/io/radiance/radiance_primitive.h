@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -32,9 +32,9 @@ struct RadiancePrimitive {
   std::vector<std::string> strings{};
   std::vector<double> reals{};
   RadianceLocation location{};
-  /// Rotation or mirroring from the coordinates in which a pattern looks directions up to those of
-  /// the scene.
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  /// From the coordinates of a pattern's formulas to those of the scene: a rotation or mirroring, a
+  /// uniform scaling and a translation.
+  Eigen::Affine3d frame = Eigen::Affine3d::Identity();
 
   RadianceKind kind() const { return radiance_kind(type); }
   /// Throws InputError "file:line: type 'name' problem".

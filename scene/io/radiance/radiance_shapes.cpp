@@ -174,7 +174,9 @@ void RadianceShapes::add_sphere(const RadiancePrimitive& p, int material) {
   }
   remarks_.add("Bubbles whose sides differ became polygons of the same area", p.name);
   const Eigen::Affine3d transform = Eigen::Translation3d(point(p, 0)) * Eigen::Scaling(radius);
-  add_surface(p, material, placed_loops(sphere_loops(), transform, true, repairs_));
+  const std::vector<Loop> loops = sphere_loops();
+  // The corners of a unit sphere about the origin are its normals.
+  add_surface(p, material, placed_loops(loops, transform, true, repairs_, {}, loops));
 }
 
 void RadianceShapes::add_cone(const RadiancePrimitive& p, int material) {
@@ -189,10 +191,12 @@ void RadianceShapes::add_cone(const RadiancePrimitive& p, int material) {
   }
   const bool is_inner = p.type == "tube" || p.type == "cup";
   const bool inward = is_inner != (first < 0.0 || second < 0.0);
-  remarks_.add("Cylinders and cones were read as 32 facets of the same area", p.name);
-  add_surface(p, material,
-              placed_loops(cone_loops(std::abs(first), std::abs(second), height), along(from, axis),
-                           inward, repairs_));
+  remarks_.add(
+      "Cylinders and cones were read as 32 facets of the same area with the normals of round ones",
+      p.name);
+  const std::vector<Loop> loops = cone_loops(std::abs(first), std::abs(second), height);
+  const auto normals = cone_normals(loops, std::abs(first), std::abs(second), height);
+  add_surface(p, material, placed_loops(loops, along(from, axis), inward, repairs_, {}, normals));
 }
 
 void RadianceShapes::add_ring(const RadiancePrimitive& p, int material) {

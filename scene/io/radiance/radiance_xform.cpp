@@ -228,15 +228,10 @@ void place_surface(RadiancePrimitive& p, const RadianceXform::Copy& copy, bool i
   if (inverts) p.type = inverse_of(p.type);
 }
 
-bool looks_up_directions(const RadiancePrimitive& p) {
-  return p.type == "brightfunc" || p.type == "colorfunc" || p.type == "brightdata";
-}
-
-// Turns what of a definition depends on directions: patterns and the beams of spotlights.
-void turn_definition(RadiancePrimitive& p, const RadianceXform::Copy& copy) {
-  const Eigen::Matrix3d turn = copy.to_world.linear() / copy.scale;
-  if (looks_up_directions(p)) p.turn = turn * p.turn;
-  if (p.type == "spotlight") turn_reals(p.reals, 4, turn);
+// Places what of a definition depends on coordinates: patterns and the beams of spotlights.
+void place_definition(RadiancePrimitive& p, const RadianceXform::Copy& copy) {
+  if (p.kind() == RadianceKind::pattern) p.frame = copy.to_world * p.frame;
+  if (p.type == "spotlight") turn_reals(p.reals, 4, copy.to_world.linear() / copy.scale);
 }
 
 }  // namespace
@@ -258,9 +253,9 @@ bool copies_turn(const RadianceXform& xform) {
 void apply_xform(const RadianceXform& xform, const RadiancePrimitive& primitive,
                  const RadianceSink& sink) {
   if (primitive.kind() != RadianceKind::surface) {
-    RadiancePrimitive turned = primitive;
-    turn_definition(turned, xform.copies.front());
-    return sink(turned);
+    RadiancePrimitive placed = primitive;
+    place_definition(placed, xform.copies.front());
+    return sink(placed);
   }
   for (const RadianceXform::Copy& copy : xform.copies) {
     RadiancePrimitive placed = primitive;

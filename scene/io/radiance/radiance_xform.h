@@ -34,8 +34,8 @@ RadianceXform parse_radiance_xform(std::span<const std::string> arguments,
 /// True if the copies of an array are turned against each other.
 bool copies_turn(const RadianceXform& xform);
 
-/// Passes all copies of a primitive to `sink`. Other primitives than surfaces are passed once, with
-/// the directions that they depend on turned by the first copy.
+/// Passes all copies of a primitive to `sink`. Other primitives than surfaces are passed once,
+/// placed as the first copy.
 void apply_xform(const RadianceXform& xform, const RadiancePrimitive& primitive,
                  const RadianceSink& sink);
 

@@ -393,6 +393,67 @@ TEST_F(Radiance, PrismsLetLightStraightThrough) {
   expect_rgb(prism.regular_transmittance, {1, 1, 1});
 }
 
+TEST_F(Radiance, PatternsOfThePlaceCountByTheirMeanOverASurface) {
+  folder.write("ramp.cal", "ramp = Px * A1; checks = if(mod(Px, .5) - .25, 1, 0);");
+  const auto rho = [&](const std::string& pattern) {
+    return material("void " + pattern + "\np plastic m 0 0 5 .8 .8 .8 0 0").reflectance;
+  };
+  // 2048 points spread evenly: off by some 2048ths of the pattern's range, and three digits.
+  constexpr double even = 0.8 * 0.005;
+  EXPECT_NEAR(rho("brightfunc p 2 ramp ramp.cal 0 1 .5")[0], 0.8 * 0.25, even);
+  EXPECT_NEAR(rho("brightfunc p 2 checks ramp.cal 0 0")[1], 0.8 * 0.5, 4.0 * even);
+  const Spectrum colors = rho("colorfunc p 4 ramp Py noise3(Px,Py,Pz)*0+.3 ramp.cal 0 1 1");
+  EXPECT_NEAR(colors[0], 0.8 * 0.5, even);
+  EXPECT_NEAR(colors[1], 0.8 * 0.5, even);
+  EXPECT_NEAR(colors[2], 0.8 * 0.3, 1e-6);
+  // A pattern is placed with its object: here at x from 2 to 3.
+  const Scene moved =
+      read("!xform -t -2 0 0 pattern.rad\np plastic m 0 0 5 .2 .2 .2 0 0\nm " + square);
+  EXPECT_TRUE(has_loss(moved, "are missing"));
+  folder.write("pattern.rad", "void brightfunc p 2 Px . 0 0\n");
+  const Scene placed =
+      read("!xform -t -2 0 0 pattern.rad\np plastic m 0 0 5 .2 .2 .2 0 0\nm " + square);
+  EXPECT_NEAR(first_material(placed).reflectance[0], 0.2 * 2.5, even);
+}
+
+TEST_F(Radiance, CopiesOfAnObjectShareTheirMaterials) {
+  folder.write("chair.rad",
+               "void brightfunc grain 2 .5+.2*sin(Px*9) . 0 0\n"
+               "grain plastic wood 0 0 5 .5 .5 .5 0 0\nwood " +
+                   square);
+  const Scene scene = read(
+      "!xform -n a -t 1 0 0 chair.rad\n!xform -n b -t 5 2 0 chair.rad\n"
+      "!xform -n c -t 3 3 0 chair.rad\n");
+  EXPECT_EQ(scene.surfaces.size(), 3u);
+  EXPECT_EQ(scene.materials.size(), 1u);
+}
+
+TEST_F(Radiance, RoundShapesHaveTheNormalsOfRoundOnes) {
+  const Scene scene = shape("cone", "8 0 0 0 0 0 2 1 .5");
+  const auto& mesh = std::get<PolygonMesh>(scene.surfaces.at(0).shape);
+  ASSERT_FALSE(mesh.normal_maps.empty());
+  for (const Facet& facet : mesh.facets) {
+    ASSERT_GE(facet.normal_map, 0);
+    for (const int v : facet.boundary) {
+      const Eigen::Vector3d& p = mesh.vertices[static_cast<std::size_t>(v)];
+      const Eigen::Vector3d expected =
+          Eigen::Vector3d(2.0 * p.x() / p.head<2>().norm(), 2.0 * p.y() / p.head<2>().norm(), 0.5)
+              .normalized();
+      const Eigen::Vector3d found =
+          mesh.normal_maps[static_cast<std::size_t>(facet.normal_map)].at(p).normalized();
+      expect_near(found, expected, 1e-6);
+    }
+  }
+}
+
+TEST_F(Radiance, DielectricsAbsorbByTheMetre) {
+  const Material green = material("void dielectric m 0 0 5 .5 1 .25 1.5 0");
+  const Spectrum passed = (-2.0f * green.dielectric->absorption).exp();  // over two metres
+  expect_rgb(passed, {0.25, 1.0, 0.0625});
+  EXPECT_EQ(material("void dielectric m 0 0 5 0 1 1 1.5 0").dielectric->absorption[0],
+            highest_absorption);
+}
+
 TEST_F(Radiance, AnIllumShinesUnlessItsPatternIsUnknown) {
   EXPECT_TRUE(material("void illum m 1 void 0 3 1 1 1").is_emitter());
   const Scene scene = read(
