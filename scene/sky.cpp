@@ -12,6 +12,7 @@
 
 #include "scene/degree.h"
 #include "scene/limits.h"
+#include "scene/sun_position.h"
 
 namespace lightwell {
 namespace {
@@ -164,11 +165,9 @@ SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double s
   const double Z = (90.0 - sun_altitude_degrees) * degree, Z3 = 1.041 * Z * Z * Z;
   const double clearness =
       ((diffuse_horizontal + direct_normal) / diffuse_horizontal + Z3) / (1.0 + Z3);
-  // Relative air mass after Kasten & Young 1989; the earth's distance after Spencer 1971, first
-  // order.
-  const double air_mass = 1.0 / (std::sin(sun_altitude_degrees * degree) +
-                                 0.50572 * std::pow(sun_altitude_degrees + 6.07995, -1.6364));
+  const double air_mass = relative_air_mass(sun_altitude_degrees);
   constexpr double solar_constant = 1367.0;  // W/m^2, the value of the fit
+  // The earth's distance after Spencer 1971, first order.
   const double normal = solar_constant * (1.0 + 0.033 * std::cos(2.0 * pi * day_of_year / 365.0));
   double brightness = diffuse_horizontal * air_mass / normal;
   const auto at = std::find_if(perez_classes.begin(), perez_classes.end() - 1,

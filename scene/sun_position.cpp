@@ -73,4 +73,9 @@ SunPosition sun_position(const ClockTime& when, double latitude, double longitud
           .altitude_degrees = std::atan2(up, std::hypot(north, east)) / degree};
 }
 
+double relative_air_mass(double altitude_degrees) {
+  return 1.0 / (std::sin(altitude_degrees * degree) +
+                0.50572 * std::pow(altitude_degrees + 6.07995, -1.6364));
+}
+
 }  // namespace lightwell

@@ -26,6 +26,10 @@ struct SunPosition {
 /// for a time of day, a time zone or a place out of range.
 SunPosition sun_position(const ClockTime& when, double latitude, double longitude);
 
+/// Air that the sun's rays pass, relative to the path from the zenith; altitude in degrees, (0, 90]
+/// (Kasten & Young 1989, "Revised optical air mass tables and approximation formula").
+double relative_air_mass(double altitude_degrees);
+
 /// Number of the day within its year, 1 for the first of January. Throws like sun_position().
 int day_of_year(int year, int month, int day);
 

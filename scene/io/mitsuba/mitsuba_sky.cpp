@@ -3,9 +3,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <cmath>
 
 #include "scene/errors.h"
+#include "scene/io/mitsuba/mitsuba_sunsky.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
 #include "scene/io/pictures/environment_file.h"
 
@@ -37,15 +37,7 @@ void add_map(const MitsubaNode& emitter, const MitsubaTree& tree, Sky& sky) {
   } catch (const InputError& error) {
     emitter.fail(fmt::format("cannot be used: {}", error.what()));
   }
-  Eigen::Matrix3d turn = read_to_world(emitter).linear();
-  const double size = std::cbrt(std::abs(turn.determinant()));
-  turn /= size;
-  constexpr double rounding = 1e-4;
-  if (!(size > 0.0) || !(turn * turn.transpose()).isIdentity(rounding)) {
-    emitter.fail("has a transformation that is no rotation; an environment map can only be turned");
-  }
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  sky.to_map = (svd.matrixU() * svd.matrixV().transpose()).transpose();
+  sky.to_map = read_turn(emitter).transpose();
   sky.kind = SkyKind::map;
   sky.name = fmt::format("map '{}', {} x {}", path.filename().string(), sky.map->width(),
                          sky.map->height());
@@ -63,7 +55,7 @@ void add_directional(const MitsubaNode& emitter, MitsubaColors& colors, Scene& s
                           .irradiance = colors.positive_or(emitter, "irradiance", 1.0f)};
 }
 
-// Adds the emitter, of which the caller knows that it is a dome, or else a sun.
+// Adds the emitter, of which the caller knows that it is a dome, a sun or both.
 void add_dome_or_sun(const MitsubaNode& emitter, const MitsubaTree& tree, Scene& scene,
                      Remarks& remarks) {
   MitsubaColors colors(tree, remarks);
@@ -73,7 +65,9 @@ void add_dome_or_sun(const MitsubaNode& emitter, const MitsubaTree& tree, Scene&
     return;
   }
   Sky& sky = sky_of(scene);
-  if (emitter.type == "envmap") {
+  if (is_clear_day(emitter)) {
+    set_clear_day(emitter, tree, colors, remarks, sky);
+  } else if (emitter.type == "envmap") {
     add_map(emitter, tree, sky);
   } else {
     sky.name = "uniform all around";
@@ -85,12 +79,15 @@ void add_dome_or_sun(const MitsubaNode& emitter, const MitsubaTree& tree, Scene&
 
 bool add_mitsuba_sky(const MitsubaNode& emitter, const MitsubaTree& tree, Scene& scene,
                      Remarks& remarks) {
-  const bool is_dome = emitter.type == "constant" || emitter.type == "envmap";
-  if (!is_dome && emitter.type != "directional") return false;
-  if (is_dome ? scene_has_dome(scene) : scene.sky && scene.sky->sun) {
-    remarks.add(
-        fmt::format("A scene has one {} here; further ones were left out", is_dome ? "sky" : "sun"),
-        emitter.label());
+  const bool is_dome =
+      emitter.type == "constant" || emitter.type == "envmap" || has_clear_dome(emitter);
+  const bool is_sun = emitter.type == "directional" || has_clear_sun(emitter);
+  if (!is_dome && !is_sun) return false;
+  const bool is_second_dome = is_dome && scene_has_dome(scene);
+  if (is_second_dome || (is_sun && scene.sky && scene.sky->sun)) {
+    remarks.add(fmt::format("A scene has one {} here; further ones were left out",
+                            is_second_dome ? "sky" : "sun"),
+                emitter.label());
     return true;
   }
   const std::optional<Sky> before = scene.sky;

@@ -7,9 +7,9 @@
 
 namespace lightwell {
 
-/// Adds an infinitely distant <emitter> (constant, envmap, directional) to the scene's sky; false
-/// for other plugins. A second sky or sun is left out with a remark. Throws InputError naming file,
-/// line and fault.
+/// Adds an infinitely distant <emitter> (constant, envmap, directional, sunsky, sky, sun) to the
+/// scene's sky; false for other plugins. A second sky or sun is left out with a remark. Throws
+/// InputError naming file, line and fault.
 bool add_mitsuba_sky(const MitsubaNode& emitter, const MitsubaTree& tree, Scene& scene,
                      Remarks& remarks);
 

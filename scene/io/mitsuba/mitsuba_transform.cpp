@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/SVD>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -111,6 +112,18 @@ Eigen::Affine3d read_to_world(const MitsubaNode& owner) {
   if (!node) return Eigen::Affine3d::Identity();
   if (node->tag == "animation") node->fail("moves; only scenes that stand still can be read");
   return read_mitsuba_transform(*node);
+}
+
+Eigen::Matrix3d read_turn(const MitsubaNode& owner) {
+  Eigen::Matrix3d turn = read_to_world(owner).linear();
+  const double size = std::cbrt(std::abs(turn.determinant()));
+  turn /= size;
+  constexpr double rounding = 1e-4;
+  if (!(size > 0.0) || !(turn * turn.transpose()).isIdentity(rounding)) {
+    owner.fail("has a transformation that is no rotation; a sky can only be turned");
+  }
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(turn, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return svd.matrixU() * svd.matrixV().transpose();
 }
 
 Eigen::Vector3d read_mitsuba_point(const MitsubaNode& node) {

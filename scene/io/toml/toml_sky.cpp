@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 #include <stdexcept>
 
+#include "scene/clear_sky.h"
 #include "scene/errors.h"
 #include "scene/io/pictures/environment_file.h"
 #include "scene/limits.h"
@@ -106,25 +108,15 @@ Eigen::Vector3d read_sun_direction(const TomlTable& table, const Sky& sky) {
 
 struct SunTable {
   Sun sun{};
+  bool has_brightness = true;
   std::optional<double> direct_normal{};  // W/m^2 of the whole spectrum; empty: not known
   int day = 172;                          // of the year
 };
 
-SunTable read_sun(const TomlValue& value, const Sky& sky, const TomlBands& bands) {
-  const TomlTable table =
-      value.table({"direction", "azimuth", "altitude", "date", "time", "time_zone", "latitude",
-                   "longitude", "illuminance", "irradiance", "direct_normal", "color", "angle"});
-  SunTable result{.sun = {.direction = read_sun_direction(table, sky)}};
-  if (table.has("date")) {
-    const ClockTime time = read_when(table).time;
-    result.day = day_of_year(time.year, time.month, time.day);
-  }
+// Sets the irradiance of `result`; false if the table does not state it.
+bool read_brightness(const TomlTable& table, const TomlBands& bands, SunTable& result) {
   const std::string how = one_of_present(table, {"illuminance", "irradiance", "direct_normal"});
-  if (how.empty()) {
-    table.fail(
-        "must say how bright it is across its rays: with 'illuminance' in lux, 'irradiance' "
-        "in W/m2 per band, or 'direct_normal' in W/m2 of all wavelengths");
-  }
+  if (how.empty()) return false;
   const TomlValue amount = table.require(how);
   if (how == "irradiance") {
     result.sun.irradiance = read_toml_emission(amount, bands);
@@ -139,6 +131,26 @@ SunTable read_sun(const TomlValue& value, const Sky& sky, const TomlBands& bands
     result.direct_normal = is_lux ? lux / daylight_efficacy : given;
     result.sun.irradiance = photometric(lux, colour_of(table, bands), amount, bands);
   }
+  return true;
+}
+
+SunTable read_sun(const TomlValue& value, const Sky& sky, const TomlBands& bands,
+                  bool needs_brightness) {
+  const TomlTable table =
+      value.table({"direction", "azimuth", "altitude", "date", "time", "time_zone", "latitude",
+                   "longitude", "illuminance", "irradiance", "direct_normal", "color", "angle"});
+  SunTable result{.sun = {.direction = read_sun_direction(table, sky),
+                          .irradiance = constant_spectrum(bands.bands, 0.0f)}};
+  if (table.has("date")) {
+    const ClockTime time = read_when(table).time;
+    result.day = day_of_year(time.year, time.month, time.day);
+  }
+  result.has_brightness = read_brightness(table, bands, result);
+  if (!result.has_brightness && needs_brightness) {
+    table.fail(
+        "must say how bright it is across its rays: with 'illuminance' in lux, 'irradiance' "
+        "in W/m2 per band, or 'direct_normal' in W/m2 of all wavelengths");
+  }
   if (const auto angle = table.find("angle")) {
     result.sun.angle_degrees = angle->positive();
     if (!(result.sun.angle_degrees <= 10.0)) angle->fail("is more than 10 degrees; a sun is small");
@@ -146,14 +158,23 @@ SunTable read_sun(const TomlValue& value, const Sky& sky, const TomlBands& bands
   return result;
 }
 
+// Checks that there is a sun above the horizon; returns its altitude in degrees.
+double require_sun_above(const TomlTable& table, const std::string& kind,
+                         const std::optional<SunTable>& sun, const Sky& sky) {
+  if (!sun) table.fail(fmt::format("is of the kind '{}', which needs a [sky.sun]", kind));
+  const double sine = sun->sun.direction.dot(sky.up);
+  if (!(sine > 0.0)) {
+    table.fail(fmt::format("is of the kind '{}', which needs a sun above the horizon", kind));
+  }
+  return std::asin(std::min(1.0, sine)) * 180.0 / std::numbers::pi;
+}
+
 void read_gradation(const TomlTable& table, const std::string& kind,
                     const std::optional<SunTable>& sun, Sky& sky) {
   const auto require_sun = [&] {
-    if (!sun) table.fail(fmt::format("is of the kind '{}', which needs a [sky.sun]", kind));
-    if (!(sun->sun.direction.dot(sky.up) > 0.0)) {
-      table.fail(fmt::format("is of the kind '{}', which needs a sun above the horizon", kind));
-    }
+    const double altitude = require_sun_above(table, kind, sun, sky);
     sky.bright = sun->sun.direction;
+    return altitude;
   };
   if (kind == "cie-overcast") {
     sky.kind = SkyKind::overcast;
@@ -168,10 +189,8 @@ void read_gradation(const TomlTable& table, const std::string& kind,
     sky.name = fmt::format("CIE standard sky {}", type);
     if (sky.gradation.c != 0.0) require_sun();
   } else if (kind == "perez") {
-    require_sun();
+    const double altitude = require_sun();
     const double diffuse = table.require("diffuse_horizontal").positive();
-    const double altitude =
-        std::asin(std::min(1.0, sky.bright.dot(sky.up))) * 180.0 / std::numbers::pi;
     if (!sun->direct_normal) {
       table.require("sun").fail(
           "gives the irradiance of some wavelengths, and a sky of the kind 'perez' needs that of "
@@ -198,8 +217,7 @@ void read_sky_map(const TomlTable& table, Sky& sky) {
                          sky.map->height());
   // The picture's centre lies in the north, `rotation` degrees further clockwise.
   const double turn = table.has("rotation") ? table.require("rotation").number() : 0.0;
-  const Eigen::Vector3d middle = sky_direction(sky, turn, 0.0);
-  sky.to_map << sky.up.cross(middle).transpose(), sky.up.transpose(), middle.transpose();
+  sky.to_map = to_map_around(sky.up, sky_direction(sky, turn, 0.0));
 }
 
 // Sets the sky's scale from exactly one of four keys.
@@ -243,14 +261,54 @@ void read_scale(const TomlTable& table, const TomlBands& bands, Sky& sky) {
   }
 }
 
-}  // namespace
+// Reflectance of the ground, which is that of land unless the table says otherwise.
+Spectrum ground_reflectance(const TomlTable& table, const TomlBands& bands) {
+  constexpr float of_land = 0.2f;
+  return table.has("ground_reflectance")
+             ? read_toml_share(table.require("ground_reflectance"), bands)
+             : constant_spectrum(bands.bands, of_land);
+}
 
-Sky read_toml_sky(const TomlValue& value, const TomlBands& bands) {
-  const TomlTable table =
-      value.table({"kind", "type", "up", "north", "illuminance", "zenith_luminance", "radiance",
-                   "diffuse_horizontal", "color", "ground_reflectance", "ground_radiance", "file",
-                   "rotation", "scale", "sun"});
-  Sky sky;
+// Radiance of the ground under the irradiance E.
+Spectrum read_ground(const TomlTable& table, const TomlBands& bands, const Spectrum& E) {
+  if (one_of_present(table, {"ground_reflectance", "ground_radiance"}) == "ground_radiance") {
+    return read_toml_emission(table.require("ground_radiance"), bands);
+  }
+  return ground_reflectance(table, bands) * E * std::numbers::inv_pi_v<float>;
+}
+
+void require_rgb(const TomlValue& place, const TomlBands& bands) {
+  if (bands.bands.count() == 3 && bands.bands.wavelengths_nm.empty()) return;
+  place.fail(
+      "is in r, g and b, and the scene has other bands; use another kind of sky, or RGB bands");
+}
+
+// A clear day by turbidity. What is not stated of the brightness of dome and sun is the model's.
+void read_clear_day(const TomlTable& table, const std::string& kind, const TomlBands& bands,
+                    const std::optional<SunTable>& sun, Sky& sky) {
+  const TomlValue turbidity = table.require("turbidity");
+  require_rgb(turbidity, bands);
+  const ClearDay day{.turbidity = turbidity.number_within(1.0, 10.0),
+                     .sun_altitude_degrees = require_sun_above(table, kind, sun, sky),
+                     .albedo = ground_reflectance(table, bands)};
+  const auto per_band = static_cast<float>(luminous_width_nm);
+  Spectrum E = clear_sky_irradiance(day) * per_band;
+  double factor = 1.0;
+  if (const auto given = table.find("illuminance")) {
+    factor = given->number_at_least(0.0) / luminous(bands.bands, E);
+    E *= static_cast<float>(factor);
+  }
+  if (!sun->has_brightness) {
+    sky.sun->irradiance = per_band * clear_sun_irradiance(ClearSunModel::hosek_wilkie,
+                                                          day.turbidity, day.sun_altitude_degrees);
+  }
+  const Spectrum below = read_ground(table, bands, E + sun_horizontal_irradiance(sky));
+  set_clear_dome(day, {.scale = factor * luminous_width_nm, .below = below}, sky.sun->direction,
+                 sky);
+}
+
+// Reads `up` and `north`.
+void read_axes(const TomlTable& table, Sky& sky) {
   if (const auto up = table.find("up")) sky.up = direction(*up);
   if (const auto north = table.find("north")) {
     sky.north = direction(*north);
@@ -263,32 +321,49 @@ Sky read_toml_sky(const TomlValue& value, const TomlBands& bands) {
   }
   sky.north = level.normalized();
   sky.bright = sky.up;
-  sky.scale = sky.ground = constant_spectrum(bands.bands, 0.0f);
+}
 
-  std::optional<SunTable> sun;
-  if (const auto given = table.find("sun")) sun = read_sun(*given, sky, bands);
-  if (sun && sun->sun.direction.dot(sky.up) > 0.0) sky.sun = sun->sun;
-
-  const std::string kind = table.require("kind").one_of(
-      {"uniform", "cie-overcast", "cie-clear", "cie", "perez", "map", "none"});
-  const auto only_for = [&](const char* key, std::initializer_list<std::string_view> kinds) {
-    if (!table.has(key)) return;
-    for (const std::string_view k : kinds) {
-      if (kind == k) return;
+// Refuses keys that the kind of the sky gives no meaning.
+void check_keys(const TomlTable& table, const std::string& kind) {
+  const auto only_for = [&](std::initializer_list<const char*> keys,
+                            std::initializer_list<std::string_view> kinds) {
+    if (std::ranges::find(kinds, kind) != kinds.end()) return;
+    for (const char* key : keys) {
+      if (!table.has(key)) continue;
+      table.require(key).fail(fmt::format("has no meaning for a sky of the kind '{}'", kind));
     }
-    table.require(key).fail(fmt::format("has no meaning for a sky of the kind '{}'", kind));
   };
-  only_for("type", {"cie"});
-  for (const char* key : {"file", "rotation", "scale"}) only_for(key, {"map"});
+  const auto not_for = [&](std::initializer_list<const char*> keys, std::string_view other) {
+    if (kind == other) only_for(keys, {});
+  };
+  only_for({"type"}, {"cie"});
+  only_for({"file", "rotation", "scale"}, {"map"});
+  only_for({"turbidity"}, {"turbidity"});
+  not_for({"ground_reflectance", "ground_radiance", "color"}, "map");
+  not_for({"color", "zenith_luminance", "radiance", "diffuse_horizontal"}, "turbidity");
+  not_for({"illuminance", "zenith_luminance", "radiance", "diffuse_horizontal"}, "none");
+}
+
+}  // namespace
+
+Sky read_toml_sky(const TomlValue& value, const TomlBands& bands) {
+  const TomlTable table =
+      value.table({"kind", "type", "up", "north", "illuminance", "zenith_luminance", "radiance",
+                   "diffuse_horizontal", "color", "ground_reflectance", "ground_radiance", "file",
+                   "rotation", "scale", "turbidity", "sun"});
+  Sky sky;
+  read_axes(table, sky);
+  sky.scale = sky.ground = constant_spectrum(bands.bands, 0.0f);
+  const std::string kind = table.require("kind").one_of(
+      {"uniform", "cie-overcast", "cie-clear", "cie", "perez", "turbidity", "map", "none"});
+  std::optional<SunTable> sun;
+  if (const auto given = table.find("sun")) {
+    sun = read_sun(*given, sky, bands, kind != "turbidity");
+    if (sun->sun.direction.dot(sky.up) > 0.0) sky.sun = sun->sun;
+  }
+  check_keys(table, kind);
   if (kind == "map") {
-    if (bands.bands.count() != 3 || !bands.bands.wavelengths_nm.empty()) {
-      table.require("file").fail(
-          "is in r, g and b, and the scene has other bands; use an analytic "
-          "sky, or RGB bands");
-    }
-    for (const char* key : {"ground_reflectance", "ground_radiance", "color"}) {
-      only_for(key, {});
-    }
+    require_rgb(table.require("file"), bands);
     read_sky_map(table, sky);
     read_scale(table, bands, sky);
     if (const auto scale = table.find("scale")) {
@@ -296,25 +371,18 @@ Sky read_toml_sky(const TomlValue& value, const TomlBands& bands) {
     }
     return sky;
   }
+  if (kind == "turbidity") {
+    read_clear_day(table, kind, bands, sun, sky);
+    return sky;
+  }
   if (kind == "none") {
-    for (const char* key : {"illuminance", "zenith_luminance", "radiance", "diffuse_horizontal"}) {
-      only_for(key, {});
-    }
     sky.name = "dark";
   } else {
     read_gradation(table, kind, sun, sky);
     read_scale(table, bands, sky);
   }
-  const std::string ground = one_of_present(table, {"ground_reflectance", "ground_radiance"});
-  if (ground == "ground_radiance") {
-    sky.ground = read_toml_emission(table.require(ground), bands);
-  } else {
-    constexpr float of_land = 0.2f;
-    const Spectrum rho = ground.empty() ? constant_spectrum(bands.bands, of_land)
-                                        : read_toml_share(table.require(ground), bands);
-    sky.ground = rho * (diffuse_horizontal_irradiance(sky) + sun_horizontal_irradiance(sky)) *
-                 std::numbers::inv_pi_v<float>;
-  }
+  sky.ground = read_ground(table, bands,
+                           diffuse_horizontal_irradiance(sky) + sun_horizontal_irradiance(sky));
   return sky;
 }
 

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "scene/clear_sky.h"
 #include "scene/errors.h"
 #include "scene/io/pictures/environment_file.h"
 #include "scene/io/read_scene.h"
@@ -243,6 +244,63 @@ TEST(EnvironmentFile, ReadsOpenExr) {
   EXPECT_EQ(map->height(), 2);
   EXPECT_NEAR(map->at(-Eigen::Vector3d::UnitY())[0], 2.0f, 1e-3f);
   EXPECT_NEAR(map->at(Eigen::Vector3d::UnitY())[2], 3.0f, 1e-3f);
+}
+
+const std::string clear_day = R"(
+[sky]
+kind = "turbidity"
+turbidity = 3
+up = [0, 0, 1]
+[sky.sun]
+azimuth = 120
+altitude = 40
+)";
+
+// Lux of the model; the dome's picture sums to its irradiance within 2e-3 (clear_sky_test.cpp).
+TEST_F(NativeSky, ClearDayHasTheLightOfItsModel) {
+  const Scene scene = read(clear_day);
+  const ClearDay day{.turbidity = 3.0,
+                     .sun_altitude_degrees = 40.0,
+                     .albedo = constant_spectrum(scene.bands, 0.2f)};
+  const double per_nm = 683.0 * 106.857;
+  const double dome = per_nm * luminous(rgb_bands(1.0), clear_sky_irradiance(day));
+  EXPECT_NEAR(lux(scene), dome, 2e-3 * dome);
+  const Spectrum sun = clear_sun_irradiance(ClearSunModel::hosek_wilkie, 3.0, 40.0);
+  EXPECT_NEAR(luminous(scene.bands, scene.sky->sun->irradiance),
+              per_nm * luminous(rgb_bands(1.0), sun), 1.0);  // of 1e5, in floats
+  // The ground: rho E / pi.
+  const double E = dome + luminous(scene.bands, sun_horizontal_irradiance(*scene.sky));
+  const Spectrum below = sky_radiance(*scene.sky, sky_direction(*scene.sky, 10.0, -20.0));
+  EXPECT_NEAR(luminous(scene.bands, below), 0.2 * E / pi, 1e-5 * E);
+  // The bright side of the dome is the sun's.
+  EXPECT_GT(sky_radiance(*scene.sky, sky_direction(*scene.sky, 120.0, 20.0))[1],
+            2.0f * sky_radiance(*scene.sky, sky_direction(*scene.sky, 300.0, 20.0))[1]);
+}
+
+TEST_F(NativeSky, ClearDayTakesStatedLux) {
+  std::string stated = clear_day + "illuminance = 50000\n";
+  stated.insert(stated.find("up ="), "illuminance = 9000\nground_radiance = [1, 2, 3]\n");
+  const Scene scene = read(stated);
+  EXPECT_NEAR(lux(scene), 9000.0, 2e-3 * 9000.0);
+  EXPECT_NEAR(luminous(scene.bands, scene.sky->sun->irradiance), 50000.0, 0.1);
+  EXPECT_FLOAT_EQ(sky_radiance(*scene.sky, sky_direction(*scene.sky, 10.0, -20.0))[2], 3.0f);
+}
+
+TEST_F(NativeSky, ClearDaysThatCannotBeAreRefused) {
+  const auto changed = [&](const std::string& from, const std::string& to) {
+    std::string text = clear_day;
+    return refusal(text.replace(text.find(from), from.size(), to));
+  };
+  const auto expect = [](const std::string& message, const char* part) {
+    EXPECT_NE(message.find(part), std::string::npos) << part << " is not in: " << message;
+  };
+  expect(changed("turbidity = 3", "turbidity = 30"), "turbidity");
+  expect(changed("turbidity = 3\n", ""), "turbidity");
+  expect(changed("altitude = 40", "altitude = -1"), "above the horizon");
+  expect(refusal("[sky]\nkind = 'turbidity'\nturbidity = 3\n"), "[sky.sun]");
+  expect(changed("up =", "zenith_luminance = 3\nup ="), "no meaning");
+  expect(changed("\n[sky]", "[bands]\nkind = 'spectral'\ncount = 6\n[sky]"), "RGB bands");
+  expect(refusal("[sky]\nkind = 'uniform'\nradiance = 1\nturbidity = 3\n"), "no meaning");
 }
 
 class MitsubaSky : public testing::Test {
