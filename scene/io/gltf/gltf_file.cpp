@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/errors.h"
+#include "scene/io/gltf/gltf_compressed.h"
 #include "scene/io/gltf/gltf_uri.h"
 #include "scene/io/text_file.h"
 
@@ -19,6 +20,8 @@ namespace {
 
 // Sizes of the header and of the head of a chunk of a .glb (glTF 2.0, 4.4).
 constexpr std::size_t glb_header = 12, chunk_head = 8;
+// Elements of a sparse accessor that names no bytes for the rest, which are zeros.
+constexpr std::size_t most_elements_without_bytes = 100'000;
 constexpr std::uint32_t json_chunk = 0x4e4f534a, binary_chunk = 0x004e4942;
 
 std::uint32_t word_at(std::string_view bytes, std::size_t at) {
@@ -92,9 +95,10 @@ struct GltfFile::Content {
   TextFile file;
   nlohmann::json json{};
   std::map<std::string, std::vector<GltfObject>, std::less<>> lists{};
-  std::vector<std::string> loaded{};         // decoded or loaded buffers
-  std::vector<std::string_view> buffers{};   // views into `loaded` or the file
-  std::vector<std::string> buffer_faults{};  // by buffer; empty for one that can be used
+  std::vector<std::string> loaded{};              // decoded or loaded buffers
+  std::vector<std::string_view> buffers{};        // views into `loaded` or the file
+  std::vector<std::string> buffer_faults{};       // by buffer; empty for one that can be used
+  std::map<std::size_t, std::string> unpacked{};  // by compressed buffer view
 };
 
 // Memory layout of an accessor; element i begins at data + i * stride.
@@ -204,38 +208,44 @@ const GltfObject& GltfFile::at(const char* list, std::size_t index,
                           members.size()));
 }
 
-std::string_view GltfFile::view(std::size_t buffer_view, const GltfObject& asking) const {
-  const GltfObject& view = at("bufferViews", buffer_view, asking);
-  const std::size_t number = view.index_or("buffer", 0);
-  at("buffers", number, view);
-  const std::string_view bytes = content_->buffers[number];
-  const std::size_t offset = view.index_or("byteOffset", 0);
-  const std::size_t length = view.index_or("byteLength", 0);
-  if (view.extension("EXT_meshopt_compression")) {
-    view.fail("is compressed with EXT_meshopt_compression; export it without");
-  }
+// The part of a buffer that `owner`, a buffer view or the extension of one, names.
+std::string_view GltfFile::slice(std::size_t buffer, const GltfObject& owner) const {
+  at("buffers", buffer, owner);
+  const std::string_view bytes = content_->buffers[buffer];
+  const std::size_t offset = owner.index_or("byteOffset", 0);
+  const std::size_t length = owner.index_or("byteLength", 0);
   if (offset > bytes.size() || length > bytes.size() - offset) {
-    const std::string& fault = content_->buffer_faults[number];
+    const std::string& fault = content_->buffer_faults[buffer];
     if (!fault.empty()) throw InputError(fault);
-    view.fail(
+    owner.fail(
         fmt::format("ends at byte {} of a buffer of {} bytes", offset + length, bytes.size()));
   }
   return bytes.substr(offset, length);
 }
 
-GltfFile::Elements GltfFile::elements(std::size_t accessor, std::string_view type,
-                                      const GltfObject& asking) const {
-  const GltfObject& a = at("accessors", accessor, asking);
-  if (a.has("sparse")) a.fail("is sparse, which is not read; export plain accessors");
-  if (a.string_or("type", "") != type) a.fail(fmt::format("must be of type {}", type));
-  const Component component = component_of(a.index_or("componentType", 0));
-  if (component.size == 0) a.fail("has a componentType that does not exist");
-  const auto number = a.index("bufferView");
-  if (!number) a.fail("has no bufferView, so it has no data");
-  const std::string_view bytes = view(*number, a);
-  const std::size_t offset = a.index_or("byteOffset", 0), count = a.index_or("count", 0);
-  const std::size_t size = component.size * (type == "VEC3" ? 3 : type == "VEC2" ? 2 : 1);
-  const std::size_t stride = at("bufferViews", *number, a).index_or("byteStride", size);
+std::string_view GltfFile::view(std::size_t buffer_view, const GltfObject& asking) const {
+  const GltfObject& view = at("bufferViews", buffer_view, asking);
+  const auto packed = view.extension("EXT_meshopt_compression");
+  if (!packed) return slice(view.index_or("buffer", 0), view);
+  auto& unpacked = content_->unpacked;
+  const auto known = unpacked.find(buffer_view);
+  if (known != unpacked.end()) return known->second;
+  // Packed meshes are a fifth to a tenth of plain ones.
+  constexpr std::size_t most_times = 32, always = 1u << 24;
+  std::size_t room = always;
+  for (const std::string_view buffer : content_->buffers) room += most_times * buffer.size();
+  for (const auto& [number, bytes] : unpacked) room -= std::min(room, bytes.size());
+  std::string bytes = decode_meshopt(*packed, slice(packed->index_or("buffer", 0), *packed), room);
+  return unpacked.emplace(buffer_view, std::move(bytes)).first->second;
+}
+
+GltfFile::Elements GltfFile::located(const GltfObject& owner, const GltfObject& a,
+                                     std::size_t count, std::size_t size) const {
+  const auto number = owner.index("bufferView");
+  if (!number) owner.fail("has no bufferView, so it has no data");
+  const std::string_view bytes = view(*number, owner);
+  const std::size_t offset = owner.index_or("byteOffset", 0);
+  const std::size_t stride = at("bufferViews", *number, owner).index_or("byteStride", size);
   const bool fits =
       count == 0 || (stride >= size && offset <= bytes.size() && size <= bytes.size() - offset &&
                      count - 1 <= (bytes.size() - offset - size) / stride);
@@ -243,17 +253,67 @@ GltfFile::Elements GltfFile::elements(std::size_t accessor, std::string_view typ
     a.fail(fmt::format("has {} elements, which do not fit into the {} bytes of its bufferView",
                        count, bytes.size()));
   }
-  return {.data = bytes.data() + offset,
-          .count = count,
-          .stride = stride,
-          .component = component,
-          .normalized = a.boolean_or("normalized", false) && component.largest > 0.0};
+  return {.data = bytes.data() + offset, .count = count, .stride = stride};
+}
+
+// The elements of `dense`, which may lack data, and instead of some those that `sparse` lists.
+std::string GltfFile::substituted(const GltfObject& sparse, std::size_t size,
+                                  const Elements& dense) const {
+  std::string packed(dense.count * size, '\0');
+  if (dense.data) {
+    for (std::size_t i = 0; i < dense.count; ++i) {
+      std::memcpy(packed.data() + i * size, dense.data + i * dense.stride, size);
+    }
+  }
+  const auto places = sparse.object("indices"), values = sparse.object("values");
+  if (!places || !values) sparse.fail("lacks 'indices' or 'values'");
+  const Component component = component_of(places->index_or("componentType", 0));
+  if (component.size == 0) places->fail("has a componentType that does not exist");
+  const std::size_t count = sparse.index_or("count", 0);
+  const Elements at = located(*places, sparse, count, component.size);
+  const Elements from = located(*values, sparse, count, size);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double place = component.read(at.data + i * at.stride);
+    if (!(place >= 0.0 && place < static_cast<double>(dense.count) && place == std::floor(place))) {
+      sparse.fail(fmt::format("index {} is {}, but there are {} elements", i, place, dense.count));
+    }
+    std::memcpy(packed.data() + static_cast<std::size_t>(place) * size, from.data + i * from.stride,
+                size);
+  }
+  return packed;
+}
+
+GltfFile::Elements GltfFile::elements(std::size_t accessor, std::string_view type,
+                                      const GltfObject& asking, std::string& store) const {
+  const GltfObject& a = at("accessors", accessor, asking);
+  if (a.string_or("type", "") != type) a.fail(fmt::format("must be of type {}", type));
+  const Component component = component_of(a.index_or("componentType", 0));
+  if (component.size == 0) a.fail("has a componentType that does not exist");
+  const std::size_t size = component.size * (type == "VEC3" ? 3 : type == "VEC2" ? 2 : 1);
+  const std::size_t count = a.index_or("count", 0);
+  const auto sparse = a.object("sparse");
+  Elements result{.count = count, .stride = size};
+  if (!sparse || a.has("bufferView")) {
+    result = located(a, a, count, size);
+  } else if (count > most_elements_without_bytes) {
+    a.fail(fmt::format("has {} elements without a bufferView; at most {} are read", count,
+                       most_elements_without_bytes));
+  }
+  if (sparse) {
+    store = substituted(*sparse, size, result);
+    result.data = store.data();
+    result.stride = size;
+  }
+  result.component = component;
+  result.normalized = a.boolean_or("normalized", false) && component.largest > 0.0;
+  return result;
 }
 
 template <int size>
 std::vector<Eigen::Matrix<double, size, 1>> GltfFile::tuples(std::size_t accessor,
                                                              const GltfObject& asking) const {
-  const Elements from = elements(accessor, size == 3 ? "VEC3" : "VEC2", asking);
+  std::string store;
+  const Elements from = elements(accessor, size == 3 ? "VEC3" : "VEC2", asking, store);
   std::vector<Eigen::Matrix<double, size, 1>> result(from.count);
   for (std::size_t i = 0; i < from.count; ++i) {
     for (std::size_t c = 0; c < size; ++c) {
@@ -280,7 +340,8 @@ std::vector<Eigen::Vector2d> GltfFile::pairs(std::size_t accessor, const GltfObj
 
 std::vector<int> GltfFile::indices(std::size_t accessor, std::size_t limit,
                                    const GltfObject& asking) const {
-  const Elements from = elements(accessor, "SCALAR", asking);
+  std::string store;
+  const Elements from = elements(accessor, "SCALAR", asking, store);
   std::vector<int> result(from.count);
   for (std::size_t i = 0; i < from.count; ++i) {
     const double index = from.component.read(from.data + i * from.stride);

@@ -36,6 +36,9 @@ class GltfFile {
   std::vector<Eigen::Vector2d> pairs(std::size_t accessor, const GltfObject& asking) const;
   /// Elements of a SCALAR accessor of whole numbers, all below `limit`.
   std::vector<int> indices(std::size_t accessor, std::size_t limit, const GltfObject& asking) const;
+  /// Bytes of a buffer view; those of a compressed one are unpacked once and kept, as far as all of
+  /// them are not far more than the buffers have.
+  std::string_view view(std::size_t buffer_view, const GltfObject& asking) const;
   /// Mean of a texture's picture; empty if the picture's format is not supported.
   std::optional<PictureMean> texture_mean(std::size_t texture, PictureCode code,
                                           const GltfObject& asking) const;
@@ -56,8 +59,14 @@ class GltfFile {
   std::vector<Eigen::Matrix<double, size, 1>> tuples(std::size_t accessor,
                                                      const GltfObject& asking) const;
   std::string resource(const GltfObject& owner, const std::string& uri) const;
-  std::string_view view(std::size_t buffer_view, const GltfObject& asking) const;
-  Elements elements(std::size_t accessor, std::string_view type, const GltfObject& asking) const;
+  std::string_view slice(std::size_t buffer, const GltfObject& owner) const;
+  // `owner` has a bufferView and a byteOffset; `a` is its accessor.
+  Elements located(const GltfObject& owner, const GltfObject& a, std::size_t count,
+                   std::size_t size) const;
+  std::string substituted(const GltfObject& sparse, std::size_t size, const Elements& dense) const;
+  // Elements of a sparse accessor are put together in `store`.
+  Elements elements(std::size_t accessor, std::string_view type, const GltfObject& asking,
+                    std::string& store) const;
 
   std::filesystem::path path_;
   std::unique_ptr<Content> content_;

@@ -8,6 +8,7 @@
 
 #include "scene/io/gltf/gltf_camera.h"
 #include "scene/io/gltf/gltf_file.h"
+#include "scene/io/gltf/gltf_geometry.h"
 #include "scene/io/gltf/gltf_light.h"
 #include "scene/io/gltf/gltf_materials.h"
 #include "scene/io/numbered_names.h"
@@ -32,8 +33,9 @@ constexpr std::array known_extensions = {"KHR_materials_emissive_strength",
                                          "KHR_materials_unlit",
                                          "KHR_lights_punctual",
                                          "KHR_mesh_quantization",
+                                         "KHR_draco_mesh_compression",
+                                         "EXT_meshopt_compression",
                                          "KHR_texture_transform"};
-constexpr std::array hidden_geometry = {"KHR_draco_mesh_compression", "EXT_meshopt_compression"};
 
 // Modes of primitives (glTF 2.0, 3.7.2.1).
 constexpr std::size_t triangle_list = 4, triangle_strip = 5, triangle_fan = 6;
@@ -119,7 +121,6 @@ class GltfReader {
 
   void check_extensions() {
     for (const std::string& name : file_.root().strings("extensionsUsed")) {
-      if (std::ranges::find(hidden_geometry, name) != hidden_geometry.end()) continue;
       if (std::ranges::find(known_extensions, name) == known_extensions.end()) {
         remarks_.add("Extensions that have no effect", name);
       }
@@ -229,29 +230,27 @@ class GltfReader {
 
   PolygonMesh read_triangles(const GltfObject& primitive, const GltfObject& attributes,
                              const Eigen::Affine3d& to_world) {
-    for (const char* const compression : hidden_geometry) {
-      if (!primitive.extension(compression)) continue;
-      primitive.fail(fmt::format("is compressed with {}; export it without", compression));
-    }
-    const auto position = attributes.index("POSITION");
-    if (!position) attributes.fail("lacks 'POSITION'");
-    auto vertices = file_.vectors(*position, attributes);
-    for (Eigen::Vector3d& p : vertices) p = to_world * p;
-    const auto accessor = primitive.index("indices");
-    std::vector<int> indices;
-    if (accessor) indices = file_.indices(*accessor, vertices.size(), primitive);
-    const std::size_t corners = accessor ? indices.size() : vertices.size();
-    const std::size_t mode = primitive.index_or("mode", triangle_list);
+    const auto count_in = [&](std::int64_t triangles) {
+      size_.add(triangles, [&](const std::string& sentence) {
+        throw LimitError(
+            fmt::format("{}: {} {}", scene_.file.string(), primitive.place(), sentence));
+      });
+    };
+    const bool is_packed = primitive.extension("KHR_draco_mesh_compression").has_value();
+    GltfGeometry geometry = read_geometry(file_, primitive, attributes,
+                                          materials_.texture_coordinates(primitive), count_in);
+    for (Eigen::Vector3d& p : geometry.positions) p = to_world * p;
+    const Eigen::Matrix3d turn = normal_transform(to_world);
+    for (Eigen::Vector3d& n : geometry.normals) n = turn * n;
+    const std::size_t corners = geometry.corners();
+    // Draco packs the triangles of strips and fans too as a list.
+    const std::size_t mode = is_packed ? triangle_list : primitive.index_or("mode", triangle_list);
     if (mode > triangle_fan) primitive.fail(fmt::format("has the mode {}, which is none", mode));
     if (mode == triangle_list && corners % 3 != 0) {
       primitive.fail(fmt::format("has {} corners, which is no multiple of three", corners));
     }
-    const std::vector<Eigen::Vector2d> uv = texture_coordinates(primitive, attributes, vertices);
-    const NormalLoop normals = vertex_normals(attributes, to_world, vertices.size());
     const std::size_t count = mode == triangle_list ? corners / 3 : corners < 3 ? 0 : corners - 2;
-    size_.add(static_cast<std::int64_t>(count), [&](const std::string& sentence) {
-      throw LimitError(fmt::format("{}: {} {}", scene_.file.string(), primitive.place(), sentence));
-    });
+    if (!is_packed) count_in(static_cast<std::int64_t>(count));
     const bool is_mirrored = to_world.linear().determinant() < 0.0;
     MeshBuilder mesh;
     for (std::size_t i = 0; i < count; ++i) {
@@ -259,49 +258,19 @@ class GltfReader {
       UvLoop of_loop;
       NormalLoop normals_there;
       for (const std::size_t corner : corners_of(mode, i)) {
-        const std::size_t vertex = accessor ? static_cast<std::size_t>(indices[corner]) : corner;
-        loop.push_back(vertices[vertex]);
-        if (!uv.empty()) of_loop.push_back(uv[vertex]);
-        if (!normals.empty()) normals_there.push_back(normals[vertex]);
+        const std::size_t vertex = geometry.vertex(corner);
+        loop.push_back(geometry.positions[vertex]);
+        if (!geometry.uv.empty()) of_loop.push_back(geometry.uv[vertex]);
+        if (!geometry.normals.empty()) normals_there.push_back(geometry.normals[vertex]);
       }
       if (is_mirrored) {  // mirroring must not exchange front and back
         std::swap(loop[1], loop[2]);
-        if (!uv.empty()) std::swap(of_loop[1], of_loop[2]);
-        if (!normals.empty()) std::swap(normals_there[1], normals_there[2]);
+        if (!of_loop.empty()) std::swap(of_loop[1], of_loop[2]);
+        if (!normals_there.empty()) std::swap(normals_there[1], normals_there[2]);
       }
       add_repaired(mesh, std::move(loop), repairs_, std::move(of_loop), std::move(normals_there));
     }
     return mesh.mesh();
-  }
-
-  // Vertex normals in world coordinates; empty if the mesh has none.
-  NormalLoop vertex_normals(const GltfObject& attributes, const Eigen::Affine3d& to_world,
-                            std::size_t vertex_count) const {
-    const auto accessor = attributes.index("NORMAL");
-    if (!accessor) return {};
-    NormalLoop normals = file_.vectors(*accessor, attributes);
-    if (normals.size() != vertex_count) {
-      attributes.fail(fmt::format("has {} normals for {} vertices", normals.size(), vertex_count));
-    }
-    const Eigen::Matrix3d turn = normal_transform(to_world);
-    for (Eigen::Vector3d& n : normals) n = turn * n;
-    return normals;
-  }
-
-  // Texture coordinates by vertex; empty if the material has no picture or the mesh no coordinates.
-  std::vector<Eigen::Vector2d> texture_coordinates(
-      const GltfObject& primitive, const GltfObject& attributes,
-      const std::vector<Eigen::Vector3d>& vertices) const {
-    const std::string set = materials_.texture_coordinates(primitive);
-    if (set.empty()) return {};
-    const auto accessor = attributes.index(set.c_str());
-    if (!accessor) return {};
-    auto uv = file_.pairs(*accessor, attributes);
-    if (uv.size() != vertices.size()) {
-      attributes.fail(
-          fmt::format("has {} texture coordinates for {} vertices", uv.size(), vertices.size()));
-    }
-    return uv;
   }
 
   const GltfFile& file_;
