@@ -15,7 +15,7 @@ struct Library {
 
 constexpr std::string_view jpeg_turbo = LIGHTWELL_JPEG_TURBO;
 
-constexpr std::array<Library, 16> libraries = {
+constexpr std::array<Library, 18> libraries = {
     {{"Embree", LIGHTWELL_EMBREE},
      {"oneTBB", LIGHTWELL_TBB},
      {"CGAL", LIGHTWELL_CGAL},
@@ -26,6 +26,8 @@ constexpr std::array<Library, 16> libraries = {
      {"libpng", LIGHTWELL_PNG},
      jpeg_turbo.empty() ? Library{"libjpeg", LIGHTWELL_JPEG} : Library{"libjpeg-turbo", jpeg_turbo},
      {"assimp", LIGHTWELL_ASSIMP},
+     {"Draco", LIGHTWELL_DRACO},
+     {"meshoptimizer", LIGHTWELL_MESHOPTIMIZER},
      {"pugixml", LIGHTWELL_PUGIXML},
      {"muParser", LIGHTWELL_MUPARSER},
      {"toml++", LIGHTWELL_TOMLPLUSPLUS},
