@@ -55,9 +55,9 @@ void add_directional(const MitsubaNode& emitter, MitsubaColors& colors, Scene& s
                           .irradiance = colors.positive_or(emitter, "irradiance", 1.0f)};
 }
 
-// Adds the emitter, of which the caller knows that it is a dome, a sun or both.
-void add_dome_or_sun(const MitsubaNode& emitter, const MitsubaTree& tree, Scene& scene,
-                     Remarks& remarks) {
+// Adds the parts of the emitter.
+void add_parts(const MitsubaNode& emitter, const MitsubaTree& tree, const SkyParts& parts,
+               Scene& scene, Remarks& remarks) {
   MitsubaColors colors(tree, remarks);
   if (emitter.type == "directional") {
     add_directional(emitter, colors, scene);
@@ -65,8 +65,9 @@ void add_dome_or_sun(const MitsubaNode& emitter, const MitsubaTree& tree, Scene&
     return;
   }
   Sky& sky = sky_of(scene);
-  if (is_clear_day(emitter)) {
-    set_clear_day(emitter, tree, colors, remarks, sky);
+  const SkyParts clear = clear_day_parts(emitter);
+  if (clear.dome || clear.sun) {
+    set_clear_day(emitter, tree, colors, remarks, parts, sky);
   } else if (emitter.type == "envmap") {
     add_map(emitter, tree, sky);
   } else {
@@ -75,24 +76,31 @@ void add_dome_or_sun(const MitsubaNode& emitter, const MitsubaTree& tree, Scene&
   }
 }
 
+SkyParts parts_of(const MitsubaNode& emitter) {
+  SkyParts parts = clear_day_parts(emitter);
+  if (emitter.type == "constant" || emitter.type == "envmap") parts.dome = true;
+  if (emitter.type == "directional") parts.sun = true;
+  return parts;
+}
+
 }  // namespace
 
 bool add_mitsuba_sky(const MitsubaNode& emitter, const MitsubaTree& tree, Scene& scene,
                      Remarks& remarks) {
-  const bool is_dome =
-      emitter.type == "constant" || emitter.type == "envmap" || has_clear_dome(emitter);
-  const bool is_sun = emitter.type == "directional" || has_clear_sun(emitter);
-  if (!is_dome && !is_sun) return false;
-  const bool is_second_dome = is_dome && scene_has_dome(scene);
-  if (is_second_dome || (is_sun && scene.sky && scene.sky->sun)) {
-    remarks.add(fmt::format("A scene has one {} here; further ones were left out",
-                            is_second_dome ? "sky" : "sun"),
+  SkyParts parts = parts_of(emitter);
+  if (!parts.dome && !parts.sun) return false;
+  const auto leave_second = [&](bool& part, bool is_there, const char* what) {
+    if (!part || !is_there) return;
+    part = false;
+    remarks.add(fmt::format("A scene has one {} here; further ones were left out", what),
                 emitter.label());
-    return true;
-  }
+  };
+  leave_second(parts.dome, scene_has_dome(scene), "sky");
+  leave_second(parts.sun, scene.sky && scene.sky->sun, "sun");
+  if (!parts.dome && !parts.sun) return true;
   const std::optional<Sky> before = scene.sky;
   try {
-    add_dome_or_sun(emitter, tree, scene, remarks);
+    add_parts(emitter, tree, parts, scene, remarks);
   } catch (const InputError&) {
     scene.sky = before;
     throw;

@@ -95,20 +95,13 @@ double width_of_sun(const MitsubaNode& emitter, Remarks& remarks) {
 
 }  // namespace
 
-bool is_clear_day(const MitsubaNode& emitter) {
-  return has_clear_dome(emitter) || has_clear_sun(emitter);
-}
-
-bool has_clear_dome(const MitsubaNode& emitter) {
-  return emitter.type == "sunsky" || emitter.type == "sky";
-}
-
-bool has_clear_sun(const MitsubaNode& emitter) {
-  return emitter.type == "sunsky" || emitter.type == "sun";
+SkyParts clear_day_parts(const MitsubaNode& emitter) {
+  const bool is_both = emitter.type == "sunsky";
+  return {.dome = is_both || emitter.type == "sky", .sun = is_both || emitter.type == "sun"};
 }
 
 void set_clear_day(const MitsubaNode& emitter, const MitsubaTree& tree, MitsubaColors& colors,
-                   Remarks& remarks, Sky& sky) {
+                   Remarks& remarks, const SkyParts& parts, Sky& sky) {
   const bool is_old = is_before_mitsuba_2(tree);
   const Axes axes = axes_of(emitter, is_old);
   sky.up = axes.up;
@@ -126,8 +119,8 @@ void set_clear_day(const MitsubaNode& emitter, const MitsubaTree& tree, MitsubaC
       .sun_altitude_degrees = altitude,
       .albedo = colors.share_or(emitter, "albedo", is_old ? 0.2f : 0.3f, Pixels::all)};
   const double stretch = number_within(emitter, "stretch", 1.0, 1.0, 2.0);
-  const double dome_scale = has_clear_dome(emitter) ? scale_of(emitter, "sky_scale") : 0.0;
-  const double sun_scale = has_clear_sun(emitter) ? scale_of(emitter, "sun_scale") : 0.0;
+  const double dome_scale = parts.dome ? scale_of(emitter, "sky_scale") : 0.0;
+  const double sun_scale = parts.sun ? scale_of(emitter, "sun_scale") : 0.0;
   if (dome_scale > 0.0) {
     set_clear_dome(day, {.scale = dome_scale, .stretch = stretch, .below = Spectrum::Zero(3)},
                    to_sun, sky);

@@ -7,18 +7,19 @@
 
 namespace lightwell {
 
-/// True for the emitters `sunsky`, `sky` and `sun`.
-bool is_clear_day(const MitsubaNode& emitter);
+/// Parts of a sky that come of an emitter.
+struct SkyParts {
+  bool dome = false, sun = false;
+};
 
-/// Which parts of the scene's sky a clear day brings.
-bool has_clear_dome(const MitsubaNode& emitter);
-bool has_clear_sun(const MitsubaNode& emitter);
+/// What the emitters `sunsky`, `sky` and `sun` are; neither for others.
+SkyParts clear_day_parts(const MitsubaNode& emitter);
 
-/// Sets dome, sun or both of `sky` from a clear day by turbidity, with the axes and the sun's model
+/// Sets the `parts` of `sky` from a clear day by turbidity, with the axes and the sun's model
 /// of the file's version: before Mitsuba 2, +Y is up, -Z north and +X east; later +Z is up, -X
 /// north and -Y east. Throws InputError naming file, line and value for values out of range and a
 /// sun below the horizon; `sky` is then half set.
 void set_clear_day(const MitsubaNode& emitter, const MitsubaTree& tree, MitsubaColors& colors,
-                   Remarks& remarks, Sky& sky);
+                   Remarks& remarks, const SkyParts& parts, Sky& sky);
 
 }  // namespace lightwell
