@@ -89,11 +89,27 @@ Material glossy(const Given& given, const Spectrum& diffuse, const Spectrum& spe
   return material;
 }
 
+// Specularity from which RADIANCE mirrors more light at grazing angles, by exp(-5.85 cos), as do
+// the surfaces of polished materials; and the highest one that a coat's index is read from.
+constexpr float least_coat = 0.018f, highest_coat = 0.5f;
+
+// Index of refraction of a surface that mirrors this share along its normal (Fresnel 1823).
+double index_of(float specularity) {
+  const double root = std::sqrt(static_cast<double>(specularity));
+  return (1.0 + root) / (1.0 - root);
+}
+
 // plastic and metal. Arguments: red green blue specularity roughness [roughness of the other
 // direction].
 Material reflecting(const Given& given, bool is_metal, double roughness) {
   const Spectrum color = given.color(0);
   const float specular = given.share(3, "specularity");
+  if (!is_metal && roughness <= smooth_alpha && specular >= least_coat &&
+      specular <= highest_coat) {
+    Material coated = opaque(color);
+    lay_simple_coat(coated, index_of(specular), 0.0, Spectrum::Ones(3));
+    return coated;
+  }
   const Spectrum highlight = specular * (is_metal ? color : Spectrum(Spectrum::Ones(3)));
   return glossy(given, (1.0f - specular) * color, highlight, roughness);
 }

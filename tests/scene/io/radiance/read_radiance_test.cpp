@@ -170,12 +170,29 @@ TEST_F(Radiance, RingsHaveTheirAreaTheirHoleAndTheirNormal) {
 }
 
 TEST_F(Radiance, PlasticShinesWhiteAndMetalInItsColour) {
-  const Material plastic = material("void plastic m 0 0 5 .6 .4 .2 .1 0");
+  const Material plastic = material("void plastic m 0 0 5 .6 .4 .2 .1 .05");
   expect_rgb(plastic.reflectance, {0.54, 0.36, 0.18});
   expect_rgb(plastic.specular, {0.1, 0.1, 0.1});
+  const Material dull = material("void plastic m 0 0 5 .6 .4 .2 .01 0");
+  EXPECT_FALSE(dull.coat);
+  expect_rgb(dull.specular, {0.01, 0.01, 0.01});
   const Material metal = material("void metal m 0 0 5 .6 .4 .2 .9 0");
   expect_rgb(metal.reflectance, {0.06, 0.04, 0.02});
   expect_rgb(metal.specular, {0.54, 0.36, 0.18});
+}
+
+TEST_F(Radiance, SmoothPlasticMirrorsMoreAtGrazingAnglesAsRadiancesDoes) {
+  const double share = 0.04;
+  const Material paint = material("void plastic m 0 0 5 .6 .4 .2 .04 0");
+  ASSERT_TRUE(paint.coat);
+  EXPECT_NEAR(paint.coat->index_of_refraction, 1.5, 1e-6);  // ((n - 1) / (n + 1))^2 = 0.04
+  // RADIANCE mirrors s + (1 - s) (exp(-5.85 cos) - 0.00203), and C times the rest is diffuse. The
+  // integral of 2 cos exp(-5.85 cos) is 2 / 5.85^2 = 0.0584 less 0.4 %. Fresnel's mean for 1.5 is
+  // 0.0918; RADIANCE's is 0.0942.
+  const double mirrored = share + (1.0 - share) * (0.0584 * 0.98 - 0.00203);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_NEAR(paint.reflectance[k], (0.6 - 0.2 * k) * (1.0 - mirrored), 0.003) << k;
+  }
 }
 
 TEST_F(Radiance, WideHighlightsAreDiffuseLight) {
