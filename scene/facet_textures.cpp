@@ -1,5 +1,6 @@
 #include "scene/facet_textures.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -10,9 +11,13 @@ namespace lightwell {
 FacetTextures::FacetTextures(const Scene& scene) {
   std::vector<int> pictures_of_material;
   for (const Material& material : scene.materials) {
-    const bool varies = material.texture || material.mask;
+    const bool varies = material.texture || material.emission_texture || material.mask;
     pictures_of_material.push_back(varies ? static_cast<int>(pictures_.size()) : -1);
-    if (varies) pictures_.push_back({.texture = material.texture, .mask = material.mask});
+    if (varies) {
+      pictures_.push_back({.texture = material.texture,
+                           .emission = material.emission_texture,
+                           .mask = material.mask});
+    }
   }
   if (pictures_.empty()) return;
   bool any = false;
@@ -29,8 +34,9 @@ FacetTextures::FacetTextures(const Scene& scene) {
       const bool has_uv = facet.uv_map >= 0;
       entry_of_.push_back(has_uv ? first + facet.uv_map : -1);
       any = any || has_uv;
-      has_holes_ =
-          has_holes_ || (has_uv && pictures_[static_cast<std::size_t>(pictures)].mask.has_value());
+      const Pictures& shown = pictures_[static_cast<std::size_t>(pictures)];
+      has_holes_ = has_holes_ || (has_uv && shown.mask.has_value());
+      has_emission_ = has_emission_ || (has_uv && shown.emission.has_value());
     }
   }
   if (!any) entry_of_.clear();
@@ -68,10 +74,30 @@ Spectrum FacetTextures::reflectance(int facet, const Eigen::Vector3d& point,
   return texture.factor * texture.image.over(uv.at(point), uv.gradient * footprint);
 }
 
+Spectrum FacetTextures::emission(int facet, const Eigen::Vector3d& point) const {
+  const EmissionTexture& texture = emission_texture(facet);
+  return texture.factor * texture.image.at(uv_map(facet).at(point));
+}
+
+Spectrum FacetTextures::emission(int facet, const Eigen::Vector3d& point,
+                                 const Eigen::Matrix<double, 3, 2>& footprint) const {
+  const EmissionTexture& texture = emission_texture(facet);
+  const UvMap& uv = uv_map(facet);
+  return texture.factor * texture.image.over(uv.at(point), uv.gradient * footprint);
+}
+
 double FacetTextures::texels_along(int facet, const Eigen::Vector3d& vector) const {
-  const SurfaceTexture& image = materials_of(facet).texture->image;
-  const Eigen::Vector2d along = image.placement.leftCols<2>() * (entry(facet).uv.gradient * vector);
-  return std::hypot(along.x() * image.picture->width(), along.y() * image.picture->height());
+  const Pictures& shown = materials_of(facet);
+  const Eigen::Vector2d in_uv = uv_map(facet).gradient * vector;
+  double texels = 0.0;
+  for (const SurfaceTexture* image : {shown.texture ? &shown.texture->image : nullptr,
+                                      shown.emission ? &shown.emission->image : nullptr}) {
+    if (!image) continue;
+    const Eigen::Vector2d along = image->placement.leftCols<2>() * in_uv;
+    texels = std::max(texels, std::hypot(along.x() * image->picture->width(),
+                                         along.y() * image->picture->height()));
+  }
+  return texels;
 }
 
 bool FacetTextures::is_hole(int facet, const Eigen::Vector3d& point) const {

@@ -23,6 +23,9 @@ class FacetTextures {
   std::uint64_t hash_of_holes() const { return hash_of_holes_; }
   bool is_textured(int facet) const { return varying(facet) && materials_of(facet).texture; }
   bool has_holes(int facet) const { return varying(facet) && materials_of(facet).mask; }
+  /// True if some facet shines by a picture.
+  bool has_emission() const { return has_emission_; }
+  bool has_emission(int facet) const { return varying(facet) && materials_of(facet).emission; }
 
   /// Diffuse rho at `point` (metres) in the plane of a textured facet, unfiltered.
   Spectrum reflectance(int facet, const Eigen::Vector3d& point) const;
@@ -30,7 +33,15 @@ class FacetTextures {
   /// metres).
   Spectrum reflectance(int facet, const Eigen::Vector3d& point,
                        const Eigen::Matrix<double, 3, 2>& footprint) const;
-  /// Number of texels of a facet's texture along `vector` (metres) in the facet's plane.
+  /// The same of the exitance M, W/m^2, of a facet that shines by a picture.
+  Spectrum emission(int facet, const Eigen::Vector3d& point) const;
+  Spectrum emission(int facet, const Eigen::Vector3d& point,
+                    const Eigen::Matrix<double, 3, 2>& footprint) const;
+  /// The picture by which a facet shines, and its coordinates.
+  const EmissionTexture& emission_texture(int facet) const { return *materials_of(facet).emission; }
+  const UvMap& uv_map(int facet) const { return entry(facet).uv; }
+  /// Largest number of texels of a facet's texture or picture of emission along `vector` (metres)
+  /// in the facet's plane.
   double texels_along(int facet, const Eigen::Vector3d& vector) const;
   /// True if light passes at `point` (metres) of a facet that has holes.
   bool is_hole(int facet, const Eigen::Vector3d& point) const;
@@ -38,6 +49,7 @@ class FacetTextures {
  private:
   struct Pictures {
     std::optional<ReflectanceTexture> texture{};
+    std::optional<EmissionTexture> emission{};
     std::optional<Mask> mask{};
   };
   struct Entry {
@@ -56,7 +68,7 @@ class FacetTextures {
   std::vector<Pictures> pictures_{};
   std::vector<Entry> entries_{};  // one for each UvMap of a surface that has pictures
   std::vector<int> entry_of_{};   // by facet; -1: no picture; empty: no facet has one
-  bool has_holes_ = false;
+  bool has_holes_ = false, has_emission_ = false;
   std::uint64_t hash_of_holes_ = 0;
 };
 

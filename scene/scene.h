@@ -57,6 +57,12 @@ struct ReflectanceTexture {
   Spectrum factor{};  ///< [0,1]
 };
 
+/// A picture of emission: M is `factor` times the picture's r, g and b.
+struct EmissionTexture {
+  SurfaceTexture image{};
+  Spectrum factor{};  ///< W/m^2, >= 0
+};
+
 /// A picture that cuts holes: light passes wherever the picture is below `cutoff`. All values from
 /// `cutoff` up are equally opaque.
 struct Mask {
@@ -86,17 +92,21 @@ struct Material {
   /// incidence.
   std::optional<Conductor> metal{};
   std::optional<Dielectric> dielectric{};  ///< if set, the surface is clear; rho and specular are 0
-  Spectrum emission{};            ///< exitance M = pi L of a Lambertian emitter, W/m^2, >= 0
+  /// Exitance M = pi L of a Lambertian emitter, W/m^2, >= 0; with a picture of it: of facets
+  /// without UV.
+  Spectrum emission{};
   bool one_sided = false;         ///< nothing is reflected from behind; the back is black
   bool emits_both_sides = false;  ///< emission leaves the back as well as the front
   /// Diffuse rho that varies over facets with UV; only in scenes of RGB bands.
   std::optional<ReflectanceTexture> texture{};
+  /// Emission that varies over facets with UV; only in scenes of RGB bands.
+  std::optional<EmissionTexture> emission_texture{};
   std::optional<Mask> mask{};  ///< holes in facets with UV; of materials that emit nothing
   /// Bends the normals of facets with UV in pictures. Solutions do not depend on it.
   std::optional<Relief> relief{};
 
   /// True if a picture is laid over facets with UV.
-  bool shows_picture() const { return texture || mask || relief; }
+  bool shows_picture() const { return texture || emission_texture || mask || relief; }
   /// True if light is mirrored, refracted or passes straight on, sharply or spread by roughness.
   bool is_specular() const {
     return dielectric.has_value() || (specular > 0.0f).any() || passes_straight();

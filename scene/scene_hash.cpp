@@ -82,11 +82,16 @@ void add_image(const SurfaceTexture& image, Hash& hash) {
 }
 
 void add_pictures(const Material& m, Hash& hash) {
-  constexpr std::uint64_t texture = 0x7e87u, mask = 0x3a5cu;
+  constexpr std::uint64_t texture = 0x7e87u, emission = 0xe3155u, mask = 0x3a5cu;
   if (m.texture) {
     hash.add(texture);
     add_image(m.texture->image, hash);
     hash.add(m.texture->factor);
+  }
+  if (m.emission_texture) {
+    hash.add(emission);
+    add_image(m.emission_texture->image, hash);
+    hash.add(m.emission_texture->factor);
   }
   if (m.mask) {
     hash.add(mask);
@@ -97,7 +102,7 @@ void add_pictures(const Material& m, Hash& hash) {
 
 // Texture coordinates matter only where the material shows a picture.
 void add_uv(const PolygonMesh& mesh, const Material& material, Hash& hash) {
-  if (!material.texture && !material.mask) return;
+  if (!material.texture && !material.emission_texture && !material.mask) return;
   for (const UvMap& uv : mesh.uv_maps) {
     for (const double x : uv.gradient.reshaped()) hash.add(x);
     for (const double x : uv.offset) hash.add(x);

@@ -144,6 +144,23 @@ void check_pictures(const Scene& scene, const Material& m) {
                        m.name));
     }
   }
+  if (m.emission_texture) {
+    if (scene.bands.count() != 3 || !scene.bands.wavelengths_nm.empty()) {
+      fail(scene, fmt::format("material '{}' has a picture of emission, whose colours are r, g and "
+                              "b, but the scene has other bands; give it an emission alone",
+                              m.name));
+    }
+    if (!m.emission_texture->image.picture) {
+      fail(scene, fmt::format("material '{}' has a picture of emission without a picture", m.name));
+    }
+    check_light(scene, fmt::format("material '{}'", m.name), "factor of the picture of emission",
+                "W/m^2", m.emission_texture->factor);
+    if (m.dielectric || m.mask) {
+      fail(scene, fmt::format("material '{}' has a picture of emission and is a dielectric or has "
+                              "holes; remove one",
+                              m.name));
+    }
+  }
   if (m.relief) {
     const double most = m.relief->is_in_metres ? most_relief_depth : most_relief_scale;
     if (!m.relief->slopes.picture) {

@@ -56,4 +56,28 @@ inline void put_mask(Scene& scene, std::size_t surface, const SurfaceTexture& pi
   lay_uv(scene.surfaces[surface]);
 }
 
+/// A picture of colours, rows from the top.
+inline SurfaceTexture coloured_picture(int width, int height,
+                                       const std::vector<Eigen::Array3f>& colours) {
+  std::vector<Texture::Code> texels;
+  for (const Eigen::Array3f& colour : colours) {
+    for (const float share : colour) texels.push_back(Texture::encode(share));
+  }
+  return {.picture = std::make_shared<const Texture>(width, height, 3, std::move(texels)),
+          .is_smooth = false};
+}
+
+/// Gives a surface of one polygon a material of its own that shines by `factor` times a picture.
+inline void put_light(Scene& scene, std::size_t surface, const SurfaceTexture& picture,
+                      float factor = 1.0f) {
+  Material material = scene.materials[static_cast<std::size_t>(scene.surfaces[surface].material)];
+  material.name += " with a picture of light";
+  material.emission_texture =
+      EmissionTexture{.image = picture, .factor = constant_spectrum(scene.bands, factor)};
+  material.emission = factor * picture.picture->mean();
+  scene.surfaces[surface].material = static_cast<int>(scene.materials.size());
+  scene.materials.push_back(std::move(material));
+  lay_uv(scene.surfaces[surface]);
+}
+
 }  // namespace lightwell

@@ -90,7 +90,7 @@ void remark_pictures_without_uv(const Scene& scene, Remarks& remarks) {
     const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
     const auto has_uv = [](const Facet& facet) { return facet.uv_map >= 0; };
     if (mesh && std::ranges::all_of(mesh->facets, has_uv)) continue;
-    if (material.texture) {
+    if (material.texture || material.emission_texture) {
       remarks.add("Pictures on surfaces without texture coordinates count by their mean colour",
                   surface.name);
     }

@@ -158,7 +158,7 @@ Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
   const bool is_double_sided = from.boolean_or("doubleSided", false);
   material.one_sided = !is_double_sided;
   set_surface(from, is_closed, material);
-  material.emission = emission(from);
+  set_emission(from, material);
   cut_by_alpha(from, material);
   material.emits_both_sides = material.is_emitter() && is_double_sided && !is_closed;
   if (material.dielectric && material.is_emitter()) {
@@ -179,8 +179,9 @@ Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
 void GltfMaterials::set_relief(const GltfObject& from, Material& material) {
   const auto info = from.object("normalTexture");
   if (!info) return;
-  const auto base = BaseColor(from).info();
-  if (base && coordinates_of(*base) != coordinates_of(*info)) {
+  const auto base = BaseColor(from).info(), emissive = from.object("emissiveTexture");
+  const auto& first = base ? base : emissive;
+  if (first && coordinates_of(*first) != coordinates_of(*info)) {
     return remarks_.add("Normal maps with texture coordinates of their own were left out",
                         material.name);
   }
@@ -203,23 +204,29 @@ std::string GltfMaterials::texture_coordinates(const GltfObject& primitive) cons
   if (!index || *index >= file_.count("materials")) return {};
   const GltfObject material = file_.at("materials", *index, primitive);
   const auto base = BaseColor(material).info();
-  const auto info = base ? base : material.object("normalTexture");
+  auto info = base ? base : material.object("emissiveTexture");
+  if (!info) info = material.object("normalTexture");
   return info ? coordinates_of(*info) : std::string();
 }
 
 std::optional<Picture> GltfMaterials::base_picture(const GltfObject& from) {
   const auto info = BaseColor(from).info();
-  if (!info) return std::nullopt;
-  const auto texture = info->index("index");
-  if (!texture) info->fail("lacks the index of a texture");
-  auto known = base_pictures_.find(*texture);
-  if (known == base_pictures_.end()) {
+  return info ? color_picture(*info, from) : std::nullopt;
+}
+
+// Picture of sRGB colours of a texture's use by the material `from`.
+std::optional<Picture> GltfMaterials::color_picture(const GltfObject& info,
+                                                    const GltfObject& from) {
+  const auto texture = info.index("index");
+  if (!texture) info.fail("lacks the index of a texture");
+  auto known = color_pictures_.find(*texture);
+  if (known == color_pictures_.end()) {
     std::optional<Picture> picture;
     const bool is_sound = remarks_.attempt(unusable_pictures, from.name(), [&] {
-      picture = file_.texture_picture(*texture, PictureCode::srgb, *info);
+      picture = file_.texture_picture(*texture, PictureCode::srgb, info);
     });
     if (is_sound && !picture) remarks_.add(unread_pictures, from.name());
-    known = base_pictures_.emplace(*texture, std::move(picture)).first;
+    known = color_pictures_.emplace(*texture, std::move(picture)).first;
   }
   return known->second;
 }
@@ -282,6 +289,7 @@ void GltfMaterials::cut_by_alpha(const GltfObject& from, Material& material) {
   }
   let_through(material, Spectrum::Constant(3, static_cast<float>(opacity)));
   material.emission *= static_cast<float>(opacity);
+  if (material.emission_texture) material.emission_texture->factor *= static_cast<float>(opacity);
 }
 
 PictureMean GltfMaterials::texture_mean(const std::optional<GltfObject>& owner, const char* key,
@@ -445,19 +453,36 @@ void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, doub
   material.one_sided = false;
 }
 
-Spectrum GltfMaterials::emission(const GltfObject& from) {
-  if (!from.has("emissiveFactor")) return Spectrum::Zero(3);
-  Spectrum radiance = color(from, "emissiveFactor", 3);
-  radiance *= static_cast<float>(
-      number_or(from.extension("KHR_materials_emissive_strength"), "emissiveStrength", 1.0));
-  if ((radiance > 0.0f).any()) {
-    radiance *= texture_mean(from, "emissiveTexture", PictureCode::srgb, from).color.cast<float>();
+void GltfMaterials::set_emission(const GltfObject& from, Material& material) {
+  if (!from.has("emissiveFactor")) {
+    material.emission = Spectrum::Zero(3);
+    return;
   }
-  const Spectrum M = static_cast<float>(std::numbers::pi) * radiance;
+  Spectrum M = static_cast<float>(std::numbers::pi) * color(from, "emissiveFactor", 3);
+  M *= static_cast<float>(
+      number_or(from.extension("KHR_materials_emissive_strength"), "emissiveStrength", 1.0));
   if (!((M >= 0.0f).all() && M.isFinite().all())) {
     from.fail("has an emission that is negative or too large");
   }
-  return M;
+  material.emission = M;
+  const auto info = from.object("emissiveTexture");
+  if (!info || !material.is_emitter()) return;
+  const auto picture = color_picture(*info, from);
+  constexpr float grey = 0.5f;
+  if (!picture) {
+    material.emission *= grey;
+    return;
+  }
+  material.emission.head<3>() *= picture->mean.color.cast<float>();
+  const auto base = BaseColor(from).info();
+  if (base && coordinates_of(*base) != coordinates_of(*info)) {
+    return remarks_.add(
+        "Pictures of emission with texture coordinates of their own count by their mean",
+        material.name);
+  }
+  if (material.is_emitter()) {
+    material.emission_texture = {.image = laid_on(*info, picture->color), .factor = M};
+  }
 }
 
 }  // namespace lightwell

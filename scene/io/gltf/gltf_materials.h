@@ -23,7 +23,7 @@ class GltfMaterials {
   /// file declares the material double-sided.
   int of_primitive(const GltfObject& primitive, bool is_closed);
   /// Name of the primitive's set of texture coordinates for its base colour ("TEXCOORD_0"), or
-  /// for its normal map if the base colour has no picture; empty if neither has one.
+  /// for its emission or its normal map if what goes before has no picture; empty if none has one.
   std::string texture_coordinates(const GltfObject& primitive) const;
 
  private:
@@ -38,9 +38,10 @@ class GltfMaterials {
   void set_coat(const GltfObject& from, double alpha, Material& material);
   void set_clear(const GltfObject& from, const Spectrum& base, double alpha, bool is_closed,
                  Material& material);
-  Spectrum emission(const GltfObject& from);
+  void set_emission(const GltfObject& from, Material& material);
   // Picture of baseColorTexture or diffuseTexture; empty if absent or of an unsupported format.
   std::optional<Picture> base_picture(const GltfObject& from);
+  std::optional<Picture> color_picture(const GltfObject& info, const GltfObject& from);
   void lay_on_picture(const GltfObject& from, const Spectrum& base, Material& material);
   SurfaceTexture laid_on(const GltfObject& info, std::shared_ptr<const Texture> picture) const;
   // Mean of the texture under `key` of `owner`: white without a texture, grey 0.5 with a remark if
@@ -53,7 +54,7 @@ class GltfMaterials {
   Remarks& remarks_;
   std::map<std::pair<std::optional<std::size_t>, bool>, int> index_of_;
   std::map<std::pair<std::size_t, PictureCode>, std::optional<PictureMean>> textures_;
-  std::map<std::size_t, std::optional<Picture>> base_pictures_;  // by texture
+  std::map<std::size_t, std::optional<Picture>> color_pictures_;  // by texture
 };
 
 }  // namespace lightwell

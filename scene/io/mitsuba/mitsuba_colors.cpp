@@ -9,6 +9,7 @@
 #include "scene/io/mitsuba/mitsuba_transform.h"
 #include "scene/io/spectrum_samples.h"
 #include "scene/io/text_file.h"
+#include "scene/limits.h"
 
 namespace lightwell {
 namespace {
@@ -136,12 +137,7 @@ std::optional<MitsubaTexture> MitsubaColors::texture(const MitsubaNode& owner,
   if (!node) return std::nullopt;
   auto result = node->type == "bitmap" ? bitmap(*node, pixels) : checkerboard(*node, pixels);
   if (!result) return std::nullopt;
-  const MitsubaNode* scale = &tree_.resolved(*owner.property(property));
-  Spectrum factor = Spectrum::Ones(3);
-  for (; scale != node; scale = tree_.children(*scale, "texture").front()) {
-    factor *= part_or(*scale, "scale", 1.0f, pixels, 0) * part_or(*scale, "value", 1.0f, pixels, 0);
-  }
-  if (!(factor >= 0.0f).all()) owner.fail(fmt::format("has a negative scale of '{}'", property));
+  const Spectrum factor = factor_of(owner, property, *node, pixels);
   if ((factor > 1.0f).any()) {
     // Only texels above 1 after scaling are cut off.
     const Texture& picture = *result->texture.image.picture;
@@ -157,6 +153,40 @@ std::optional<MitsubaTexture> MitsubaColors::texture(const MitsubaNode& owner,
     result->mean *= factor;
   }
   return result;
+}
+
+// Product of the scale textures around the texture `node` of a property.
+Spectrum MitsubaColors::factor_of(const MitsubaNode& owner, std::string_view property,
+                                  const MitsubaNode& node, Pixels pixels) {
+  const MitsubaNode* scale = &tree_.resolved(*owner.property(property));
+  Spectrum factor = Spectrum::Ones(3);
+  for (; scale != &node; scale = tree_.children(*scale, "texture").front()) {
+    factor *= part_or(*scale, "scale", 1.0f, pixels, 0) * part_or(*scale, "value", 1.0f, pixels, 0);
+  }
+  if (!(factor >= 0.0f).all()) owner.fail(fmt::format("has a negative scale of '{}'", property));
+  return factor;
+}
+
+std::optional<MitsubaLight> MitsubaColors::light(const MitsubaNode& owner,
+                                                 std::string_view property) {
+  const MitsubaNode* node = texture_node(owner, property);
+  if (!node) return std::nullopt;
+  Spectrum factor = factor_of(owner, property, *node, Pixels::all);
+  SurfaceTexture image;
+  if (node->type == "bitmap") {
+    const auto picture = light_picture_of(*node);
+    if (!picture) return std::nullopt;
+    factor *= picture->brightest;
+    image = laid_on(*node, picture->color);
+  } else {
+    const float brightest = brightest_of_checkerboard(*node);
+    factor *= brightest;
+    image = checkerboard(*node, Pixels::all, brightest).texture.image;
+  }
+  if (!factor.isFinite().all()) owner.fail(fmt::format("has too large a scale of '{}'", property));
+  Spectrum mean = factor;
+  mean.head<3>() *= image.picture->mean();
+  return MitsubaLight{.texture = {.image = std::move(image), .factor = factor}, .mean = mean};
 }
 
 bool MitsubaColors::is_bitmap(const MitsubaNode& owner, std::string_view property) const {
@@ -241,10 +271,16 @@ std::optional<MitsubaTexture> MitsubaColors::bitmap(const MitsubaNode& node, Pix
                         .mean = spectrum_of(mean)};
 }
 
-// A checkerboard as a texture of two by two texels.
-MitsubaTexture MitsubaColors::checkerboard(const MitsubaNode& node, Pixels pixels) {
-  const Spectrum colors[] = {part_or(node, "color0", 0.4f, pixels, 0),
-                             part_or(node, "color1", 0.2f, pixels, 0)};
+float MitsubaColors::brightest_of_checkerboard(const MitsubaNode& node) {
+  return std::max({part_or(node, "color0", 0.4f, Pixels::all, 0).maxCoeff(),
+                   part_or(node, "color1", 0.2f, Pixels::all, 0).maxCoeff(), least_light});
+}
+
+// A checkerboard as a texture of two by two texels, its colours divided by `brightest`.
+MitsubaTexture MitsubaColors::checkerboard(const MitsubaNode& node, Pixels pixels,
+                                           float brightest) {
+  const Spectrum colors[] = {part_or(node, "color0", 0.4f, pixels, 0) / brightest,
+                             part_or(node, "color1", 0.2f, pixels, 0) / brightest};
   std::vector<Texture::Code> texels;
   for (const int square : {0, 1, 1, 0}) {
     for (int c = 0; c < 3; ++c) texels.push_back(Texture::encode(colors[square][c]));
@@ -393,21 +429,40 @@ Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node, Pixels pixels) {
                                                   : picture->mean.color);
 }
 
-// The picture of a bitmap; empty, with a remark, if it is missing, damaged or of another format.
-std::optional<Picture> MitsubaColors::picture_of(const MitsubaNode& node, PictureCode code) {
+namespace {
+
+// What `read` makes of a bitmap's file; empty, with a remark, if it is missing, damaged or of
+// another format.
+template <class Read>
+auto read_bitmap_file(const MitsubaTree& tree, const MitsubaNode& node, Remarks& remarks,
+                      Read&& read) -> decltype(read(std::filesystem::path())) {
   const std::string name = node.string_or("filename", "");
-  if (!name.empty() && !tree_.has_file(node, name)) {
-    remarks_.add("Pictures that are missing became a grey of 0.5, or no mask", name);
+  if (!name.empty() && !tree.has_file(node, name)) {
+    remarks.add("Pictures that are missing became a grey of 0.5, or no mask", name);
     return std::nullopt;
   }
-  std::optional<Picture> picture;
+  decltype(read(std::filesystem::path())) picture;
   const bool is_sound =
-      remarks_.attempt("Pictures that cannot be read became a grey of 0.5, or no mask", name,
-                       [&] { picture = pictures_.picture(tree_.file_named(node, name), code); });
+      remarks.attempt("Pictures that cannot be read became a grey of 0.5, or no mask", name,
+                      [&] { picture = read(tree.file_named(node, name)); });
   if (is_sound && !picture) {
-    remarks_.add("Pictures of a format that is not read became a grey of 0.5, or no mask", name);
+    remarks.add("Pictures of a format that is not read became a grey of 0.5, or no mask", name);
   }
   return picture;
+}
+
+}  // namespace
+
+std::optional<Picture> MitsubaColors::picture_of(const MitsubaNode& node, PictureCode code) {
+  return read_bitmap_file(tree_, node, remarks_, [&](const std::filesystem::path& path) {
+    return pictures_.picture(path, code);
+  });
+}
+
+std::optional<LightPicture> MitsubaColors::light_picture_of(const MitsubaNode& node) {
+  return read_bitmap_file(tree_, node, remarks_, [&](const std::filesystem::path& path) {
+    return pictures_.light(path, code_of(node));
+  });
 }
 
 }  // namespace lightwell

@@ -24,6 +24,12 @@ struct MitsubaTexture {
   Spectrum mean{};
 };
 
+/// A picture of light and its mean.
+struct MitsubaLight {
+  EmissionTexture texture{};
+  Spectrum mean{};
+};
+
 /// Converts spectra and textures of a Mitsuba scene to RGB bands (linear, Rec. 709). Wavelengths
 /// become r, g and b as in native files: means over 600-700, 500-600 and 400-500 nm. Where no
 /// texture can be kept, its mean colour is used, with a remark.
@@ -46,6 +52,10 @@ class MitsubaColors {
   /// properties.
   std::optional<MitsubaTexture> texture(const MitsubaNode& owner, std::string_view property,
                                         Pixels pixels);
+  /// Picture of a property that is at least 0, such as radiance: its values are `factor` times the
+  /// picture's. Empty for properties that are no bitmap or checkerboard, and for pictures that
+  /// cannot be read.
+  std::optional<MitsubaLight> light(const MitsubaNode& owner, std::string_view property);
   /// True if a property is a bitmap, scaled or not.
   bool is_bitmap(const MitsubaNode& owner, std::string_view property) const;
   /// Mask of an opacity bitmap: the picture's alpha, or its red channel if the picture is opaque.
@@ -58,7 +68,8 @@ class MitsubaColors {
  private:
   const MitsubaNode* texture_node(const MitsubaNode& owner, std::string_view property) const;
   std::optional<MitsubaTexture> bitmap(const MitsubaNode& node, Pixels pixels);
-  MitsubaTexture checkerboard(const MitsubaNode& node, Pixels pixels);
+  MitsubaTexture checkerboard(const MitsubaNode& node, Pixels pixels, float brightest = 1.0f);
+  float brightest_of_checkerboard(const MitsubaNode& node);
   static SurfaceTexture laid_on(const MitsubaNode& node, std::shared_ptr<const Texture> picture);
   Spectrum read(const MitsubaNode& node, Pixels pixels, int depth);
   Spectrum read_new(const MitsubaNode& node, Pixels pixels, int depth);
@@ -69,6 +80,9 @@ class MitsubaColors {
   Spectrum read_texture(const MitsubaNode& node, Pixels pixels, int depth);
   Spectrum read_bitmap(const MitsubaNode& node, Pixels pixels);
   std::optional<Picture> picture_of(const MitsubaNode& node, PictureCode code);
+  std::optional<LightPicture> light_picture_of(const MitsubaNode& node);
+  Spectrum factor_of(const MitsubaNode& owner, std::string_view property, const MitsubaNode& node,
+                     Pixels pixels);
   Spectrum part_or(const MitsubaNode& texture, std::string_view property, float otherwise,
                    Pixels pixels, int depth);
 

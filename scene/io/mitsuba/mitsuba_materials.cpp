@@ -74,6 +74,7 @@ int MitsubaMaterials::of_shape(const MitsubaNode& shape, const std::string& shap
     if (!remarks_.attempt("Emitters that cannot be used were left out", shape_name,
                           [&] { add_emission(*emitter, shape_name, material); })) {
       material.emission = dark;
+      material.emission_texture.reset();
     }
   }
   scene_.materials.push_back(std::move(material));
@@ -91,10 +92,18 @@ Material MitsubaMaterials::read_or_default(const MitsubaNode& bsdf) {
 
 void MitsubaMaterials::add_emission(const MitsubaNode& emitter, const std::string& name,
                                     Material& material) {
-  // The property's name in Mitsuba 0.3.
-  const auto intensity = colors_.positive(emitter, "intensity");
-  const Spectrum radiance = intensity ? *intensity : colors_.positive_or(emitter, "radiance", 1.0f);
-  material.emission = static_cast<float>(std::numbers::pi) * radiance;
+  // "intensity" is the property's name in Mitsuba 0.3.
+  const char* const property = emitter.property("intensity") ? "intensity" : "radiance";
+  constexpr auto pi = std::numbers::pi_v<float>;
+  if (const auto light = colors_.light(emitter, property)) {
+    material.emission = pi * light->mean;
+    if (material.is_emitter()) {
+      material.emission_texture = light->texture;
+      material.emission_texture->factor *= pi;
+    }
+  } else {
+    material.emission = pi * colors_.positive_or(emitter, property, 1.0f);
+  }
   if (!material.emission.isFinite().all()) emitter.fail("has a radiance that is too large");
   if (material.dielectric && material.is_emitter()) {
     remarks_.add("Clear materials that shine were read as black ones that shine", name);

@@ -25,7 +25,7 @@ struct MtlBlock {
   std::optional<Spectrum> diffuse{}, mirror{}, filter{}, radiance{};
   std::optional<float> index{}, dissolve{}, transparency{};
   int illumination = -1;
-  std::string diffuse_map{}, dissolve_map{};  ///< options and file
+  std::string diffuse_map{}, dissolve_map{}, radiance_map{};  ///< options and file
   std::string normal_map{}, bump_map{};
   bool has_other_map = false;
 };
@@ -90,6 +90,8 @@ class MtlParser {
     if (key == "illum") block.illumination = static_cast<int>(number(key, next_word(rest), 10.0f));
     if (key == "map_Kd") {
       block.diffuse_map = trimmed(rest);
+    } else if (key == "map_Ke") {
+      block.radiance_map = trimmed(rest);
     } else if (key == "map_d") {
       block.dissolve_map = trimmed(rest);
     } else if (key == "norm" || key == "map_Kn") {
@@ -259,6 +261,7 @@ class MapReader {
 
   void add_maps(const MtlBlock& b, Material& material) {
     if (!b.diffuse_map.empty()) lay_on_diffuse_map(b, material);
+    if (!b.radiance_map.empty()) lay_on_radiance_map(b, material);
     if (!b.normal_map.empty() || !b.bump_map.empty()) set_relief(b, material);
     if (b.dissolve_map.empty()) return;
     MapStatement map = read_map_statement(b.dissolve_map);
@@ -286,6 +289,24 @@ class MapReader {
     material.reflectance *= picture->mean.color.cast<float>();
   }
 
+  // Without Ke the picture is the radiance, as programs mean it that write map_Ke alone.
+  void lay_on_radiance_map(const MtlBlock& b, Material& material) {
+    MapStatement map = read_map_statement(b.radiance_map);
+    if (material.dielectric) return remarks_.add(textures_left_out, b.name);
+    const auto light =
+        open_by(map.file, b, "pictures that are no PNG, JPEG, EXR or HDR",
+                [&](const auto& path) { return pictures_.light(path, PictureCode::srgb); });
+    if (!light) return;
+    const Spectrum radiance = b.radiance.value_or(Spectrum::Ones(3));
+    map.image.picture = light->color;
+    const Spectrum factor = static_cast<float>(std::numbers::pi) * light->brightest * radiance;
+    material.emission = factor;
+    material.emission.head<3>() *= light->color->mean();
+    if (material.is_emitter()) {
+      material.emission_texture = {.image = map.image, .factor = factor};
+    }
+  }
+
   // Programs write pictures of normals to `bump`, too.
   void set_relief(const MtlBlock& b, Material& material) {
     const bool is_named = !b.normal_map.empty();
@@ -308,14 +329,22 @@ class MapReader {
 
   std::optional<Picture> open(const std::string& name, const MtlBlock& b,
                               PictureCode code = PictureCode::srgb) {
+    return open_by(name, b, "pictures that are neither PNG nor JPEG",
+                   [&](const auto& path) { return pictures_.picture(path, code); });
+  }
+
+  // What `read` makes of the file; empty, with a remark, if it cannot be used.
+  template <class Read>
+  auto open_by(const std::string& name, const MtlBlock& b, const char* others, Read&& read)
+      -> decltype(read(std::filesystem::path())) {
     const auto path = file_.path().parent_path() / name;
     if (!is_file(path)) {
       remarks_.add("pictures that are missing were left out", path.string());
       return std::nullopt;
     }
     try {
-      auto picture = pictures_.picture(path, code);
-      if (!picture) remarks_.add("pictures that are neither PNG nor JPEG were left out in", b.name);
+      auto picture = read(path);
+      if (!picture) remarks_.add(fmt::format("{} were left out in", others), b.name);
       return picture;
     } catch (const LimitError&) {
       throw;

@@ -27,11 +27,6 @@ namespace {
 
 constexpr std::int64_t most_environment_pixels = std::int64_t{1} << 26;
 
-struct EnvironmentPixels {
-  int width = 0, height = 0;
-  BandArray rgb{};
-};
-
 [[noreturn]] void fail_environment(const std::filesystem::path& path, std::string_view problem) {
   throw InputError(fmt::format("{}: {}", path.string(), problem));
 }
@@ -45,7 +40,7 @@ void check_environment_size(const std::filesystem::path& path, std::int64_t widt
   }
 }
 
-EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
+LightPixels read_exr_pixels(const std::filesystem::path& path) {
   check_exr_header(path);
   try {
     Imf::InputFile file(path.string().c_str());
@@ -53,9 +48,9 @@ EnvironmentPixels read_exr_pixels(const std::filesystem::path& path) {
     const std::int64_t width = std::int64_t{window.max.x} - window.min.x + 1;
     const std::int64_t height = std::int64_t{window.max.y} - window.min.y + 1;
     check_environment_size(path, width, height);
-    EnvironmentPixels pixels{.width = static_cast<int>(width),
-                             .height = static_cast<int>(height),
-                             .rgb = BandArray::Zero(width * height, 3)};
+    LightPixels pixels{.width = static_cast<int>(width),
+                       .height = static_cast<int>(height),
+                       .rgb = BandArray::Zero(width * height, 3)};
     Imf::FrameBuffer buffer;
     constexpr std::array names = {"R", "G", "B"};
     constexpr std::ptrdiff_t pixel = 3 * sizeof(float);
@@ -96,7 +91,7 @@ class RgbeFile {
     rest_ = file_.text();
   }
 
-  EnvironmentPixels read(RgbeUse use) {
+  LightPixels read(RgbeUse use) {
     if (use == RgbeUse::light && !rest_.starts_with("#?"))
       fail_environment(path_, "is no RADIANCE picture: it does not begin with '#?'");
     double exposure = 1.0;
@@ -110,7 +105,7 @@ class RgbeFile {
     }
     if (use == RgbeUse::pattern) exposure = 1.0;
     const auto [width, height] = resolution(line());
-    EnvironmentPixels pixels{.width = width, .height = height};
+    LightPixels pixels{.width = width, .height = height};
     pixels.rgb = BandArray::Zero(std::int64_t{width} * height, 3);
     std::vector<std::uint8_t> row(4 * static_cast<std::size_t>(width));
     for (int y = 0; y < height; ++y) {
@@ -230,22 +225,27 @@ class RgbeFile {
 
 }  // namespace
 
-std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem::path& path) {
+LightPixels read_light_pixels(const std::filesystem::path& path) {
   require_readable(path);
   const std::string extension = lower_extension(path);
-  EnvironmentPixels pixels;
+  LightPixels pixels;
   if (extension == ".exr") {
     pixels = read_exr_pixels(path);
   } else if (extension == ".hdr" || extension == ".pic" || extension == ".rgbe") {
     pixels = RgbeFile(path).read(RgbeUse::light);
   } else {
-    fail_environment(path, "is no environment map that is read: give an .exr or .hdr");
+    fail_environment(path, "is no picture of light that is read: give an .exr or .hdr");
   }
   const float most = pixels.rgb.maxCoeff();
   if (most > most_light) {
     fail_environment(path,
                      fmt::format("has a pixel of {:g}; at most {:g} is read", most, most_light));
   }
+  return pixels;
+}
+
+std::shared_ptr<const EnvironmentMap> read_environment_map(const std::filesystem::path& path) {
+  LightPixels pixels = read_light_pixels(path);
   try {
     return std::make_shared<const EnvironmentMap>(pixels.width, pixels.height,
                                                   std::move(pixels.rgb));

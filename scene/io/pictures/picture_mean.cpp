@@ -16,6 +16,7 @@
 #include <jpeglib.h>
 
 #include "scene/errors.h"
+#include "scene/io/pictures/environment_file.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -225,6 +226,28 @@ Picture picture_of(const PicturePixels& pixels, PictureCode code) {
   return picture;
 }
 
+bool holds_light(const std::filesystem::path& path) {
+  const std::string extension = lower_extension(path);
+  return std::ranges::any_of(std::array{".exr", ".hdr", ".pic", ".rgbe"},
+                             [&](const char* of_light) { return extension == of_light; });
+}
+
+LightPicture light_picture_of(const LightPixels& pixels, const std::filesystem::path& path) {
+  if (!(pixels.rgb >= 0.0f).all() || !pixels.rgb.isFinite().all()) {
+    throw InputError(fmt::format("{}: has pixels that are negative or no numbers", path.string()));
+  }
+  const float most = pixels.rgb.maxCoeff();
+  const float brightest = most > 0.0f ? most : 1.0f;
+  std::vector<Texture::Code> texels;
+  texels.reserve(static_cast<std::size_t>(pixels.rgb.size()));
+  for (Eigen::Index p = 0; p < pixels.rgb.rows(); ++p) {
+    for (int c = 0; c < 3; ++c) texels.push_back(Texture::encode(pixels.rgb(p, c) / brightest));
+  }
+  return {
+      .color = std::make_shared<const Texture>(pixels.width, pixels.height, 3, std::move(texels)),
+      .brightest = brightest};
+}
+
 std::optional<PicturePixels> decode(std::string_view bytes, const std::string& called) {
   if (bytes.starts_with("\x89PNG")) return decode_png(bytes, called);
   if (bytes.starts_with("\xff\xd8")) return decode_jpeg(bytes, called);
@@ -270,6 +293,18 @@ std::optional<Picture> PictureFiles::picture(const std::filesystem::path& path, 
   const TextFile file(path);
   return pictures_.emplace(std::pair(path, code), read_picture(file.text(), code, name_of(path)))
       .first->second;
+}
+
+std::optional<LightPicture> PictureFiles::light(const std::filesystem::path& path,
+                                                PictureCode code) {
+  if (!holds_light(path)) {
+    const auto shown = picture(path, code);
+    if (!shown) return std::nullopt;
+    return LightPicture{.color = shown->color};
+  }
+  const auto known = lights_.find(path);
+  if (known != lights_.end()) return known->second;
+  return lights_.emplace(path, light_picture_of(read_light_pixels(path), path)).first->second;
 }
 
 }  // namespace lightwell

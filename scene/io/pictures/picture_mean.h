@@ -31,6 +31,12 @@ struct Picture {
   PictureMean mean{};
 };
 
+/// A picture of light, whose values have no bound.
+struct LightPicture {
+  std::shared_ptr<const Texture> color{};  ///< not null
+  float brightest = 1.0f;                  ///< values are so many times those of `color`
+};
+
 /// Mean of a PNG or JPEG picture of at most 1e8 pixels; sRGB values are made linear (IEC
 /// 61966-2-1). Empty for other formats (OpenEXR, Radiance HDR ...). Throws InputError "`called`
 /// ..." for a picture that is damaged or too large.
@@ -47,10 +53,14 @@ class PictureFiles {
   /// Throws InputError naming the file if it is missing or damaged.
   std::optional<PictureMean> mean(const std::filesystem::path& path, PictureCode code);
   std::optional<Picture> picture(const std::filesystem::path& path, PictureCode code);
+  /// Also reads OpenEXR (.exr) and RADIANCE pictures (.hdr, .pic, .rgbe), which are linear; `code`
+  /// is that of the others.
+  std::optional<LightPicture> light(const std::filesystem::path& path, PictureCode code);
 
  private:
   std::map<std::pair<std::filesystem::path, PictureCode>, std::optional<Picture>> pictures_;
   std::map<std::pair<std::filesystem::path, PictureCode>, std::optional<PictureMean>> known_;
+  std::map<std::filesystem::path, LightPicture> lights_;
 };
 
 /// Linear value of an sRGB value, both in [0,1] (IEC 61966-2-1).

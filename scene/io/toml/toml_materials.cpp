@@ -12,6 +12,7 @@
 #include "scene/errors.h"
 #include "scene/io/glossy.h"
 #include "scene/io/toml/toml_pictures.h"
+#include "scene/picture_cells.h"
 #include "scene/specular.h"
 
 namespace lightwell {
@@ -343,9 +344,14 @@ void read_emission(const TomlTable& table, const TomlBands& bands, TomlMaterial&
     if (is_per_angle) material.emission = static_cast<float>(std::numbers::pi) * x;
     if (key == "exitance" || key == "luminous_exitance") material.emission = x;
     if (key == "power" || key == "lumens") result.power = x;
+    result.power_is_lumens = key == "lumens";
     if (!material.emission.isFinite().all() || !x.isFinite().all()) {
       table.require(key).fail("is too large a number");
     }
+    if (result.power && table.has("emission_texture")) material.emission = x;
+  } else if (const auto texture = table.find("emission_texture")) {
+    texture->fail(
+        "multiplies an emission; give that too, such as 'luminance' or 'exitance', or remove it");
   } else if (const auto colour = table.find("colour")) {
     colour->fail(
         "is the hue of light; with it give 'luminance', 'luminous_exitance' or 'lumens', or, for "
@@ -428,11 +434,11 @@ Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands) {
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures) {
   const TomlTable table =
-      value.table({"reflectance", "specular", "roughness", "glass",     "sides",
-                   "radiance",    "exitance", "power",     "luminance", "luminous_exitance",
-                   "lumens",      "colour",   "watts",     "emits",     "texture",
-                   "mask",        "relief",   "metal",     "coat",      "translucent",
-                   "transparent"});
+      value.table({"reflectance", "specular",        "roughness", "glass",     "sides",
+                   "radiance",    "exitance",        "power",     "luminance", "luminous_exitance",
+                   "lumens",      "colour",          "watts",     "emits",     "texture",
+                   "mask",        "relief",          "metal",     "coat",      "translucent",
+                   "transparent", "emission_texture"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
@@ -463,16 +469,46 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
   if (coat) lay_given_coat(table, *coat, material);
   read_sheet(table, bands, has_reflectance, material);
   read_emission(table, bands, result);
+  read_toml_emission_texture(table, bands, pictures, material);
   return result;
 }
 
+namespace {
+
+// Power of a surface's front at the material's emission, W.
+Eigen::ArrayXd emitted_by_front(const Scene& scene, const Surface& surface) {
+  return surface_area(surface) * mean_exitance(scene, surface);
+}
+
+// Scales a picture of emission, laid over surfaces that send the power `sent`, W, to the sum of the
+// power or the lumens that the file gives. The picture keeps its colours.
+void scale_picture(const TomlMaterial& given, const Bands& bands, const Eigen::ArrayXd& sent,
+                   Material& material) {
+  const Spectrum spectrum = sent.cast<float>();
+  const auto amount = [&](const Spectrum& power) {
+    return given.power_is_lumens ? luminous(bands, power) : static_cast<double>(power.sum());
+  };
+  const double all = amount(spectrum);
+  const auto factor = all > 0.0 ? static_cast<float>(amount(*given.power) / all) : 0.0f;
+  material.emission_texture->factor *= factor;
+  material.emission *= factor;
+}
+
+}  // namespace
+
 void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene) {
   std::vector<double> areas(scene.materials.size(), 0.0);
+  std::vector<Eigen::ArrayXd> sent(scene.materials.size());  // W, of pictures at a factor of 1
   std::vector<char> used(scene.materials.size(), 0);
   for (const Surface& surface : scene.surfaces) {
     const auto i = static_cast<std::size_t>(surface.material);
     used[i] = 1;
     areas[i] += surface_area(surface);
+    if (i >= materials.size() || !materials[i].power || !scene.materials[i].emission_texture) {
+      continue;
+    }
+    const Eigen::ArrayXd by_front = emitted_by_front(scene, surface);
+    sent[i] = sent[i].size() == 0 ? by_front : Eigen::ArrayXd(sent[i] + by_front);
   }
   for (std::size_t i = 0; i < materials.size(); ++i) {
     Material& material = scene.materials[i];
@@ -480,8 +516,12 @@ void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene) {
       scene.notes.push_back(fmt::format("No surface uses material '{}'.", material.name));
     }
     if (!used[i] || !materials[i].power) continue;
-    const double area = material.emits_both_sides ? 2.0 * areas[i] : areas[i];
-    material.emission = *materials[i].power / static_cast<float>(area);
+    const double sides = material.emits_both_sides ? 2.0 : 1.0;
+    if (material.emission_texture) {
+      scale_picture(materials[i], scene.bands, sides * sent[i], material);
+    } else {
+      material.emission = *materials[i].power / static_cast<float>(sides * areas[i]);
+    }
   }
 }
 

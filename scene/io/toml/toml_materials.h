@@ -33,6 +33,7 @@ Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands);
 struct TomlMaterial {
   Material material{};
   std::optional<Spectrum> power{};  ///< W per band over all surfaces of the material
+  bool power_is_lumens = false;     ///< `power` was given as its lumens
 };
 
 /// Reads a [materials.NAME] table, pictures through `pictures`. Throws InputError naming file,

@@ -13,38 +13,53 @@ struct Laid {
   SurfaceTexture image{};
 };
 
+// A picture's file, and its placement on surfaces by a table.
+struct PlacedPicture {
+  std::filesystem::path path{};
+  std::optional<TomlValue> file{};
+  SurfaceTexture image{};  // without a picture
+};
+
 // `value` is the file's name, or `table`.
-Laid read_laid(const TomlValue& value, const std::optional<TomlTable>& table, PictureCode code,
-               PictureFiles& pictures) {
-  Laid laid;
-  std::optional<TomlValue> file;
+PlacedPicture read_placement(const TomlValue& value, const std::optional<TomlTable>& table) {
+  PlacedPicture placed;
   if (table) {
-    file = table->require("file");
+    placed.file = table->require("file");
     if (const auto wrap = table->find("wrap")) {
       const std::string mode = wrap->one_of({"repeat", "mirror", "clamp"});
-      laid.image.wrap.fill(mode == "mirror"  ? TextureWrap::mirror
-                           : mode == "clamp" ? TextureWrap::clamp
-                                             : TextureWrap::repeat);
+      placed.image.wrap.fill(mode == "mirror"  ? TextureWrap::mirror
+                             : mode == "clamp" ? TextureWrap::clamp
+                                               : TextureWrap::repeat);
     }
     if (const auto filter = table->find("filter")) {
-      laid.image.is_smooth = filter->one_of({"smooth", "nearest"}) == "smooth";
+      placed.image.is_smooth = filter->one_of({"smooth", "nearest"}) == "smooth";
     }
   } else {
-    file = value;
+    placed.file = value;
   }
-  const auto path = (value.file().parent_path() / file->name()).lexically_normal();
-  std::optional<Picture> picture;
+  placed.path = (value.file().parent_path() / placed.file->name()).lexically_normal();
+  return placed;
+}
+
+// The picture that `read` finds; `kinds`: the formats that it knows.
+template <class Read>
+auto read_or_fail(const PlacedPicture& placed, const char* kinds, Read&& read) {
   try {
-    picture = pictures.picture(path, code);
+    if (auto picture = read(placed.path)) return *picture;
   } catch (const InputError& error) {
-    file->fail(fmt::format("cannot be used: {}", error.what()));
+    placed.file->fail(fmt::format("cannot be used: {}", error.what()));
   }
-  if (!picture) {
-    file->fail(
-        fmt::format("is '{}', which is no PNG or JPEG; save it as one", path.filename().string()));
-  }
-  laid.picture = std::move(*picture);
-  return laid;
+  placed.file->fail(fmt::format("is '{}', which is no {}; save it as one",
+                                placed.path.filename().string(), kinds));
+}
+
+Laid read_laid(const TomlValue& value, const std::optional<TomlTable>& table, PictureCode code,
+               PictureFiles& pictures) {
+  const PlacedPicture placed = read_placement(value, table);
+  return {.picture = read_or_fail(
+              placed, "PNG or JPEG",
+              [&](const std::filesystem::path& path) { return pictures.picture(path, code); }),
+          .image = placed.image};
 }
 
 // The table of a picture's placement, with further `keys`; empty: `value` is the file's name alone.
@@ -115,6 +130,26 @@ void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureF
     }
   }
   if (const auto relief = table.find("relief")) material.relief = read_relief(*relief, pictures);
+}
+
+void read_toml_emission_texture(const TomlTable& table, const TomlBands& bands,
+                                PictureFiles& pictures, Material& material) {
+  const auto texture = table.find("emission_texture");
+  if (!texture) return;
+  if (!bands.bands.wavelengths_nm.empty()) {
+    texture->fail("is red, green and blue, but the scene's bands are wavelengths; remove it");
+  }
+  if (material.dielectric) texture->fail("contradicts 'glass', which does not shine; remove one");
+  const PlacedPicture placed =
+      read_placement(*texture, table_of(*texture, {"file", "wrap", "filter"}));
+  const LightPicture light = read_or_fail(
+      placed, "PNG, JPEG, EXR or HDR",
+      [&](const std::filesystem::path& path) { return pictures.light(path, PictureCode::srgb); });
+  material.emission_texture = {.image = placed.image,
+                               .factor = light.brightest * material.emission};
+  material.emission_texture->image.picture = light.color;
+  material.emission = material.emission_texture->factor;
+  material.emission.head<3>() *= light.color->mean();
 }
 
 }  // namespace lightwell

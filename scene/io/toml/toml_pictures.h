@@ -13,4 +13,9 @@ namespace lightwell {
 void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureFiles& pictures,
                         bool has_reflectance, Material& material);
 
+/// Reads the key `emission_texture`: a picture that multiplies the material's emission, which
+/// becomes the mean of the picture. Throws InputError as read_toml_pictures().
+void read_toml_emission_texture(const TomlTable& table, const TomlBands& bands,
+                                PictureFiles& pictures, Material& material);
+
 }  // namespace lightwell
