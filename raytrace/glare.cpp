@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "mesh/patches/patch_textures.h"
+#include "mesh/patches/pictured_emission.h"
 #include "mesh/patches/translucency.h"
 #include "raytrace/specular_light.h"
 
@@ -103,9 +104,10 @@ void add_triangle(const std::string& name, const Triangle& t, const Eigen::Vecto
 }
 
 void add_surfaces(const Scene& scene, const PatchMesh& mesh, GlareSum& sum) {
+  const PicturedEmission emission(mesh);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int patch = mesh.patch[e];
-    const double luminance = luminous(scene.bands, mesh.emission.row(patch).transpose()) / pi;
+    const double luminance = luminous(scene.bands, emission.of_element(e)) / pi;
     if (!(luminance > 0.0)) continue;
     const std::string& name = scene.surfaces[static_cast<std::size_t>(mesh.surface[patch])].name;
     const Eigen::Vector3d normal = element_center(mesh, e).normal;

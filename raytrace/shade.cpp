@@ -65,6 +65,7 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       solution_(solution),
       options_(options),
       textures_(std::make_shared<const FacetTextures>(scene)),
+      pictured_emission_(caster.mesh()),
       normals_(scene),
       relief_(scene),
       with_layers_(std::any_of(options.layers.begin(), options.layers.end(),

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
+#include "mesh/patches/pictured_emission.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/emitters/sky_light.h"
 #include "radiosity/gather/bright_patches.h"
@@ -334,6 +335,7 @@ class RayTree {
   const RadiositySolution& solution_;
   const RenderOptions& options_;
   std::shared_ptr<const FacetTextures> textures_{};  ///< null: no textures
+  PicturedEmission pictured_emission_;
   FacetNormals normals_;
   FacetRelief relief_;
   std::shared_ptr<const BandArray> slant_{};  ///< see indirect_slant(); null or empty: none

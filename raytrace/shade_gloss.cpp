@@ -5,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "radiosity/emitters/emitter_point.h"
 #include "raytrace/shade.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
@@ -158,7 +159,8 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
   const double density = lobe(material, hit.from_back).density(interaction, lamp->direction);
   const ScatteringSample sample{.direction = lamp->direction,
                                 .crosses = lamp->direction.dot(interaction.normal) < 0.0};
-  const Spectrum L = lamp->emitter->exitance * std::numbers::inv_pi_v<float>;
+  const Eigen::Vector3d lit = at.position + lamp->distance * lamp->direction;
+  const Spectrum L = exitance_at(*lamp->emitter, lit) * std::numbers::inv_pi_v<float>;
   Spectrum seen = branch.weight * scattering_weight(interaction, sample) * L *
                   (share * static_cast<float>(density / (density + lamp->density)));
   if (!((branch.weight > 0.0f).any() && density > 0.0)) return;
@@ -320,11 +322,15 @@ float RayTree::share_of_bright(const Branch& branch, const ElementHit& hit,
   return static_cast<float>(branch.lobe_density / (branch.lobe_density + aimed));
 }
 
-// Exitance M of the side that was hit, less the share that add_lamp() samples.
+// Exitance M of the side that was hit, less the share that add_lamp() samples. A picture is
+// averaged over the pixel's footprint.
 Spectrum RayTree::emission(const Branch& branch, const ElementHit& hit,
                            const ShadingPoint& at) const {
   const PatchMesh& mesh = caster_.mesh();
-  const Spectrum M = mesh.emission.row(mesh.patch[hit.element]).transpose();
+  const int patch = mesh.patch[hit.element];
+  const Spectrum M = pictured_emission_.shines(patch)
+                         ? pictured_emission_.over(hit.facet, at.rest, footprint(branch, at))
+                         : Spectrum(mesh.emission.row(patch).transpose());
   if (branch.is_aimed && direct_light_.owns(hit.facet, hit.from_back))
     return Spectrum::Zero(M.size());
   if (!(branch.lobe_density > 0.0) || !(M > 0.0f).any()) return M;

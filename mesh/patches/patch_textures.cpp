@@ -6,6 +6,7 @@
 
 #include "scene/facet_textures.h"
 #include "scene/parallel.h"
+#include "scene/picture_cells.h"
 
 namespace lightwell {
 namespace {
@@ -41,6 +42,23 @@ std::array<Vector3d, 4> corners_of(const PatchMesh& mesh, int element) {
   return {mesh.position(c[0]), mesh.position(c[1]), last, mesh.position(c[3])};
 }
 
+// Points per direction of an element, as fine as the texels.
+int points_across(const FacetTextures& textures, int facet, const std::array<Vector3d, 4>& corner) {
+  double longest = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const Vector3d edge = corner[(i + 1) % 4] - corner[i];
+    longest = std::max(longest, textures.texels_along(facet, edge));
+  }
+  return static_cast<int>(std::clamp<double>(std::ceil(longest), fewest_points, most_points));
+}
+
+// Sides of the parallelogram over which the picture is filtered about the middle of a cell. The
+// filter itself reaches half a cell farther, so that texels beside the element stay out.
+Eigen::Matrix<double, 3, 2> filter_of(const TextureCell& cell) {
+  constexpr double reach = 0.5;
+  return reach * cell.sides;
+}
+
 // Sums over the part of an element that is no hole.
 struct Covered {
   double area = 0.0, cover = 0.0;  // m^2: the element, and the part that is no hole
@@ -52,17 +70,7 @@ Covered covered_light(const PatchMesh& mesh, const FacetTextures& textures, int 
   const int facet = mesh.facet[element];
   const auto corner = corners_of(mesh, element);
   const bool has_holes = textures.has_holes(facet), is_textured = textures.is_textured(facet);
-  int points = most_points;
-  if (!has_holes) {
-    double longest = 0.0;
-    for (int i = 0; i < 4; ++i) {
-      const Vector3d edge = corner[(i + 1) % 4] - corner[i];
-      longest = std::max(longest, textures.texels_along(facet, edge));
-    }
-    points = static_cast<int>(std::clamp<double>(std::ceil(longest), fewest_points, most_points));
-  }
-  // The filter itself reaches half a cell farther, so that texels beside the element stay out.
-  constexpr double reach = 0.5;
+  const int points = has_holes ? most_points : points_across(textures, facet, corner);
   Covered sum{.reflected = Eigen::ArrayXd::Zero(bands)};
   for (int i = 0; i < points; ++i) {
     for (int j = 0; j < points; ++j) {
@@ -71,9 +79,8 @@ Covered covered_light(const PatchMesh& mesh, const FacetTextures& textures, int 
       if (has_holes && textures.is_hole(facet, cell.middle)) continue;
       sum.cover += cell.area;
       if (!is_textured) continue;
-      const Eigen::Matrix<double, 3, 2> footprint = reach * cell.sides;
       sum.reflected +=
-          cell.area * textures.reflectance(facet, cell.middle, footprint).cast<double>();
+          cell.area * textures.reflectance(facet, cell.middle, filter_of(cell)).cast<double>();
     }
   }
   return sum;
@@ -105,7 +112,87 @@ void lay_on_patch(const Scene& scene, const FacetTextures& textures, int patch, 
   mesh.reflectance.row(patch) = (reflected / cover).cast<float>().min(1.0f).transpose();
 }
 
+// Sets the emission of a patch that shines to the mean of its picture.
+void shine_on_patch(const FacetTextures& textures, int patch, PatchMesh& mesh) {
+  Eigen::ArrayXd power = Eigen::ArrayXd::Zero(mesh.emission.cols());
+  double area = 0.0;
+  for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
+    power += mesh.element_area[e] * mean_emission(mesh, textures, e).cast<double>();
+    area += mesh.element_area[e];
+  }
+  if (area > 0.0) mesh.emission.row(patch) = (power / area).cast<float>().transpose();
+}
+
+// Mean of the picture by which each facet shines; empty for other facets.
+std::vector<Eigen::ArrayXd> pictured_means(const Scene& scene, const FacetTextures& textures) {
+  const std::vector<FacetRef> facets = scene_facets(scene);
+  std::vector<Eigen::ArrayXd> mean(facets.size());
+  std::size_t count = 0;
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    count += textures.has_emission(static_cast<int>(f)) ? 1 : 0;
+  }
+  const int across = cells_across(count);
+  parallel_for(static_cast<int>(facets.size()), 16, [&](int begin, int end) {
+    for (int f = begin; f < end; ++f) {
+      if (!textures.has_emission(f)) continue;
+      const FacetRef& ref = facets[static_cast<std::size_t>(f)];
+      const auto& polygons =
+          std::get<PolygonMesh>(scene.surfaces[static_cast<std::size_t>(ref.surface)].shape);
+      const auto& [image, factor] = textures.emission_texture(f);
+      const PictureCells cells =
+          picture_cells(image, textures.uv_map(f), polygons,
+                        polygons.facets[static_cast<std::size_t>(ref.facet)], across);
+      mean[static_cast<std::size_t>(f)] = factor.cast<double>();
+      mean[static_cast<std::size_t>(f)].head<3>() *= mean_of(cells);
+    }
+  });
+  return mean;
+}
+
+// Scales the emission of patches so that each facet sends the integral of its picture. The points
+// of an element are too few for the texels that a large element may have.
+void keep_integrals(const Scene& scene, const FacetTextures& textures, PatchMesh& mesh) {
+  const std::vector<Eigen::ArrayXd> mean = pictured_means(scene, textures);
+  std::vector<Eigen::ArrayXd> power(mean.size());
+  std::vector<double> area(mean.size(), 0.0);
+  const auto may_shine = [&](int patch) {
+    const Material& m = scene.materials[static_cast<std::size_t>(mesh.material[patch])];
+    return textures.has_emission(mesh.facet[mesh.first_element[patch]]) &&
+           (mesh.is_back[patch] == 0 || m.emits_both_sides);
+  };
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (!may_shine(p)) continue;
+    const auto f = static_cast<std::size_t>(mesh.facet[mesh.first_element[p]]);
+    if (power[f].size() == 0) power[f].setZero(mesh.emission.cols());
+    power[f] += mesh.area[p] * mesh.emission.row(p).transpose().cast<double>();
+    area[f] += mesh.area[p];
+  }
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (!may_shine(p)) continue;
+    const auto f = static_cast<std::size_t>(mesh.facet[mesh.first_element[p]]);
+    const Eigen::ArrayXd scale =
+        (power[f] > 0.0).select(area[f] * mean[f] / power[f].max(1e-300), 0.0);
+    mesh.emission.row(p) *= scale.cast<float>().transpose();
+  }
+}
+
 }  // namespace
+
+Spectrum mean_emission(const PatchMesh& mesh, const FacetTextures& textures, int element) {
+  const int facet = mesh.facet[element];
+  const auto corner = corners_of(mesh, element);
+  const int points = points_across(textures, facet, corner);
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(mesh.emission.cols());
+  double area = 0.0;
+  for (int i = 0; i < points; ++i) {
+    for (int j = 0; j < points; ++j) {
+      const TextureCell cell = texture_cell(corner, points, i, j);
+      sum += cell.area * textures.emission(facet, cell.middle, filter_of(cell)).cast<double>();
+      area += cell.area;
+    }
+  }
+  return (sum / area).cast<float>();
+}
 
 void lay_on_textures(const Scene& scene, PatchMesh& mesh) {
   attach_textures(scene, mesh);
@@ -120,8 +207,13 @@ void lay_on_textures(const Scene& scene, PatchMesh& mesh) {
   parallel_for(mesh.patch_count(), 16, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) {
       if (varies(p)) lay_on_patch(scene, *mesh.textures, p, mesh);
+      const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches lie on one facet
+      if (mesh.textures->has_emission(facet) && (mesh.emission.row(p) > 0.0f).any()) {
+        shine_on_patch(*mesh.textures, p, mesh);
+      }
     }
   });
+  if (mesh.textures->has_emission()) keep_integrals(scene, *mesh.textures, mesh);
 }
 
 void attach_textures(const Scene& scene, PatchMesh& mesh) {

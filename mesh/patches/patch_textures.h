@@ -4,15 +4,20 @@
 
 namespace lightwell {
 
-/// Sets areas and reflectances of a mesh of `scene` from textures and holes. An element's area
-/// becomes the part that holes leave, and a patch's reflectance the mean of its texture over that
-/// part. Both are sums over a grid of points on every element: from 4 x 4 to 16 x 16, as fine as
-/// the texels; 16 x 16 on facets with holes. An element that is all hole keeps a thousandth of its
-/// area, which no light meets.
+/// Sets areas, reflectances and emissions of a mesh of `scene` from textures and holes. An
+/// element's area becomes the part that holes leave, and a patch's reflectance the mean of its
+/// texture over that part. A patch's emission becomes the mean of its picture of emission. All are
+/// sums over a grid of points on every element: from 4 x 4 to 16 x 16, as fine as the texels; 16 x
+/// 16 on facets with holes. An element that is all hole keeps a thousandth of its area, which no
+/// light meets.
 void lay_on_textures(const Scene& scene, PatchMesh& mesh);
 
 /// Sets the textures and holes of a mesh that was read from a file.
 void attach_textures(const Scene& scene, PatchMesh& mesh);
+
+/// Mean of the picture of emission over an element of a facet that shines by one, W/m^2, before
+/// relight() scales it.
+Spectrum mean_emission(const PatchMesh& mesh, const FacetTextures& textures, int element);
 
 /// Reflectance at vertices (vertices x bands): at a vertex of several patches, the mean weighted by
 /// the area of their elements there.

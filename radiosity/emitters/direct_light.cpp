@@ -7,11 +7,14 @@
 #include <span>
 #include <stdexcept>
 
+#include "radiosity/emitters/emission_tree.h"
 #include "radiosity/emitters/emitter_point.h"
 #include "radiosity/emitters/exact_shadows.h"
 #include "radiosity/emitters/sky_light.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"
+#include "scene/limits.h"
+#include "scene/picture_cells.h"
 
 namespace lightwell {
 namespace {
@@ -23,12 +26,20 @@ struct EmittingFacet {
   int facet = 0;
   double area = 0.0;
   float exitance = 0.0f;  // all bands
+  std::shared_ptr<const EmissionTree> picture{};
 };
 
 Loop loop_points(const PolygonMesh& mesh, const std::vector<int>& loop) {
   Loop points;
   for (int v : loop) points.push_back(mesh.vertices[v]);
   return points;
+}
+
+// Boundary and holes of a facet.
+std::vector<Loop> facet_loops(const PolygonMesh& mesh, const Facet& facet) {
+  std::vector<Loop> loops = {loop_points(mesh, facet.boundary)};
+  for (const auto& hole : facet.holes) loops.push_back(loop_points(mesh, hole));
+  return loops;
 }
 
 // True for a convex polygon: a fan of triangles keeps samples better stratified than the many
@@ -109,12 +120,33 @@ ShadowSample solid_angle_sample(const SolidAngleSampler& sampler, const Eigen::V
           .weight = std::max(0.0, to.normalized().dot(normal))};
 }
 
+// Samples of a picture from afar are as dense as the light of its parts.
+ShadowSample picture_sample(const Emitter& emitter, const EmissionTree::View& view,
+                            const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double u,
+                            double v) {
+  const EmissionTree::Sample at = emitter.picture->sample(view, u, v);
+  const Eigen::Vector3d to = at.point - point;
+  const double r2 = to.squaredNorm();
+  const double cos_cos = to.dot(normal) * std::abs(to.dot(emitter.normal));
+  return {.ray = {.origin = point, .direction = to, .t_max = 1.0},
+          .weight = cos_cos > 0.0 ? at.area_per_share * cos_cos / (r2 * r2) : 0.0,
+          .exitance = at.exitance};
+}
+
+// `view`: of an emitter that shines by a picture, for samples that weigh its light; null: for
+// samples of the emitter's form factor.
 ShadowSample emitter_shadow_sample(const Emitter& emitter, const SolidAngleSampler& sampler,
-                                   const SurfacePoint& at, double u, double v) {
+                                   const SurfacePoint& at, double u, double v,
+                                   const EmissionTree::View* view = nullptr) {
   const auto& [point, normal, facet] = at;
+  const bool by_picture = view && sampler.empty();
   ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u, v)
+                        : by_picture      ? picture_sample(emitter, *view, point, normal, u, v)
                         : sampler.empty() ? polygon_sample(emitter, point, normal, u, v)
                                           : solid_angle_sample(sampler, point, normal, u, v);
+  if (view && !by_picture) {
+    sample.exitance = &emitter.picture->taken_at(point + sample.ray.direction);
+  }
   sample.ray.origin_group = facet;
   sample.ray.target_group = emitter.facet;
   return sample;
@@ -131,9 +163,20 @@ struct LightShadow {
   std::uint64_t key = 0;
   int least = 0, most = 0;        // rays
   std::optional<double> share{};  // visible; empty: rays are needed
+  EmissionTree::View view{};      // of an emitter that shines by a picture; else without parts
+  Spectrum pictured{};            // mean exitance of what the point sees of the picture
 
-  const Spectrum& light() const { return emitter ? emitter->exitance : source->light; }
+  bool has_picture() const { return !view.parts.empty(); }
+  const Spectrum& light() const {
+    if (has_picture()) return pictured;
+    return emitter ? emitter->exitance : source->light;
+  }
 };
+
+// Light of an emitter as a point sees all of it, over the emitter's form factor.
+Spectrum pictured_light(const Emitter& emitter, const EmissionTree::View& view, double F) {
+  return emitter.picture_scale.head<3>() * (view.light / F).cast<float>();
+}
 
 // Casts the rays of all lights together. A known share becomes the tally as it is.
 std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
@@ -147,7 +190,8 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
       const LightShadow& shadow = shadows[i];
       batch.add(static_cast<int>(i),
                 shadow.emitter
-                    ? emitter_shadow_sample(*shadow.emitter, shadow.sampler, at, u[0], u[1])
+                    ? emitter_shadow_sample(*shadow.emitter, shadow.sampler, at, u[0], u[1],
+                                            shadow.has_picture() ? &shadow.view : nullptr)
                     : shadow_sample(*shadow.source, at, u[0], u[1]));
     }
   };
@@ -213,8 +257,81 @@ void find_share(const ExactShadows& exact, const ElementCaster& caster, const Su
                 LightShadow& shadow) {
   if (!caster.moves()) {
     shadow.share = exact.share(shadow.index, at, pieces_worth(shadow.most));
+    // A part of the form factor does not say which part of the picture is visible.
+    if (shadow.has_picture() && shadow.share && *shadow.share != 0.0 && *shadow.share != 1.0) {
+      shadow.share.reset();
+    }
   }
   if (!shadow.share) shadow.sampler = SolidAngleSampler(*shadow.emitter, at.position);
+}
+
+// The picture by which a facet shines; null: none.
+std::shared_ptr<const EmissionTree> picture_of(const Scene& scene, const FacetRef& ref,
+                                               int most_across) {
+  const Surface& surface = scene.surfaces[ref.surface];
+  const auto& texture = scene.materials[surface.material].emission_texture;
+  const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
+  if (!texture || !mesh || mesh->facets[ref.facet].uv_map < 0) return nullptr;
+  const Facet& facet = mesh->facets[ref.facet];
+  const UvMap& uv = mesh->uv_maps[facet.uv_map];
+  auto tree = std::make_shared<const EmissionTree>(
+      *texture, uv, picture_cells(texture->image, uv, *mesh, facet, most_across),
+      facet_loops(*mesh, facet), facet_normal(*mesh, facet));
+  return tree->is_empty() ? nullptr : tree;
+}
+
+// Facets that shine, in order. Pictures of `known` emitters are shared instead of made again.
+std::vector<EmittingFacet> emitting_facets(const Scene& scene, const std::vector<FacetRef>& facets,
+                                           std::span<const Emitter> known, double& scene_area) {
+  const auto is_pictured = [&](const FacetRef& ref) {
+    return scene.materials[scene.surfaces[ref.surface].material].emission_texture.has_value();
+  };
+  const int across =
+      cells_across(static_cast<std::size_t>(std::ranges::count_if(facets, is_pictured)));
+  std::vector<EmittingFacet> emitting;
+  for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
+    const Surface& surface = scene.surfaces[facets[f].surface];
+    const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
+    double area = 0.0;
+    if (polygons) {
+      area = facet_area(*polygons, polygons->facets[facets[f].facet]);
+    } else {
+      const double r = std::get<Sphere>(surface.shape).radius;
+      area = 4.0 * M_PI * r * r;
+    }
+    scene_area += area;
+    const Material& material = scene.materials[surface.material];
+    if (!material.is_emitter()) continue;
+    EmittingFacet facet{f, area, material.emission.sum()};
+    if (material.emission_texture) {
+      const auto same = std::ranges::find(known, f, &Emitter::facet);
+      facet.picture = same != known.end() ? same->picture : picture_of(scene, facets[f], across);
+    }
+    if (facet.picture) facet.exitance = facet.picture->mean().sum();
+    if (facet.exitance > 0.0f) emitting.push_back(std::move(facet));
+  }
+  std::stable_sort(emitting.begin(), emitting.end(),
+                   [](const auto& a, const auto& b) { return a.exitance > b.exitance; });
+  return emitting;
+}
+
+// Mean emission of the patches on the front of each facet that has some, W/m^2.
+std::vector<Spectrum> mean_emissions(const PatchMesh& mesh, std::size_t facet_count) {
+  std::vector<Eigen::ArrayXd> power(facet_count);
+  std::vector<double> area(facet_count, 0.0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int p = mesh.patch[e];
+    const auto facet = static_cast<std::size_t>(mesh.facet[e]);
+    if (mesh.is_back[p] != 0 || facet >= facet_count) continue;
+    if (power[facet].size() == 0) power[facet].setZero(mesh.emission.cols());
+    power[facet] += mesh.element_area[e] * mesh.emission.row(p).transpose().cast<double>();
+    area[facet] += mesh.element_area[e];
+  }
+  std::vector<Spectrum> mean(facet_count);
+  for (std::size_t f = 0; f < facet_count; ++f) {
+    if (area[f] > 0.0) mean[f] = (power[f] / area[f]).cast<float>();
+  }
+  return mean;
 }
 
 // A patch on the front of each facet; -1: the mesh has none.
@@ -240,6 +357,11 @@ Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
   return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
 }
 
+Spectrum exitance_at(const Emitter& emitter, const Eigen::Vector3d& point) {
+  if (!emitter.picture) return emitter.exitance;
+  return emitter.picture_scale.head<3>() * emitter.picture->at(point);
+}
+
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
                          const DirectLight* like)
     : free_sources_(lightwell::free_sources(scene, mesh.source_scale, channels.of_source)),
@@ -256,25 +378,13 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
     first_column_[f] = bands_ * std::max(0, channels.of_surface[facets[f].surface]);
   }
   double scene_area = 0.0;
-  std::vector<EmittingFacet> emitting;
-  for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
-    const Surface& surface = scene.surfaces[facets[f].surface];
-    const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
-    double area = 0.0;
-    if (polygons) {
-      area = facet_area(*polygons, polygons->facets[facets[f].facet]);
-    } else {
-      const double r = std::get<Sphere>(surface.shape).radius;
-      area = 4.0 * M_PI * r * r;
-    }
-    scene_area += area;
-    const Material& material = scene.materials[surface.material];
-    if (material.is_emitter()) emitting.push_back({f, area, material.emission.sum()});
-  }
-  std::stable_sort(emitting.begin(), emitting.end(),
-                   [](const auto& a, const auto& b) { return a.exitance > b.exitance; });
-
+  const std::vector<EmittingFacet> emitting = emitting_facets(
+      scene, facets, like ? std::span<const Emitter>(like->emitters_) : std::span<const Emitter>(),
+      scene_area);
   const std::vector<int> front = front_patches(mesh, facets.size());
+  const bool any_picture = std::ranges::any_of(emitting, [](auto& e) { return !!e.picture; });
+  std::vector<Spectrum> mean_of_facet;
+  if (any_picture) mean_of_facet = mean_emissions(mesh, facets.size());
   // Rays over the hemisphere find a large emitter in mirrors with less noise than rays of its own
   // that meet the mirrors. Coats mirror little.
   const bool has_mirrors = std::ranges::any_of(scene.materials, [](const Material& material) {
@@ -300,16 +410,22 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
       const Material& material = scene.materials[surface.material];
       Emitter emitter{.facet = emitting[i].facet,
                       .exitance = material.emission,
+                      .picture = emitting[i].picture,
                       .area = emitting[i].area,
                       .emits_both_sides = material.emits_both_sides};
       if (const int p = front[emitter.facet]; p >= 0) {
-        emitter.exitance = mesh.emission.row(p).transpose();
+        emitter.exitance = emitter.picture ? mean_of_facet[static_cast<std::size_t>(emitter.facet)]
+                                           : Spectrum(mesh.emission.row(p).transpose());
+      }
+      if (emitter.picture) {
+        const Spectrum mean = emitter.picture->mean();
+        emitter.picture_scale =
+            (mean > 0.0f).select(emitter.exitance / mean.max(least_light), 0.0f);
       }
       if (const auto* polygons = std::get_if<PolygonMesh>(&surface.shape)) {
         const Facet& facet = polygons->facets[ref.facet];
         emitter.normal = facet_normal(*polygons, facet);
-        emitter.loops.push_back(loop_points(*polygons, facet.boundary));
-        for (const auto& hole : facet.holes) emitter.loops.push_back(loop_points(*polygons, hole));
+        emitter.loops = facet_loops(*polygons, facet);
         tile(mesh, emitter);
       } else {
         emitter.is_sphere = true;
@@ -438,7 +554,11 @@ Eigen::ArrayX2d DirectLight::light_with_factor(const SurfacePoint& at,
     const FreeSource* source = emitter ? nullptr : &free_sources_[i - emitter_count];
     const double F = emitter ? unoccluded_form_factor(*emitter, at)
                              : unoccluded_kernel(*source, at.position, at.normal);
-    const Spectrum& light = emitter ? emitter->exitance : source->light;
+    if (!(F > 0.0)) continue;
+    Spectrum light = emitter ? emitter->exitance : source->light;
+    if (emitter && emitter->picture) {
+      light = pictured_light(*emitter, emitter->picture->view(at, F), F);
+    }
     const double E = F * static_cast<double>(light.mean());
     if (!(E > 0.0)) continue;
     const int channel = emitter ? first_column(emitter->facet) / bands_ : source->channel;
@@ -490,6 +610,11 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, query.at)
                               : unoccluded_kernel(*shadow.source, point, normal);
     if (!(shadow.F > 0.0)) continue;
+    if (shadow.emitter && shadow.emitter->picture) {
+      shadow.view = shadow.emitter->picture->view(query.at, shadow.F);
+      if (!shadow.has_picture()) continue;  // black as far as it is above the horizon
+      shadow.pictured = pictured_light(*shadow.emitter, shadow.view, shadow.F);
+    }
     shadows.push_back(std::move(shadow));
   }
   set_effort(shadows, channel_count_, query.shadows);
@@ -511,9 +636,19 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     const double share = tally.share();
     const bool is_dimmed = tally.dimmed > 0.0;
     const double F = receiver.is_plain() ? s.F : s.F * factor(s.index, query.at, receiver);
+    const bool by_picture = s.has_picture() && !s.share;
     Spectrum through;
-    if (is_dimmed) through = static_cast<float>(F / tally.all) * tally.through;
-    if (share > 0.0) add(s.channel, s.light(), static_cast<float>(F * share));
+    if (is_dimmed && by_picture) {
+      through = static_cast<float>(F) * tally.share_of_picture(tally.through.cast<double>());
+    } else if (is_dimmed) {
+      through = static_cast<float>(F / tally.all) * tally.through;
+    }
+    if (share > 0.0 && by_picture) {
+      add(s.channel, s.light(),
+          Spectrum(static_cast<float>(F) * tally.share_of_picture(tally.pictured_seen)));
+    } else if (share > 0.0) {
+      add(s.channel, s.light(), static_cast<float>(F * share));
+    }
     if (is_dimmed) add(s.channel, s.light(), through);
     if (!visibility) continue;
     const bool is_behind_panes = is_dimmed && !tally.is_mixed();

@@ -21,6 +21,7 @@
 
 namespace lightwell {
 
+class EmissionTree;
 class ExactShadows;
 class SkyLight;
 struct SkyGlow;
@@ -28,8 +29,11 @@ struct SkyGlow;
 /// An emitting facet whose light is a closed form times visibility, never left to random rays.
 struct Emitter {
   int facet = 0;        ///< scene-wide facet number
-  Spectrum exitance{};  ///< M, W/m^2, from PatchMesh::emission
-  double area = 0.0;    ///< m^2, one side
+  Spectrum exitance{};  ///< M, W/m^2, from PatchMesh::emission; the mean of a picture
+  /// The picture by which the facet shines; null: it shines evenly.
+  std::shared_ptr<const EmissionTree> picture{};
+  Spectrum picture_scale{};  ///< exitance over the mean of `picture`
+  double area = 0.0;         ///< m^2, one side
   bool emits_both_sides = false;
   bool is_sphere = false;
   Sphere sphere{};
@@ -99,6 +103,9 @@ struct LightQuery {
 /// left to hemispheres of rays. The exitance of
 /// the scene decides this order; the light itself is PatchMesh::emission, which relight() may have
 /// scaled.
+///
+/// An emitter that shines by a picture is a sum of closed forms of its parts (see EmissionTree),
+/// and its shadow rays weigh what they see by the picture.
 ///
 /// Free sources (lamps without surface, sky and sun) are always direct light. *Lights* are the
 /// emitters, followed by the free sources.

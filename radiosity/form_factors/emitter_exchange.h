@@ -1,5 +1,6 @@
 #pragma once
 
+#include "mesh/patches/patch_outline.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/journal/journal_phase.h"
 
@@ -25,6 +26,7 @@ class EmitterExchange {
 
  private:
   double share_of_emitter(int patch) const;
+  void add_to_patches(int emitter, bool behind, const SurfacePoint& at, double exchange, int patch);
   double between(int i, int j) const;
 
   const PatchMesh& mesh_;
@@ -32,7 +34,12 @@ class EmitterExchange {
   const DirectLight& direct_light_;
   std::vector<char> is_left_to_rays_;  // per emitter
   std::vector<int> emitter_of_;
-  std::vector<int> lit_;      // patches of emitters, ascending
+  std::vector<int> lit_;  // patches of emitters, ascending
+  // Patches of emitters that shine by a picture have rows of their own after those of the emitters'
+  // sides. By patch; -1: the patch has the row of its emitter's side.
+  std::vector<int> own_row_;
+  std::vector<std::vector<int>> pictured_;  // by emitter and side, as rows are: patches with a row
+  std::vector<PatchOutline> outline_;       // of each patch with a row
   Eigen::ArrayXXd exchange_;  // (2 e + side, i): from patch i to the front or back of emitter e
 };
 

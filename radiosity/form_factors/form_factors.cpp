@@ -38,7 +38,10 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
                             const PatchMesh& mesh, const FormFactorOptions& options) {
   print.add_geometry(mesh);
   // Brightness determines which emitters have closed forms, and their order.
-  for (const Emitter& emitter : direct_light.emitters()) print.add(emitter.facet);
+  for (const Emitter& emitter : direct_light.emitters()) {
+    print.add(emitter.facet);
+    if (emitter.picture) print.add(1);
+  }
   for (const Material& material : scene.materials) {
     print.add(material.is_diffuse());
     print.add(material.regular_transmittance);

@@ -8,6 +8,7 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/patch_textures.h"
+#include "mesh/patches/pictured_emission.h"
 #include "mesh/patches/sphere_grid.h"
 #include "mesh/patches/translucency.h"
 #include "radiosity/gather/bright_patches.h"
@@ -457,7 +458,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
                                const BandArray& irradiance,
                                const Eigen::Ref<const BandArray>& direct) {
   const std::vector<int> patch = vertex_patches(mesh);
-  const BandArray rho = vertex_reflectance(mesh);
+  const BandArray rho = vertex_reflectance(mesh), emission = vertex_emission(mesh);
   const Eigen::Index bands = mesh.reflectance.cols();
   BandArray gains;
   if (direct.rows() > 0) gains = direct_gains(mesh, direct_light, patch, direct.cols() / bands);
@@ -473,7 +474,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
       }
     }
     if (direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
-    B.row(v).segment(direct_light.first_column(facet), bands) += mesh.emission.row(p);
+    B.row(v).segment(direct_light.first_column(facet), bands) += emission.row(v);
   }
   add_transmitted(mesh, at_base, B);
   return B;

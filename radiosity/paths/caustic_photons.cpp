@@ -26,7 +26,10 @@ struct Source {
   bool is_back = false;
   const FreeSource* free = nullptr;
 
-  const Spectrum& light() const { return free ? free->light : emitter->exitance; }
+  // `origin`: where the ray leaves the emitter.
+  Spectrum light(const Eigen::Vector3d& origin) const {
+    return free ? free->light : exitance_at(*emitter, origin);
+  }
 };
 
 struct SourcePoint {
@@ -200,7 +203,8 @@ class PhotonGun {
     ElementHit hit;
     caster_.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.facet < 0 || targets_.of_facet(hit.facet) != beam.target) return;
-    const Spectrum power = beam.source.light() * static_cast<float>(sent->weight / beam.stands_for);
+    const Spectrum power =
+        beam.source.light(ray.origin) * static_cast<float>(sent->weight / beam.stands_for);
     const auto branch_key =
         random_key(key, RandomPurpose::photon_paths, static_cast<std::uint64_t>(i));
     paths_.follow(ray, hit, branch_key, [&](const LightArrival& at) {

@@ -1,5 +1,6 @@
 #include "radiosity/solution/solution.h"
 
+#include "mesh/patches/pictured_emission.h"
 #include "mesh/patches/translucency.h"
 
 namespace lightwell {
@@ -21,10 +22,7 @@ Eigen::ArrayXf error_bound(const RadiositySolution& solution) {
 
 BandArray vertex_radiosity(const PatchMesh& mesh, const RadiositySolution& solution) {
   BandArray B = scattered_at_vertices(mesh, solution.irradiance());
-  const std::vector<int> patch = vertex_patches(mesh);
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    B.row(v) += mesh.emission.row(patch[v]);
-  }
+  B += vertex_emission(mesh);
   return B;
 }
 

@@ -14,6 +14,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "mesh/patches/pictured_emission.h"
 #include "radiosity/solution/channel_arrays.h"
 #include "radiosity/solution/solution_seal.h"
 #include "radiosity/solution/vtk_messages.h"
@@ -72,11 +73,10 @@ void add_geometry(vtkPolyData* poly, const PatchMesh& mesh) {
 /// leaving the surfaces by reflection. No colour clips, however bright the emitters are.
 std::vector<unsigned char> display_colors(const PatchMesh& mesh, const BandArray& B,
                                           const Bands& bands) {
-  const BandArray element_B = element_mean(mesh, B);
+  const BandArray element_B = element_mean(mesh, B - vertex_emission(mesh));
   double weighted = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const Spectrum reflected =
-        (element_B.row(e) - mesh.emission.row(mesh.patch[e])).max(0.0f).transpose();
+    const Spectrum reflected = element_B.row(e).max(0.0f).transpose();
     weighted += mesh.element_area[e] * luminous(bands, reflected);
   }
   const double mean = weighted / (bands.lumens_per_watt * mesh.element_area.sum());

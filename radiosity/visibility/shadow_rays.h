@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,6 +15,8 @@ namespace lightwell {
 struct ShadowSample {
   Ray ray{};
   double weight = 0.0;  ///< unoccluded kernel; a sample of weight 0 is not cast
+  /// Exitance r, g, b at the sample point of an emitter that shines by a picture; null: even.
+  const Eigen::Array3f* exitance = nullptr;
 };
 
 /// Sums over the shadow rays of one point or pair.
@@ -26,9 +29,16 @@ struct ShadowTally {
   /// rays.
   Spectrum through{};
   bool blocked = false;  ///< some ray meets more than clear panes
+  /// Sums of weight times exitance of samples of a picture, and of those of unblocked rays.
+  Eigen::Array3d pictured = Eigen::Array3d::Zero(), pictured_seen = Eigen::Array3d::Zero();
 
   /// Visible share of the kernel: exact where all rays agree. 0 without rays.
   double share() const { return all > 0.0 ? seen / all : 0.0; }
+  /// Share of a picture's light, per band, of which `part` is the sum that is visible:
+  /// pictured_seen or, behind clear panes, `through`. share() in bands in which no sample shines.
+  Spectrum share_of_picture(const Eigen::Array3d& part) const {
+    return (pictured > 0.0).select(part / pictured.max(1e-300), share()).cast<float>();
+  }
   /// Variance of share() for independent rays.
   double variance() const {
     const double s = share();
@@ -54,7 +64,7 @@ class ShadowBatch {
   void flush();
 
  private:
-  void add_through_panes(const Ray& ray, double weight, ShadowTally& tally) const;
+  void add_through_panes(std::size_t ray, ShadowTally& tally) const;
 
   static constexpr std::size_t size = 256;
   const ElementCaster& caster_;
@@ -63,6 +73,7 @@ class ShadowBatch {
   std::size_t count_ = 0;
   std::array<Ray, size> rays_;
   std::array<double, size> weights_;
+  std::array<const Eigen::Array3f*, size> exitances_;
   std::array<int, size> tally_of_;
 };
 

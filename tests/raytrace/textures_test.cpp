@@ -93,6 +93,41 @@ TEST(Textures, AFinalGatherShowsTheTextureToo) {
   }
 }
 
+// A picture of light is seen as M / pi of each texel, straight and in a mirror, in every pass.
+TEST_P(InEveryPass, APixelShowsThePictureOfLight) {
+  constexpr int texels = 8, pixels = 64;
+  constexpr float M = 3.0f;
+  const std::vector<float> shares = noise(texels * texels);
+  Scene scene =
+      SceneBuilder()
+          .polygon({}, {{0, 1, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}})
+          .polygon({.specular = 0.5f}, {{0, 0, 200}, {0, 1, 200}, {1, 1, 200}, {1, 0, 200}})
+          .build();
+  put_light(scene, 0, picture_of(texels, texels, shares), M);
+  UvMap map;
+  map.gradient << 1, 0, 0, 0, -1, 0;
+  map.offset << 0, 1;
+  std::get<PolygonMesh>(scene.surfaces[0].shape).uv_maps = {map};
+  TracedScene lit(std::move(scene), 0.2);
+  const auto expect_texels = [&](const Camera& camera, float share, bool is_mirrored) {
+    const Image image = lit.render(camera, {.pass = GetParam(), .gather_rays = 4});
+    for (int y = 0; y < pixels; ++y) {
+      for (int x = 0; x < pixels; ++x) {
+        if (x % 8 == 0 || x % 8 == 7 || y % 8 == 0 || y % 8 == 7) continue;  // edges of texels
+        const int column = is_mirrored ? texels - 1 - x / 8 : x / 8;
+        const float M_here = M * shares[static_cast<std::size_t>(texels * (y / 8) + column)];
+        EXPECT_NEAR(image.radiance(pixels * y + x, 1), share * M_here / pi_f, rounding * M);
+      }
+    }
+  };
+  expect_texels(from_above(pixels), 1.0f, false);
+  // From the screen's height upwards, its image in the mirror is 300 m away.
+  Camera up = from_above(pixels);
+  up.direction = {0, 0, 1};
+  up.fov_degrees = 2.0 * std::atan(0.5 / 300.0) * 180.0 / std::numbers::pi;
+  expect_texels(up, 0.5f, true);
+}
+
 // Texels are 16 times finer than pixels. A filtered pixel is the mean over its footprint and as
 // much around; samples of unfiltered texels at its corners would have the texels' standard
 // deviation of 0.26. The mean of 256 independent texels has 0.26 / 16.
