@@ -25,6 +25,7 @@
 #include "scene/io/luminaires/luminaire_file.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
+#include "scene/picture_cells.h"
 
 namespace lightwell {
 namespace {
@@ -55,13 +56,14 @@ Json emitters_json(const Scene& scene) {
     const Material& material = scene.materials[surface.material];
     if (!material.is_emitter()) continue;
     const double area = emitting_area(scene, surface);
-    const double exitance = material.emission.cast<double>().sum();
+    const Eigen::ArrayXd M = mean_exitance(scene, surface);
+    const double exitance = M.sum();
     Json emitter = {{"surface", surface.name}, {"area", area}, {"exitance", exitance}};
     if (scene.relative_units) {
       emitter["power"] = area * exitance;
     } else {
       emitter["watts_radiated"] = area * exitance;
-      emitter["lumens"] = area * luminous(scene.bands, material.emission);
+      emitter["lumens"] = area * luminous(scene.bands, M.cast<float>());
     }
     emitters.push_back(std::move(emitter));
   }
@@ -135,6 +137,10 @@ std::string kind_of(const Material& material, bool relative_units) {
   if (material.texture) {
     const Texture& picture = *material.texture->image.picture;
     words.push_back(fmt::format("texture {} x {}", picture.width(), picture.height()));
+  }
+  if (material.emission_texture) {
+    const Texture& picture = *material.emission_texture->image.picture;
+    words.push_back(fmt::format("picture of emission {} x {}", picture.width(), picture.height()));
   }
   if (material.mask) words.emplace_back("mask");
   if (material.relief) {

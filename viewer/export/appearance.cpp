@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
+#include "mesh/patches/pictured_emission.h"
 #include "raytrace/display.h"
 #include "raytrace/light_meter.h"
 #include "raytrace/round_step.h"
 #include "scene/coat.h"
+#include "scene/facet_textures.h"
 #include "scene/parallel.h"
 #include "scene/specular.h"
 
@@ -42,6 +46,36 @@ std::vector<double> even_steps(double high) {
   return steps;
 }
 
+// Replaces the emission of facets that shine by a picture, which drawn pictures have, by its mean
+// over the facet.
+void even_out_emission(const PatchMesh& mesh, BandArray& B) {
+  if (!mesh.textures || !mesh.textures->has_emission()) return;
+  std::map<int, std::pair<Spectrum, float>> sums;  // of each facet: power, W, and area, m^2
+  const auto shines = [&](int e) {
+    return mesh.textures->has_emission(mesh.facet[e]) &&
+           (mesh.emission.row(mesh.patch[e]) > 0.0f).any();
+  };
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!shines(e)) continue;
+    auto& [power, area] =
+        sums.try_emplace(mesh.facet[e], Spectrum::Zero(mesh.emission.cols()), 0.0f).first->second;
+    const auto weight = static_cast<float>(mesh.element_area[e]);
+    power += weight * mesh.emission.row(mesh.patch[e]).transpose();
+    area += weight;
+  }
+  const BandArray M = vertex_emission(mesh);
+  std::vector<char> done(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (!shines(e)) continue;
+    const auto& [power, area] = sums.at(mesh.facet[e]);
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const int v = mesh.corners[e][c];
+      if (done[static_cast<std::size_t>(v)]++ != 0) continue;
+      B.row(v) += (power / area).transpose() - M.row(v);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<ElementKind> element_kinds(const SolvedScene& solved,
@@ -67,6 +101,7 @@ BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>&
   const PatchMesh& mesh = solved.mesh;
   const BandArray E = solved.solution.irradiance();
   BandArray B = vertex_radiosity(mesh, solved.solution);
+  even_out_emission(mesh, B);
   const std::vector<Spectrum> shares = passed_on(materials);
   std::vector<char> done(static_cast<std::size_t>(mesh.vertex_count()), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {

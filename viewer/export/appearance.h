@@ -32,7 +32,8 @@ std::vector<ElementKind> element_kinds(const PatchMesh& mesh, const BandArray& E
                                        const std::vector<Material>& materials);
 
 /// Radiance drawn at each vertex, W/(m^2 sr), vertices x bands: B / pi. Mirrors and glass are drawn
-/// as if they scattered the mirrored or the refracted light diffusely.
+/// as if they scattered the mirrored or the refracted light diffusely. A facet that shines by a
+/// picture has the picture's mean.
 BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>& materials);
 
 /// Reflectance of a patch per band as shown_radiance uses it: diffuse, plus specular or the glass's

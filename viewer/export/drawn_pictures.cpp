@@ -3,9 +3,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "mesh/patches/patch_textures.h"
 #include "raytrace/display.h"
+#include "scene/facet_textures.h"
 
 namespace lightwell {
 namespace {
@@ -31,10 +33,27 @@ bool can_be_inverted(const SurfaceTexture& image) {
   return std::isfinite(area) && area != 0.0;
 }
 
-// Picture of a material's texture, with the mask sampled at the texture's texels. Without a texture
-// the picture is white with the mask's resolution.
+// True if the emission is the picture that surfaces of the material show.
+bool shows_emission(const Material& material) {
+  return material.emission_texture && material.is_emitter();
+}
+
+// The picture that is drawn, and its factor; a mask alone has none.
+const SurfaceTexture& image_of(const Material& material) {
+  if (shows_emission(material)) return material.emission_texture->image;
+  return material.texture ? material.texture->image : material.mask->image;
+}
+std::optional<Spectrum> factor_of(const Material& material) {
+  if (shows_emission(material)) return material.emission_texture->factor;
+  if (material.texture) return material.texture->factor;
+  return std::nullopt;
+}
+
+// Picture of a material's emission or else its texture, with the mask sampled at the texture's
+// texels. Without a texture the picture is white with the mask's resolution.
 DrawnPicture draw(const Material& material, int longest) {
-  const SurfaceTexture& image = material.texture ? material.texture->image : material.mask->image;
+  const SurfaceTexture& image = image_of(material);
+  const std::optional<Spectrum> factor = factor_of(material);
   const Texture& picture = *image.picture;
   const int level = level_that_fits(picture, longest);
   DrawnPicture drawn{.width = picture.level_width(level),
@@ -43,9 +62,9 @@ DrawnPicture draw(const Material& material, int longest) {
                      .wrap = image.wrap};
   constexpr float black = 1e-6f;
   Eigen::Array3f largest = Eigen::Array3f::Ones();
-  if (material.texture) {
+  if (factor) {
     largest = picture.largest().max(black);
-    drawn.brightest = (material.texture->factor.head<3>() * largest).max(black);
+    drawn.brightest = (factor->head<3>() * largest).max(black);
   } else {
     drawn.brightest = material.reflectance.head<3>().max(black);
   }
@@ -54,7 +73,7 @@ DrawnPicture draw(const Material& material, int longest) {
   for (int y = 0; y < drawn.height; ++y) {
     for (int x = 0; x < drawn.width; ++x) {
       Eigen::Array3f share = Eigen::Array3f::Ones();
-      if (material.texture) share = picture.texel(level, x, y) / largest;
+      if (factor) share = picture.texel(level, x, y) / largest;
       for (int c = 0; c < 3; ++c) {
         drawn.rgba.push_back(static_cast<std::uint8_t>(opaque * srgb_encode(share[c]) + 0.5f));
       }
@@ -70,6 +89,22 @@ DrawnPicture draw(const Material& material, int longest) {
   return drawn;
 }
 
+// Means of the pictures of emission over each facet, W/m^2, facets x 3.
+BandArray mean_emissions(const PatchMesh& mesh) {
+  if (!mesh.textures || !mesh.textures->has_emission()) return {};
+  const int facets = 1 + *std::ranges::max_element(mesh.facet);
+  BandArray power = BandArray::Zero(facets, 3);
+  Eigen::ArrayXf area = Eigen::ArrayXf::Zero(facets);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int facet = mesh.facet[e];
+    if (!mesh.textures->has_emission(facet)) continue;
+    const auto weight = static_cast<float>(mesh.element_area[e]);
+    power.row(facet) += weight * mean_emission(mesh, *mesh.textures, e).transpose();
+    area[facet] += weight;
+  }
+  return power.colwise() / area.max(1e-30f);
+}
+
 }  // namespace
 
 DrawnPictures::DrawnPictures(const Scene& scene, int longest) {
@@ -80,7 +115,9 @@ DrawnPictures::DrawnPictures(const Scene& scene, int longest) {
     const auto m = static_cast<std::size_t>(surface.material);
     const Material& material = scene.materials[m];
     const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
-    if (!mesh || material.is_emitter() || !(material.texture || material.mask)) {
+    const bool has_picture =
+        shows_emission(material) || (!material.is_emitter() && (material.texture || material.mask));
+    if (!mesh || !has_picture) {
       facet_map_.insert(facet_map_.end(), mesh ? mesh->facets.size() : 1, -1);
       continue;
     }
@@ -88,7 +125,7 @@ DrawnPictures::DrawnPictures(const Scene& scene, int longest) {
       picture_of_material[m] = static_cast<int>(pictures_.size());
       pictures_.push_back(draw(material, longest));
     }
-    const SurfaceTexture& image = material.texture ? material.texture->image : material.mask->image;
+    const SurfaceTexture& image = image_of(material);
     const int first = static_cast<int>(maps_.size());
     for (const UvMap& uv : mesh->uv_maps) {
       maps_.push_back(
@@ -120,15 +157,18 @@ Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor> picture_gains(const Patc
   Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor> gain =
       Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor>::Ones(mesh.vertex_count(), 3);
   if (drawn.all().empty()) return gain;
-  const BandArray rho = vertex_reflectance(mesh);
+  const BandArray rho = vertex_reflectance(mesh), M = mean_emissions(mesh);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int picture = drawn.of(mesh.facet[e]);
     if (picture < 0) continue;
     const Eigen::Array3f brightest = drawn.all()[static_cast<std::size_t>(picture)].brightest;
+    const int facet = mesh.facet[e];
+    const bool shines = mesh.textures && mesh.textures->has_emission(facet);
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       const int v = mesh.corners[e][c];
       for (int k = 0; k < 3; ++k) {
-        if (rho(v, k) > 0.0f) gain(v, k) = brightest[k] / rho(v, k);
+        const float mean = shines ? M(facet, k) : rho(v, k);
+        if (mean > 0.0f) gain(v, k) = brightest[k] / mean;
       }
     }
   }

@@ -13,9 +13,10 @@ namespace lightwell {
 /// A surface's texture and mask in the form of graphics hardware and model files.
 struct DrawnPicture {
   int width = 0, height = 0;
-  /// 4 bytes a texel, rows from the top: sRGB of rho / `brightest`; alpha 0 in holes, else 255.
+  /// 4 bytes a texel, rows from the top: sRGB of rho, or of the exitance of a picture of emission,
+  /// over `brightest`; alpha 0 in holes, else 255.
   std::vector<std::uint8_t> rgba{};
-  Eigen::Array3f brightest = Eigen::Array3f::Ones();  ///< rho of a white texel, > 0
+  Eigen::Array3f brightest = Eigen::Array3f::Ones();  ///< of a white texel, > 0
   bool has_holes = false;
   bool is_smooth = true;  ///< texels are interpolated; else flat squares
   std::array<TextureWrap, 2> wrap = {TextureWrap::repeat, TextureWrap::repeat};
@@ -23,7 +24,7 @@ struct DrawnPicture {
 
 /// Pictures of a scene's materials, textures with masks as alpha, and their placement on facets.
 /// Facets are numbered as by scene_facets. Scenes of bands other than RGB and materials that emit
-/// light have no pictures.
+/// light evenly have no pictures.
 class DrawnPictures {
  public:
   /// Halves pictures until neither side exceeds `longest` texels, or no coarser level is left.
@@ -51,7 +52,8 @@ class DrawnPictures {
 };
 
 /// Factor from the radiance of a vertex, with the mean reflectance of its pictures, to that of a
-/// white texel: brightest / rho, vertices x 3; 1 without a picture.
+/// white texel: brightest / rho, vertices x 3; 1 without a picture. Of a picture of emission,
+/// brightest / M, where M is the mean over the facet, as shown_radiance() has it.
 Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor> picture_gains(const PatchMesh& mesh,
                                                                       const DrawnPictures& drawn);
 

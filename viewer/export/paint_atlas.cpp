@@ -6,11 +6,13 @@
 #include <utility>
 #include <vector>
 
+#include "mesh/patches/pictured_emission.h"
 #include "mesh/patches/sphere_grid.h"
 #include "mesh/patches/translucency.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/openings/portals.h"
 #include "scene/parallel.h"
+#include "scene/sampling.h"
 #include "viewer/export/baked_channels.h"
 #include "viewer/export/chart_texels.h"
 #include "viewer/export/fill_texels.h"
@@ -135,6 +137,23 @@ BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& mode
   return E.max(0.0f);
 }
 
+/// M at a texel; a picture is averaged over the texel.
+Spectrum emission_at_texel(const PicturedEmission& emission, const LightmapLayout& layout,
+                           const BakedModel& model, const PatchMesh& mesh, const Texel& texel) {
+  const int e = model.element[texel.face], patch = mesh.patch[e];
+  if (!emission.shines(patch)) return mesh.emission.row(patch).transpose();
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  const auto& corners = model.faces[texel.face];
+  for (int c = 0; c < model.corner_count(texel.face); ++c) {
+    at += texel.inside[c] * model.position[corners[c]];
+  }
+  Eigen::Vector3d a, b;
+  tangent_frame(element_center(mesh, e).normal, a, b);
+  Eigen::Matrix<double, 3, 2> footprint;
+  footprint << a, b;
+  return emission.over(mesh.facet[e], at, footprint / layout.texels_per_metre);
+}
+
 Eigen::Array3f finite_rgb(const Bands& bands, const Spectrum& values) {
   return linear_rgb(bands, values).unaryExpr(&finite_or_black);
 }
@@ -146,6 +165,7 @@ LightmapAtlas paint_atlas(const LightmapLayout& layout, int atlas, const BakedMo
                           const LightmapOptions& options) {
   const PatchMesh& mesh = solved.mesh;
   const Bands& bands = solved.solution.bands;
+  const PicturedEmission emission(mesh);
   const std::vector<Texel> texels = texels_of(layout, atlas, model, mesh);
   const BandArray E = irradiance_of(texels, model, solved, scene, options);
   BandArray transmitted = BandArray::Zero(mesh.vertex_count(), bands.count());
@@ -164,7 +184,7 @@ LightmapAtlas paint_atlas(const LightmapLayout& layout, int atlas, const BakedMo
     const Texel& texel = texels[i];
     const Eigen::Index at = size * texel.y + texel.x;
     const int patch = mesh.patch[model.element[texel.face]];
-    const Spectrum M = mesh.emission.row(patch).transpose();
+    const Spectrum M = emission_at_texel(emission, layout, model, mesh, texel);
     const Spectrum rho = mesh.reflectance.row(patch).transpose();
     const Spectrum e = E.row(static_cast<Eigen::Index>(i)).transpose();
     const Spectrum shown = shown_reflectance(mesh, scene.materials, patch);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "mesh/cleaning/joined_surfaces.h"
+#include "mesh/patches/pictured_emission.h"
 #include "scene/facet_textures.h"
 
 namespace lightwell {
@@ -58,7 +59,7 @@ PointReading read_point(const PatchMesh& mesh, const Bands& bands, const BandArr
     reading.reflectance = mesh.textures->reflectance(facet, seen.position);
   }
   reading.lux = luminous(bands, reading.irradiance);
-  const Spectrum emission = mesh.emission.row(reading.patch).transpose();
+  const Spectrum emission = emission_at(mesh, reading.element, seen.position);
   Spectrum B = emission + reading.reflectance * reading.irradiance;
   if (mesh.patch_behind(reading.patch) >= 0) {
     const Spectrum behind = interpolate(mesh, irradiance, hit_behind(mesh, seen.hit));
