@@ -84,6 +84,8 @@ bool is_same(const Material& a, const Material& b) {
   return is_same(a.reflectance, b.reflectance) && is_same(a.transmittance, b.transmittance) &&
          is_same(a.regular_transmittance, b.regular_transmittance) &&
          is_same(a.specular, b.specular) && is_same(a.emission, b.emission) &&
+         (a.coat ? a.coat->index_of_refraction : 0.0f) ==
+             (b.coat ? b.coat->index_of_refraction : 0.0f) &&
          a.specular_roughness == b.specular_roughness && a.one_sided == b.one_sided &&
          a.emits_both_sides == b.emits_both_sides;
 }
