@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "scene/facet_textures.h"
 #include "tests/viewer/pictured_wall.h"
 #include "viewer/export/baked_model.h"
 
@@ -36,6 +37,23 @@ TEST(DrawnPictures, TexelsTimesTheBrightestAreReflectances) {
   const Eigen::Vector2f place = drawn.place(0, {1.5, 0.5, 2.0});
   EXPECT_FLOAT_EQ(place.x(), 0.25f);
   EXPECT_FLOAT_EQ(place.y(), 0.25f);
+}
+
+// The mean of the gains times the texels is 1, so that a facet keeps its power.
+TEST(DrawnPictures, TexelsTimesTheBrightestAreTheEmissionOfAFacetThatShines) {
+  PicturedBox box;
+  put_light(box.scene, 2, picture_of(2, 1, {0.8f, 0.2f}), 5.0f);
+  PatchMesh& mesh = box.solved.mesh;
+  mesh.material[2] = box.scene.surfaces[2].material;
+  mesh.emission.row(2).setConstant(2.5f);
+  mesh.textures = std::make_shared<const FacetTextures>(box.scene);
+  const DrawnPictures drawn(box.scene, 1024);
+  const DrawnPicture& picture = drawn.all().at(0);
+  EXPECT_NEAR(linear(picture.rgba[0]) * picture.brightest[1], 4.0f, 4.0f * byte_rounding);
+  EXPECT_NEAR(linear(picture.rgba[4]) * picture.brightest[1], 1.0f, 4.0f * byte_rounding);
+  const float gain = picture_gains(mesh, drawn)(mesh.corners[2][0], 1);
+  const float mean = 0.5f * (linear(picture.rgba[0]) + linear(picture.rgba[4]));
+  EXPECT_NEAR(gain * mean, 1.0f, byte_rounding / mean);
 }
 
 TEST(DrawnPictures, HolesAreTransparentWhereverTheMaskLies) {
