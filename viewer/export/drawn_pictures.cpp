@@ -89,15 +89,15 @@ DrawnPicture draw(const Material& material, int longest) {
   return drawn;
 }
 
-// Means of the pictures of emission over each facet, W/m^2, facets x 3.
-BandArray mean_emissions(const PatchMesh& mesh) {
+// Means of drawn pictures of emission over each facet, W/m^2, facets x 3.
+BandArray mean_emissions(const PatchMesh& mesh, const DrawnPictures& drawn) {
   if (!mesh.textures || !mesh.textures->has_emission()) return {};
   const int facets = 1 + *std::ranges::max_element(mesh.facet);
   BandArray power = BandArray::Zero(facets, 3);
   Eigen::ArrayXf area = Eigen::ArrayXf::Zero(facets);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int facet = mesh.facet[e];
-    if (!mesh.textures->has_emission(facet)) continue;
+    if (drawn.of(facet) < 0 || !mesh.textures->has_emission(facet)) continue;
     const auto weight = static_cast<float>(mesh.element_area[e]);
     power.row(facet) += weight * mean_emission(mesh, *mesh.textures, e).transpose();
     area[facet] += weight;
@@ -157,7 +157,7 @@ Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor> picture_gains(const Patc
   Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor> gain =
       Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor>::Ones(mesh.vertex_count(), 3);
   if (drawn.all().empty()) return gain;
-  const BandArray rho = vertex_reflectance(mesh), M = mean_emissions(mesh);
+  const BandArray rho = vertex_reflectance(mesh), M = mean_emissions(mesh, drawn);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int picture = drawn.of(mesh.facet[e]);
     if (picture < 0) continue;

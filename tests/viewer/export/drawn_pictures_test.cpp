@@ -46,6 +46,7 @@ TEST(DrawnPictures, TexelsTimesTheBrightestAreTheEmissionOfAFacetThatShines) {
   PatchMesh& mesh = box.solved.mesh;
   mesh.material[2] = box.scene.surfaces[2].material;
   mesh.emission.row(2).setConstant(2.5f);
+  mesh.element_area = Eigen::ArrayXd::Constant(mesh.element_count(), 4.0);
   mesh.textures = std::make_shared<const FacetTextures>(box.scene);
   const DrawnPictures drawn(box.scene, 1024);
   const DrawnPicture& picture = drawn.all().at(0);
