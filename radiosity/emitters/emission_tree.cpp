@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <queue>
 
 #include "radiosity/visibility/convex_polygon.h"
@@ -64,6 +65,23 @@ std::vector<ConvexPolygon> parts_before(const std::vector<ConvexPolygon>& polygo
     if (clip(polygon, side)) inside.push_back(polygon);
   }
   return inside;
+}
+
+// Form factor from a point to a polygon that lies all above the point's horizon: the integral of
+// cos cos / (pi r^2) over a fan of triangles, each by the middles of its edges.
+double by_edge_middles(const SurfacePoint& at, const Loop& polygon) {
+  double F = 0.0;
+  for (std::size_t k = 2; k < polygon.size(); ++k) {
+    const Vector3d a = polygon[0] - at.position, b = polygon[k - 1] - at.position,
+                   c = polygon[k] - at.position;
+    const Vector3d doubled = (b - a).cross(c - a);  // twice the area, along the normal
+    for (const Vector3d& r :
+         {Vector3d(0.5 * (a + b)), Vector3d(0.5 * (b + c)), Vector3d(0.5 * (c + a))}) {
+      const double r2 = r.squaredNorm();
+      F += r.dot(at.normal) * std::abs(r.dot(doubled)) / (r2 * r2);
+    }
+  }
+  return F / (6.0 * std::numbers::pi);
 }
 
 }  // namespace
@@ -199,7 +217,19 @@ int EmissionTree::leaf_count() const {
 }
 
 double EmissionTree::form_factor(const Node& node, const SurfacePoint& at) const {
+  const Vector3d to_center = node.center - at.position;
+  const double distance = to_center.norm();
+  // From farther than `far` radii the rule of edge middles, which is exact for quadratic kernels,
+  // takes the place of the closed form: off by less than (radius / distance)^4, 1e-4 of F.
+  constexpr double far = 10.0;
+  const bool is_far = distance > far * node.radius;
   double F = 0.0;
+  if (is_far && to_center.dot(at.normal) > node.radius) {
+    for (int i = node.first_polygon; i < node.end_polygon; ++i) {
+      F += by_edge_middles(at, polygons_[static_cast<std::size_t>(i)]);
+    }
+    return F;
+  }
   for (int i = node.first_polygon; i < node.end_polygon; ++i) {
     const Loop& polygon = polygons_[static_cast<std::size_t>(i)];
     F += std::abs(point_to_polygon(at.position, at.normal, polygon));
@@ -227,10 +257,11 @@ EmissionTree::View EmissionTree::view(const SurfacePoint& at, double form_factor
     const double distance = (node.center - at.position).norm();
     const double slope = std::min(1.0, 2.0 * node.radius / std::max(distance, 1e-300));
     if (node.child >= 0 && static_cast<double>(node.spread) * F * slope > most) {
-      for (const int child : {node.child + 1, node.child}) {
-        const double of_child = form_factor(nodes_[static_cast<std::size_t>(child)], at);
-        if (of_child > 0.0) waiting.push_back({child, of_child});
-      }
+      // The parts of a rectangle send what the rectangle sends.
+      const double of_low =
+          std::min(F, form_factor(nodes_[static_cast<std::size_t>(node.child)], at));
+      if (F - of_low > 0.0) waiting.push_back({node.child + 1, F - of_low});
+      if (of_low > 0.0) waiting.push_back({node.child, of_low});
       continue;
     }
     view.light += F * node.mean.cast<double>();
