@@ -43,4 +43,9 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
                          MeshMaterials materials, FilePolygons* polygons = nullptr,
                          MeshFronts fronts = MeshFronts::from_winding);
 
+/// Surfaces and materials of a COLLADA or FBX file, a mesh of another scene. The file has a unit of
+/// its own; coordinates are metres times `units_per_metre`.
+Scene read_interchange_file(const std::filesystem::path& path, double units_per_metre,
+                            MeshMaterials materials);
+
 }  // namespace lightwell

@@ -196,6 +196,20 @@ void turn_over(PolygonMesh& mesh) {
   }
 }
 
+bool is_closed(const PolygonMesh& mesh) {
+  std::vector<std::pair<int, int>> forwards, backwards;
+  for (const Facet& facet : mesh.facets) {
+    for (std::size_t i = 0; i < facet.boundary.size(); ++i) {
+      const int a = facet.boundary[i], b = facet.boundary[(i + 1) % facet.boundary.size()];
+      forwards.emplace_back(a, b);
+      backwards.emplace_back(b, a);
+    }
+  }
+  std::ranges::sort(forwards);
+  std::ranges::sort(backwards);
+  return forwards == backwards && std::ranges::adjacent_find(forwards) == forwards.end();
+}
+
 PolygonMesh placed_mesh(PolygonMesh mesh, const Eigen::Affine3d& transform, bool flip,
                         bool mirror_turns, Repairs& repairs) {
   const bool is_mirrored = transform.linear().determinant() < 0.0;

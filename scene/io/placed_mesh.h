@@ -43,6 +43,9 @@ void drop_normals(PolygonMesh& mesh);
 /// Exchanges front and back of every facet.
 void turn_over(PolygonMesh& mesh);
 
+/// True if every edge of the facets' boundaries occurs exactly once in each direction.
+bool is_closed(const PolygonMesh& mesh);
+
 /// Loops transformed by `transform`, with front and back exchanged if `flip`. Fronts stay on their
 /// side of the surface even where the transformation mirrors. Polygons without area after the
 /// transformation are dropped. `uv` and `normals` are given before the transformation, one entry

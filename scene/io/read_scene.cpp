@@ -18,6 +18,7 @@ Scene read_any(const std::filesystem::path& path) {
   if (extension == ".vs3") return read_vs3(path);
   if (extension == ".xml") return read_mitsuba(path);
   if (extension == ".gltf" || extension == ".glb") return read_gltf(path);
+  if (extension == ".dae" || extension == ".fbx") return read_interchange(path);
   if (extension == ".rad" || extension == ".rif") return read_radiance(path);
   if (extension == ".oct") {
     throw InputError(
@@ -27,8 +28,8 @@ Scene read_any(const std::filesystem::path& path) {
   }
   throw InputError(
       fmt::format("{}: the extension '{}' is of no known scene format; readable are "
-                  ".toml (native), .obj, .ply and .stl, .gltf and .glb, Mitsuba's .xml, "
-                  "RADIANCE's .rad and .rif, and View3D's .vs3",
+                  ".toml (native), .obj, .ply and .stl, .gltf and .glb, .dae (COLLADA), .fbx, "
+                  "Mitsuba's .xml, RADIANCE's .rad and .rif, and View3D's .vs3",
                   path.string(), extension));
 }
 

@@ -10,9 +10,9 @@ namespace lightwell {
 enum class References { anywhere, inside_folder };
 
 /// Reads a scene whose format follows from the extension: .toml (native, docs/scene-format.md),
-/// .obj, .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .rad and .rif (RADIANCE). The result has
-/// passed validate(). Throws InputError naming file, line or object, value and remedy; LimitError
-/// for a reference that `references` forbids.
+/// .obj, .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .dae (COLLADA), .fbx, .rad and .rif
+/// (RADIANCE). The result has passed validate(). Throws InputError naming file, line or object,
+/// value and remedy; LimitError for a reference that `references` forbids.
 Scene read_scene(const std::filesystem::path& path, References references = References::anywhere);
 
 /// Reads the native format (grammar: docs/scene-format.md).
@@ -41,6 +41,11 @@ Scene read_mitsuba(const std::filesystem::path& path);
 /// perspective cameras. Metres, y upwards; emission has no known unit (Scene::relative_units).
 /// Unread contents are named in the notes. See docs/scene-format.md.
 Scene read_gltf(const std::filesystem::path& path);
+
+/// Reads COLLADA 1.4 and 1.5 or FBX 7: polygons of all nodes, materials, lights and cameras. Metres
+/// by the file's unit; the file's axis stays upright. Emission has no known unit
+/// (Scene::relative_units). Unread contents are named in the notes. See docs/scene-format.md.
+Scene read_interchange(const std::filesystem::path& path);
 
 /// Reads RADIANCE: a scene file (.rad) or the variables for rad (.rif), which name scene files and
 /// views. Commands in the files (xform, genbox ...) are evaluated by this reader, never by a shell.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/io/directional_light.h"
+
 namespace lightwell {
 namespace {
 
@@ -18,24 +20,6 @@ SpotCone read_gltf_cone(const GltfObject& light) {
                            cone.outer));
   }
   return cone;
-}
-
-// A directional light shines along the -z of its node; its intensity is illuminance on a
-// perpendicular plane.
-void add_sun(const Eigen::Vector3d& towards, const Spectrum& irradiance, const GltfObject& node,
-             const std::string& name, Scene& scene, Remarks& remarks) {
-  if (!(towards.stableNorm() > 0.0)) node.fail("leaves its light no direction");
-  if (!scene.sky) {
-    scene.sky = Sky{.name = "dark",
-                    .scale = constant_spectrum(scene.bands, 0.0f),
-                    .ground = constant_spectrum(scene.bands, 0.0f)};
-  }
-  if (scene.sky->sun) {
-    remarks.add("A scene has one sun here; further directional lights were left out", name);
-    return;
-  }
-  remarks.add("Directional lights became a sun, a disc 0.53 degrees across", name);
-  scene.sky->sun = Sun{.direction = towards.stableNormalized(), .irradiance = irradiance};
 }
 
 }  // namespace
@@ -60,8 +44,11 @@ void add_gltf_light(const GltfObject& light, const GltfObject& node,
     light.fail("has an intensity or a color that is below 0, or too large");
   }
   if (type == "directional") {
-    return add_sun(to_world.linear() * Eigen::Vector3d::UnitZ(), lamp.intensity, node, name, scene,
-                   remarks);
+    // A directional light shines along the -z of its node; its intensity is illuminance on a
+    // perpendicular plane.
+    const Eigen::Vector3d towards = to_world.linear() * Eigen::Vector3d::UnitZ();
+    if (!(towards.stableNorm() > 0.0)) node.fail("leaves its light no direction");
+    return add_directional_light(towards, lamp.intensity, name, scene, remarks);
   }
   if (type == "spot") {
     lamp.shape = read_gltf_cone(light);

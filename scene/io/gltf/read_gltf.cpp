@@ -69,21 +69,6 @@ std::array<std::size_t, 3> corners_of(std::size_t mode, std::size_t i) {
   return {3 * i, 3 * i + 1, 3 * i + 2};
 }
 
-// True if every edge occurs exactly once in each direction.
-bool is_closed(const PolygonMesh& mesh) {
-  std::vector<std::pair<int, int>> forwards, backwards;
-  for (const Facet& facet : mesh.facets) {
-    for (std::size_t i = 0; i < facet.boundary.size(); ++i) {
-      const int a = facet.boundary[i], b = facet.boundary[(i + 1) % facet.boundary.size()];
-      forwards.emplace_back(a, b);
-      backwards.emplace_back(b, a);
-    }
-  }
-  std::ranges::sort(forwards);
-  std::ranges::sort(backwards);
-  return forwards == backwards && std::ranges::adjacent_find(forwards) == forwards.end();
-}
-
 class GltfReader {
  public:
   GltfReader(const GltfFile& file, Scene& scene)

@@ -22,6 +22,11 @@ namespace {
 constexpr std::initializer_list<const char*> shape_keys = {"polygon", "polygons", "box", "sphere",
                                                            "mesh"};
 
+// True for meshes of formats that name their unit of length, and bring materials.
+bool has_unit(std::string_view extension) {
+  return extension == ".dae" || extension == ".fbx";
+}
+
 // Placement of a shape: x -> scale * rotation * x + offset, in metres.
 struct Placement {
   double scale = 1.0;
@@ -284,12 +289,13 @@ class TomlSurfaces::Reader {
   void read_mesh(const TomlValue& value) {
     const std::string name = value.name();
     const std::string extension = lower_extension(name);
-    if (extension != ".obj" && extension != ".ply" && extension != ".stl") {
-      value.fail(fmt::format("is '{}'; a mesh is an .obj, .ply or .stl file", name));
+    const bool has_materials = extension == ".obj" || has_unit(extension);
+    if (!has_materials && extension != ".ply" && extension != ".stl") {
+      value.fail(fmt::format("is '{}'; a mesh is an .obj, .ply, .stl, .dae or .fbx file", name));
     }
     const auto path = (value.file().parent_path() / name).lexically_normal();
     const auto material = table_.find("material");
-    if (!material && extension != ".obj") {
+    if (!material && !has_materials) {
       value.fail(fmt::format("has no materials in '{}'; add a 'material' to the surface", name));
     }
     const auto flip = table_.find("flip");
@@ -381,8 +387,11 @@ int TomlSurfaces::add_material(Material material) {
 Scene TomlSurfaces::mesh_of(const std::filesystem::path& path, MeshMaterials wanted) {
   const auto known = meshes_.find({path, wanted});
   if (known != meshes_.end()) return known->second;
-  Scene mesh = lower_extension(path) == ".obj" ? read_obj_file(path, 1.0, wanted)
-                                               : read_geometry_file(path, 1.0, wanted);
+  const std::string extension = lower_extension(path);
+  Scene mesh = has_unit(extension)
+                   ? read_interchange_file(path, 1.0 / scene_.metres_per_unit, wanted)
+               : extension == ".obj" ? read_obj_file(path, 1.0, wanted)
+                                     : read_geometry_file(path, 1.0, wanted);
   constexpr std::size_t small = 10'000;  // facets; larger meshes soon reach the limit of SceneSize
   if (scene_facets(mesh).size() <= small) meshes_.emplace(std::pair(path, wanted), mesh);
   return mesh;
