@@ -14,6 +14,8 @@ std::span<const Target> targets() {
       {.name = "glb",
        .read = [](std::string_view b) { read_scene_file("scene.glb", b); },
        .sources = "scene/io/gltf"},
+      {.name = "dae", .read = [](std::string_view b) { read_scene_file("scene.dae", b); }},
+      {.name = "fbx", .read = [](std::string_view b) { read_scene_file("scene.fbx", b); }},
       {.name = "radiance",
        .read = [](std::string_view b) { read_scene_file("scene.rad", b); },
        .sources = "scene/io/radiance"},

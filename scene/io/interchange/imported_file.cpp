@@ -47,13 +47,19 @@ std::string name_of(const aiNode& node) {
   return name.substr(0, name.find("_$AssimpFbx$"));
 }
 
-// The library refuses numbers of COLLADA files that follow blanks: <rotate> 0 0 1 90</rotate>.
-std::string without_blanks_before_numbers(const std::string& xml) {
+// A COLLADA file without what the library stumbles over: numbers that follow blanks (<rotate> 0 0 1
+// 90</rotate>) end the reading, and cameras without a name lose their angles.
+std::string readable_by_library(const std::string& xml) {
   constexpr std::string_view blanks = " \t\r\n", beginnings = "+-.0123456789";
+  constexpr std::string_view camera = "<camera ";
   std::string result;
   result.reserve(xml.size());
   for (std::size_t i = 0; i < xml.size(); ++i) {
     result += xml[i];
+    if (xml[i] == '<' && xml.compare(i, camera.size(), camera) == 0) {
+      result += R"(camera name="" )";
+      i += camera.size() - 1;
+    }
     if (xml[i] != '>') continue;
     const std::size_t next = xml.find_first_not_of(blanks, i + 1);
     if (next != std::string::npos && beginnings.find(xml[next]) != std::string_view::npos) {
@@ -86,7 +92,7 @@ struct ImportedFile::Content {
     importer.SetPropertyBool("IMPORT_FBX_IGNORE_UP_DIRECTION", true);
     // Joined into one matrix, the library's turns before and after the rotation are wrong.
     importer.SetPropertyBool("IMPORT_FBX_PRESERVE_PIVOTS", true);
-    const std::string bytes = is_fbx ? text.text() : without_blanks_before_numbers(text.text());
+    const std::string bytes = is_fbx ? text.text() : readable_by_library(text.text());
     scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, is_fbx ? "fbx" : "dae");
     if (!scene) return plain(importer.GetErrorString());
     if (!scene->mRootNode) return "it has no nodes";

@@ -10,6 +10,7 @@
 #include "scene/io/read_scene.h"
 #include "tests/sanitizers.h"
 #include "tests/scene/gltf_text.h"
+#include "tests/scene/interchange_text.h"
 #include "tests/temporary_folder.h"
 
 namespace lightwell::damaged_scenes_test {
@@ -96,6 +97,17 @@ TEST(DamagedScenes, OfGltfAreReadOrRefused) {
   const TemporaryFolder where;
   std::filesystem::copy(folder / "gltf/17_ior.bin", where / "17_ior.bin");
   expect_answers(where, "damaged.gltf", content_of(folder / "gltf/17_ior.gltf"), 400);
+}
+
+// A child process reads each file first, hence fewer files.
+TEST(DamagedScenes, OfColladaAreReadOrRefused) {
+  const TemporaryFolder where;
+  expect_answers(where, "damaged.dae", square_dae(), 100);
+}
+
+TEST(DamagedScenes, OfFbxAreReadOrRefused) {
+  const TemporaryFolder where;
+  expect_answers(where, "damaged.fbx", square_fbx(), 100);
 }
 
 TEST(DamagedScenes, OfBinaryGltfAreReadOrRefused) {

@@ -6,6 +6,7 @@
 #include "scene/io/text_file.h"
 #include "tests/scene/expected_messages.h"
 #include "tests/scene/gltf_text.h"
+#include "tests/scene/interchange_text.h"
 #include "tests/scene/scene_file_test.h"
 
 namespace lightwell::references_test {
@@ -77,6 +78,12 @@ TEST_F(References, OutsideOfTheFolderAreRefused) {
                              R"("textures":[{"source":0}],"materials":[{"pbrMetallicRoughness":)"
                              R"({"baseColorTexture":{"index":0}}}])",
                              R"(,"material":0)"));
+  expect_refused("mesh_of_fbx.toml", grey + mesh_surface + "../outside.fbx'\n");
+  expect_refused(
+      "picture.dae",
+      square_dae({.effect = R"(<diffuse><texture texture="i" texcoord="UV"/></diffuse>)",
+                  .libraries = R"(<library_images><image id="i"><init_from>../outside.png)"
+                               R"(</init_from></image></library_images>)"}));
 }
 
 TEST_F(References, WithinTheFolderAreRead) {
