@@ -20,6 +20,7 @@ Scene read_any(const std::filesystem::path& path) {
   if (extension == ".gltf" || extension == ".glb") return read_gltf(path);
   if (extension == ".dae" || extension == ".fbx") return read_interchange(path);
   if (extension == ".rad" || extension == ".rif") return read_radiance(path);
+  if (extension == ".mgf") return read_mgf(path);
   if (extension == ".oct") {
     throw InputError(
         fmt::format("{}: an octree is compiled from RADIANCE's scene files; read those: a .rad, or "
@@ -29,7 +30,7 @@ Scene read_any(const std::filesystem::path& path) {
   throw InputError(
       fmt::format("{}: the extension '{}' is of no known scene format; readable are "
                   ".toml (native), .obj, .ply and .stl, .gltf and .glb, .dae (COLLADA), .fbx, "
-                  "Mitsuba's .xml, RADIANCE's .rad and .rif, and View3D's .vs3",
+                  "Mitsuba's .xml, RADIANCE's .rad and .rif, .mgf, and View3D's .vs3",
                   path.string(), extension));
 }
 

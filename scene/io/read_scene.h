@@ -47,6 +47,10 @@ Scene read_gltf(const std::filesystem::path& path);
 /// (Scene::relative_units). Unread contents are named in the notes. See docs/scene-format.md.
 Scene read_interchange(const std::filesystem::path& path);
 
+/// Reads the Materials and Geometry Format (Ward 1995). One unit is a metre; exitance is in lm/m^2,
+/// 683 lm/W. See docs/scene-format.md.
+Scene read_mgf(const std::filesystem::path& path);
+
 /// Reads RADIANCE: a scene file (.rad) or the variables for rad (.rif), which name scene files and
 /// views. Commands in the files (xform, genbox ...) are evaluated by this reader, never by a shell.
 /// One unit is a metre; radiance is in W/(sr m^2) per band, 179 lm/W. Approximations and omissions
