@@ -382,9 +382,9 @@ Action add_form_factors(CLI::App& command) {
   command.description(
       "View factors between the facets of a file, as a sparse matrix; materials do not matter.");
   command
-      .add_option(
-          "scene", arguments->scene,
-          "geometry: .obj, .stl, .ply, .toml, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, .vs3")
+      .add_option("scene", arguments->scene,
+                  "geometry: .obj, .stl, .ply, .toml, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
+                  ".mgf, .vs3")
       ->required()
       ->type_name("SCENE");
   command

@@ -48,7 +48,8 @@ constexpr const char* recipes =
   lightwell info room.toml                               what is in a scene, solution or picture
 
 'lightwell help COMMAND' explains a command. A scene is a .toml file (docs/scene-format.md),
-.obj, .ply, .stl, .gltf, .glb, .dae, .fbx, Mitsuba's .xml, RADIANCE's .rad and .rif, or View3D's .vs3.
+.obj, .ply, .stl, .gltf, .glb, .dae, .fbx, Mitsuba's .xml, RADIANCE's .rad and .rif,
+.mgf, or View3D's .vs3.
 )";
 
 struct NamedCommand {

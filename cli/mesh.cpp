@@ -135,9 +135,9 @@ Action add_mesh(CLI::App& command) {
   command.description(
       "Makes the patches and elements that 'solve' would use, and reports their quality.");
   command
-      .add_option(
-          "scene", arguments->scene,
-          "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, .vs3")
+      .add_option("scene", arguments->scene,
+                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
+                  ".mgf, .vs3")
       ->required()
       ->type_name("SCENE");
   auto* const output = command

@@ -150,9 +150,9 @@ Action add_run(CLI::App& command) {
   command.description(
       "Solves a scene and renders its cameras: solution.vtp, .exr and .png files, report.json.");
   command
-      .add_option(
-          "scene", arguments->scene,
-          "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, .vs3")
+      .add_option("scene", arguments->scene,
+                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
+                  ".mgf, .vs3")
       ->required()
       ->type_name("SCENE");
   command.add_option("-o,--output", arguments->output, "folder for the results (SCENE-output)")

@@ -50,9 +50,9 @@ Action add_solve(CLI::App& command) {
   const auto arguments = std::make_shared<SolveCommandArguments>();
   command.description("Meshes a scene, solves for the light on its surfaces, saves the solution.");
   command
-      .add_option(
-          "scene", arguments->scene,
-          "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, .vs3")
+      .add_option("scene", arguments->scene,
+                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
+                  ".mgf, .vs3")
       ->required()
       ->type_name("SCENE");
   command.add_option("-o,--output", arguments->output, "the solution, .vtp (opens in ParaView)")

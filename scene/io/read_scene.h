@@ -10,9 +10,9 @@ namespace lightwell {
 enum class References { anywhere, inside_folder };
 
 /// Reads a scene whose format follows from the extension: .toml (native, docs/scene-format.md),
-/// .obj, .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .dae (COLLADA), .fbx, .rad and .rif
-/// (RADIANCE). The result has passed validate(). Throws InputError naming file, line or object,
-/// value and remedy; LimitError for a reference that `references` forbids.
+/// .obj, .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .dae (COLLADA), .fbx, .mgf, .rad and
+/// .rif (RADIANCE). The result has passed validate(). Throws InputError naming file, line or
+/// object, value and remedy; LimitError for a reference that `references` forbids.
 Scene read_scene(const std::filesystem::path& path, References references = References::anywhere);
 
 /// Reads the native format (grammar: docs/scene-format.md).

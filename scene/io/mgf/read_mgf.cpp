@@ -396,7 +396,7 @@ class MgfReader {
     complete_surface();
     const int material = material_number();
     for (const Eigen::Affine3d& to_world : transforms_.back()) {
-      const double scale = std::cbrt(std::abs(to_world.linear().determinant()));
+      const double scale = to_world.linear().col(0).norm();  // the same in all directions
       scene_.surfaces.push_back(
           {.name = names_.unique(object_name()),
            .material = material,
