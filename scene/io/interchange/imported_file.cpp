@@ -28,6 +28,9 @@ class NoFiles : public Assimp::IOSystem {
 
 // The message of the library as one sentence's end.
 std::string plain(std::string message) {
+  if (message.find("bad_alloc") != std::string::npos) {
+    return "its contents ask for far more memory than a file of its size needs";
+  }
   std::ranges::replace(message, '\n', ' ');
   while (!message.empty() && (message.back() == '.' || message.back() == ' ')) message.pop_back();
   return message.empty() ? "unknown contents" : message;
