@@ -30,7 +30,7 @@ void set_limit(Resource resource, std::int64_t most) {
   setrlimit(resource, &limit);
 }
 
-// Sound files take less than a second and 60 bytes for each of their bytes in 20 MB.
+// Sound files take some 15 bytes of memory for each of their bytes, and a second for 50 MB.
 void limit_child(std::int64_t bytes) {
   set_limit(RLIMIT_CORE, 0);
   set_limit(RLIMIT_CPU, 5 + bytes / mebibyte);

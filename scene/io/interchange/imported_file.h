@@ -13,7 +13,7 @@ struct aiScene;
 
 namespace lightwell {
 
-/// Largest COLLADA or FBX file that is read: the library takes up to 60 times as much memory.
+/// Largest COLLADA or FBX file that is read: the library takes some 15 times as much memory.
 inline constexpr std::int64_t largest_import = std::int64_t{512} << 20;
 
 /// A vector of the library.
