@@ -107,7 +107,7 @@ const std::vector<BadFile> bad_files = {
     {"box-reversed.toml", {"box-reversed.toml:7:", "y from 2 to 1"}},
     {"sphere-radius.toml", {"sphere-radius.toml:7:", "radius of sphere of surface 'floor' is -1"}},
     {"scale-zero.toml", {"scale-zero.toml:8:9:", "greater than 0"}},
-    {"mesh-toml.toml", {"mesh-toml.toml:7:8:", ".obj, .ply or .stl"}},
+    {"mesh-toml.toml", {"mesh-toml.toml:7:8:", ".obj, .ply, .stl, .dae or .fbx"}},
     {"mesh-missing.toml", {"mesh-missing.toml:7:8:", "nowhere.obj", "no such file"}},
     {"mesh-broken.toml", {"mesh-broken.toml:7:8:", "index-too-large.obj:4:"}},
     {"mesh-no-material.toml", {"mesh-no-material.toml:6:8:", "add a 'material'"}},
