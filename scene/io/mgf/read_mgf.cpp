@@ -444,7 +444,8 @@ class MgfReader {
     require(4, words_.size());
     const std::size_t sides = words_.size() - 1;
     Loop base = corners(0, sides);
-    const double length = number(sides);
+    // A positive length goes in behind the face, which stays a front of the prism.
+    const double length = -number(sides);
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     for (std::size_t i = 1; i + 1 < sides; ++i) {
       normal += (base[i] - base[0]).cross(base[i + 1] - base[0]);

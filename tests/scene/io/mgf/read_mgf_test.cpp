@@ -123,10 +123,16 @@ double volume(const PolygonMesh& mesh) {
 }
 
 TEST_F(Mgf, PrismsFaceOutwards) {
+  const PolygonMesh face = mesh_of(read("f a b c d\n"));
+  const Eigen::Vector3d face_normal = facet_normal(face, face.facets.at(0));
   for (const std::string length : {"3", "-3"}) {
     const PolygonMesh prism = mesh_of(read("prism a b c d " + length + "\n"));
     EXPECT_EQ(prism.facets.size(), 6u);
     EXPECT_NEAR(volume(prism), 6.0, 6.0 * 1e-15 * 36) << "36 corners of some roundings each";
+    // A positive length goes in behind the front of the face that is given.
+    double along = 0.0;
+    for (const Eigen::Vector3d& v : prism.vertices) along += v.dot(face_normal);
+    EXPECT_EQ(along < 0.0, length == "3");
   }
 }
 
