@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/errors.h"
+#include "scene/io/mgf/mgf_shapes.h"
 #include "scene/io/mgf/mgf_state.h"
 #include "scene/io/numbered_names.h"
 #include "scene/io/placed_mesh.h"
@@ -28,36 +29,6 @@ constexpr std::size_t most_copies = 1'000'000;
 
 using Words = std::vector<std::string>;
 using Transforms = std::vector<Eigen::Affine3d>;
-
-// A shape before its placement: polygons, or a sphere.
-struct MgfShape {
-  std::vector<Loop> loops{};
-  std::vector<NormalLoop> normals{};  ///< one for each loop, or empty
-  bool is_inward = false;
-};
-
-std::vector<Loop> torus_loops(double inner, double outer, std::vector<NormalLoop>& normals) {
-  constexpr int around = 32, across = 16;
-  const double tube = 0.5 * (outer - inner), middle = 0.5 * (outer + inner);
-  const auto angle = [](int i, int of) { return 2.0 * std::numbers::pi * (i % of) / of; };
-  const auto corner = [&](int i, int k, double radius, double far) {
-    const double u = angle(i, around), v = angle(k, across);
-    const double r = far + radius * std::cos(v);
-    return Eigen::Vector3d(r * std::cos(u), r * std::sin(u), radius * std::sin(v));
-  };
-  std::vector<Loop> loops;
-  for (int i = 0; i < around; ++i) {
-    for (int k = 0; k < across; ++k) {
-      Loop& loop = loops.emplace_back();
-      NormalLoop& of_loop = normals.emplace_back();
-      for (const auto& [a, b] : {std::pair{i, k}, {i + 1, k}, {i + 1, k + 1}, {i, k + 1}}) {
-        loop.push_back(corner(a, b, tube, middle));
-        of_loop.push_back(corner(a, b, 1.0, 0.0));
-      }
-    }
-  }
-  return loops;
-}
 
 class MgfReader {
  public:
@@ -386,11 +357,8 @@ class MgfReader {
 
   void add_sphere(const MgfVertex& at, double radius) {
     if (radius == 0.0) return remark_no_area();
-    MgfShape shape{.is_inward = radius < 0.0};
-    if (shape.is_inward) {
-      shape.loops = sphere_loops();
-      shape.normals = shape.loops;  // the corners of a unit sphere about the origin
-      return add_loops(shape, Eigen::Translation3d(at.position) * Eigen::Scaling(-radius));
+    if (radius < 0.0) {
+      return add_loops(mgf_bubble(), Eigen::Translation3d(at.position) * Eigen::Scaling(-radius));
     }
     count(1);
     complete_surface();
@@ -408,10 +376,7 @@ class MgfReader {
     if (radius * top < 0.0) location_.fail(fmt::format("'{}' has radii of different signs", key_));
     const Eigen::Vector3d axis = to.position - from.position;
     if (radius == 0.0 && top == 0.0) return remark_no_area();
-    MgfShape shape{.loops = cone_loops(std::abs(radius), std::abs(top), axis.stableNorm()),
-                   .is_inward = radius < 0.0 || top < 0.0};
-    shape.normals = cone_normals(shape.loops, std::abs(radius), std::abs(top), axis.stableNorm());
-    add_loops(shape, stand(from, axis));
+    add_loops(mgf_cone(radius, top, axis.stableNorm()), stand(from, axis));
   }
 
   void add_ring() {
@@ -434,33 +399,15 @@ class MgfReader {
     require(3, 3);
     const double inner = std::abs(number(1)), outer = std::abs(number(2));
     if (!(outer - inner > flatness * outer)) return remark_no_area();
-    MgfShape shape{.is_inward = number(2) < 0.0};
-    shape.loops = torus_loops(inner, outer, shape.normals);
-    add_loops(shape, stand(vertex(0), vertex(0).normal));
+    add_loops(mgf_torus(inner, outer, number(2) < 0.0), stand(vertex(0), vertex(0).normal));
   }
 
-  // The base and its copy at the distance `length` along the base's normal; fronts outside.
   void add_prism() {
     require(4, words_.size());
     const std::size_t sides = words_.size() - 1;
-    Loop base = corners(0, sides);
-    // A positive length goes in behind the face, which stays a front of the prism.
-    const double length = -number(sides);
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-    for (std::size_t i = 1; i + 1 < sides; ++i) {
-      normal += (base[i] - base[0]).cross(base[i + 1] - base[0]);
-    }
-    if (!(normal.stableNorm() > 0.0) || length == 0.0) return remark_no_area();
-    if (length < 0.0) std::ranges::reverse(base);
-    const Eigen::Vector3d along = length * normal.stableNormalized();
-    Loop top = base;
-    for (Eigen::Vector3d& p : top) p += along;
-    MgfShape shape{.loops = {Loop(base.rbegin(), base.rend()), top}};
-    for (std::size_t i = 0; i < sides; ++i) {
-      const std::size_t next = (i + 1) % sides;
-      shape.loops.push_back({base[i], base[next], top[next], top[i]});
-    }
-    add_loops(shape, Eigen::Affine3d::Identity());
+    const auto shape = mgf_prism(corners(0, sides), number(sides));
+    if (!shape) return remark_no_area();
+    add_loops(*shape, Eigen::Affine3d::Identity());
   }
 
   void add_loops(const MgfShape& shape, const Eigen::Affine3d& placed) {
