@@ -237,8 +237,9 @@ class MgfReader {
       if (key_ == "ed") m.exitance = colored(value / scene_.bands.lumens_per_watt);
     } else if (key_ == "rs" || key_ == "ts") {
       require(2, 2);
-      (key_ == "rs" ? m.mirror : m.straight) = {.share = colored(positive(0)),
-                                                .alpha = positive(1)};
+      MgfMaterial::Lobe& lobe = key_ == "rs" ? m.mirror : m.straight;
+      lobe.share = colored(positive(0));
+      lobe.alpha = positive(1);
     } else if (key_ == "ir") {
       require(2, 2);
       m.index = positive(0);
@@ -255,7 +256,8 @@ class MgfReader {
     if (key_ != "p" && key_ != "n") return false;
     require(3, 3);
     MgfVertex& v = vertices_.current();
-    (key_ == "p" ? v.position : v.normal) = {number(0), number(1), number(2)};
+    Eigen::Vector3d& set = key_ == "p" ? v.position : v.normal;
+    set = {number(0), number(1), number(2)};
     return true;
   }
 
