@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -486,7 +487,8 @@ void scale_picture(const TomlMaterial& given, const Bands& bands, const Eigen::A
                    Material& material) {
   const Spectrum spectrum = sent.cast<float>();
   const auto amount = [&](const Spectrum& power) {
-    return given.power_is_lumens ? luminous(bands, power) : static_cast<double>(power.sum());
+    if (given.power_is_lumens) return luminous(bands, power);
+    return std::accumulate(power.begin(), power.end(), 0.0);
   };
   const double all = amount(spectrum);
   const auto factor = all > 0.0 ? static_cast<float>(amount(*given.power) / all) : 0.0f;
