@@ -256,10 +256,4 @@ void set_clear_dome(const ClearDay& day, const ClearDome& dome, const Eigen::Vec
   sky.scale.setConstant(1.0f);
 }
 
-Eigen::Matrix3d to_map_around(const Eigen::Vector3d& up, const Eigen::Vector3d& middle) {
-  Eigen::Matrix3d to_map;
-  to_map << up.cross(middle).transpose(), up.transpose(), middle.transpose();
-  return to_map;
-}
-
 }  // namespace lightwell

@@ -65,8 +65,4 @@ EnvironmentMap clear_sky_map(const ClearDay& day, const ClearDome& dome);
 void set_clear_dome(const ClearDay& day, const ClearDome& dome, const Eigen::Vector3d& to_sun,
                     Sky& sky);
 
-/// Rotation to a map with `up` at the top and `middle`, a unit direction on the horizon, in the
-/// middle.
-Eigen::Matrix3d to_map_around(const Eigen::Vector3d& up, const Eigen::Vector3d& middle);
-
 }  // namespace lightwell

@@ -1,5 +1,6 @@
 #include "scene/environment_map.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -7,6 +8,25 @@
 #include <stdexcept>
 
 namespace lightwell {
+
+using std::numbers::pi;
+
+Eigen::Vector3d map_direction(double across, double down) {
+  const double longitude = 2.0 * pi * (across - 0.5), polar = pi * down;
+  return {-std::sin(polar) * std::sin(longitude), std::cos(polar),
+          std::sin(polar) * std::cos(longitude)};
+}
+
+Eigen::Vector2d map_position(const Eigen::Vector3d& direction) {
+  return {0.5 + std::atan2(-direction.x(), direction.z()) / (2.0 * pi),
+          std::acos(std::clamp(direction.y(), -1.0, 1.0)) / pi};
+}
+
+Eigen::Matrix3d to_map_around(const Eigen::Vector3d& up, const Eigen::Vector3d& middle) {
+  Eigen::Matrix3d to_map;
+  to_map << up.cross(middle).transpose(), up.transpose(), middle.transpose();
+  return to_map;
+}
 
 EnvironmentMap::EnvironmentMap(int width, int height, BandArray radiance)
     : width_(width), height_(height), radiance_(std::move(radiance)) {
@@ -30,11 +50,9 @@ EnvironmentMap::EnvironmentMap(int width, int height, BandArray radiance)
 }
 
 Spectrum EnvironmentMap::at(const Eigen::Vector3d& direction) const {
-  using std::numbers::pi;
-  const double u = 0.5 + std::atan2(-direction.x(), direction.z()) / (2.0 * pi);
-  const double v = std::acos(std::clamp(direction.y(), -1.0, 1.0)) / pi;
-  const double x = u * width_ - 0.5;
-  const double y = std::clamp(v * height_ - 0.5, 0.0, height_ - 1.0);
+  const Eigen::Vector2d place = map_position(direction);
+  const double x = place.x() * width_ - 0.5;
+  const double y = std::clamp(place.y() * height_ - 0.5, 0.0, height_ - 1.0);
   const int column = static_cast<int>(std::floor(x)), row = static_cast<int>(y);
   const auto across = static_cast<float>(x - column), down = static_cast<float>(y - row);
   const int left = (column + width_) % width_, right = (column + 1 + width_) % width_;

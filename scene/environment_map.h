@@ -7,6 +7,15 @@
 
 namespace lightwell {
 
+/// Unit direction of a position in a map's picture: shares of its width and height, from the top
+/// left corner (see EnvironmentMap).
+Eigen::Vector3d map_direction(double across, double down);
+/// Position of a unit direction in a map's picture, the inverse of map_direction().
+Eigen::Vector2d map_position(const Eigen::Vector3d& direction);
+/// Rotation to a map with `up` at the top and `middle`, a unit direction on the horizon, in the
+/// middle.
+Eigen::Matrix3d to_map_around(const Eigen::Vector3d& up, const Eigen::Vector3d& middle);
+
 /// Radiance from all directions, W/(m^2 sr), as a picture over longitude and latitude in Mitsuba's
 /// layout. Rows run from +y (top) to -y. The middle of the picture is +z; a quarter of the width to
 /// the right of the middle is -x, seen from within.

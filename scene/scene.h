@@ -231,6 +231,9 @@ Bounds scene_bounds(const Scene& scene);
 /// sound sky. Throws InputError naming surface, material, value and remedy.
 void validate(const Scene& scene);
 
+/// 64-bit hash of everything of a material that decides the light, not its name or relief.
+std::uint64_t material_hash(const Material& material);
+
 /// 64-bit hash of everything that decides the light: geometry, materials, lamps, sky and bands, not
 /// cameras, relief, names or notes. Solutions store the hash, so that a solution of another scene
 /// is refused.

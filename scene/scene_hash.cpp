@@ -100,6 +100,20 @@ void add_pictures(const Material& m, Hash& hash) {
   }
 }
 
+void add_material(const Material& m, Hash& hash) {
+  hash.add(m.reflectance);
+  hash.add(m.specular);
+  hash.add(m.emission);
+  hash.add(static_cast<std::uint64_t>(m.one_sided) +
+           2 * static_cast<std::uint64_t>(m.emits_both_sides));
+  if (m.dielectric) {
+    hash.add(static_cast<double>(m.dielectric->index_of_refraction));
+    hash.add(m.dielectric->tint);
+  }
+  add_gloss(m, hash);
+  add_pictures(m, hash);
+}
+
 // Texture coordinates matter only where the material shows a picture.
 void add_uv(const PolygonMesh& mesh, const Material& material, Hash& hash) {
   if (!material.texture && !material.emission_texture && !material.mask) return;
@@ -151,23 +165,17 @@ void add_normals(const PolygonMesh& mesh, Hash& hash) {
 
 }  // namespace
 
+std::uint64_t material_hash(const Material& material) {
+  Hash hash;
+  add_material(material, hash);
+  return hash.value();
+}
+
 std::uint64_t scene_hash(const Scene& scene) {
   Hash hash;
   hash.add(scene.bands.lumens_per_watt);
   for (double nm : scene.bands.wavelengths_nm) hash.add(nm);
-  for (const Material& m : scene.materials) {
-    hash.add(m.reflectance);
-    hash.add(m.specular);
-    hash.add(m.emission);
-    hash.add(static_cast<std::uint64_t>(m.one_sided) +
-             2 * static_cast<std::uint64_t>(m.emits_both_sides));
-    if (m.dielectric) {
-      hash.add(static_cast<double>(m.dielectric->index_of_refraction));
-      hash.add(m.dielectric->tint);
-    }
-    add_gloss(m, hash);
-    add_pictures(m, hash);
-  }
+  for (const Material& m : scene.materials) add_material(m, hash);
   for (const Surface& surface : scene.surfaces) {
     hash.add(static_cast<std::uint64_t>(surface.material));
     if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {

@@ -131,6 +131,12 @@ void check_light(const Spectrum& values, const Bands& bands, const char* what) {
   }
 }
 
+// Term of the zenith angle in the clearness, kappa Z^3.
+double clearness_offset(double sun_altitude_degrees) {
+  const double Z = (90.0 - sun_altitude_degrees) * degree;
+  return 1.041 * Z * Z * Z;
+}
+
 }  // namespace
 
 double Sun::cosine_of_edge() const {
@@ -149,6 +155,24 @@ SkyGradation standard_sky(int number) {
   return standard_skies[static_cast<std::size_t>(number - 1)];
 }
 
+SkyState sky_state(double direct_normal, double diffuse_horizontal, double sun_altitude_degrees,
+                   int day_of_year) {
+  const double offset = clearness_offset(sun_altitude_degrees);
+  return {.clearness =
+              ((diffuse_horizontal + direct_normal) / diffuse_horizontal + offset) / (1.0 + offset),
+          .brightness = diffuse_horizontal * relative_air_mass(sun_altitude_degrees) /
+                        extraterrestrial_irradiance(day_of_year)};
+}
+
+double direct_normal_of(double clearness, double diffuse_horizontal, double sun_altitude_degrees) {
+  return diffuse_horizontal * (clearness - 1.0) * (1.0 + clearness_offset(sun_altitude_degrees));
+}
+
+double extraterrestrial_irradiance(int day_of_year) {
+  constexpr double solar_constant = 1367.0;  // W/m^2, the value of Perez' fits
+  return solar_constant * (1.0 + 0.033 * std::cos(2.0 * pi * day_of_year / 365.0));
+}
+
 SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double sun_altitude_degrees,
                        int day_of_year) {
   if (!(diffuse_horizontal > 0.0) || !(direct_normal >= 0.0) || !std::isfinite(direct_normal) ||
@@ -162,16 +186,13 @@ SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double s
     refuse_sky(fmt::format("a sky by Perez needs the sun above the horizon, not at {:.2f} degrees",
                            sun_altitude_degrees));
   }
-  const double Z = (90.0 - sun_altitude_degrees) * degree, Z3 = 1.041 * Z * Z * Z;
-  const double clearness =
-      ((diffuse_horizontal + direct_normal) / diffuse_horizontal + Z3) / (1.0 + Z3);
-  const double air_mass = relative_air_mass(sun_altitude_degrees);
-  constexpr double solar_constant = 1367.0;  // W/m^2, the value of the fit
-  // The earth's distance after Spencer 1971, first order.
-  const double normal = solar_constant * (1.0 + 0.033 * std::cos(2.0 * pi * day_of_year / 365.0));
-  double brightness = diffuse_horizontal * air_mass / normal;
-  const auto at = std::find_if(perez_classes.begin(), perez_classes.end() - 1,
-                               [&](const PerezClass& c) { return clearness < c.clearness_below; });
+  const double Z = (90.0 - sun_altitude_degrees) * degree;
+  const auto [clearness, measured_brightness] =
+      sky_state(direct_normal, diffuse_horizontal, sun_altitude_degrees, day_of_year);
+  double brightness = measured_brightness;
+  const auto at =
+      std::find_if(perez_classes.begin(), perez_classes.end() - 1,
+                   [&, e = clearness](const PerezClass& c) { return e < c.clearness_below; });
   const bool is_overcast = at == perez_classes.begin();
   // Outside the range of the data the formulas give dark or bright rings.
   if (clearness > 1.065 && clearness < 2.8) brightness = std::max(brightness, 0.2);
@@ -190,6 +211,12 @@ SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double s
   sky.c /= factor;
   sky.e /= factor;
   return sky;
+}
+
+Sky dark_sky(const Bands& bands) {
+  return {.name = "dark",
+          .scale = constant_spectrum(bands, 0.0f),
+          .ground = constant_spectrum(bands, 0.0f)};
 }
 
 bool has_dome(const Sky& sky) {

@@ -116,7 +116,7 @@ class EmissionTree::Builder {
     double best_distance = 0.0;
     const auto consider = [&](int axis, int at, double deviation) {
       const double middle = axis == 0 ? 0.5 * (n.first + n.end) : 0.5 * (n.top + n.bottom);
-      // Of cuts that are equally good, the one nearest to the middle.
+      // Ties between equally good cuts go to the one nearest to the middle.
       const double distance =
           std::abs(at - middle) / (axis == 0 ? n.end - n.first : n.bottom - n.top);
       constexpr double equal = 1e-9;

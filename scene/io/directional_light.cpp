@@ -4,11 +4,7 @@ namespace lightwell {
 
 void add_directional_light(const Eigen::Vector3d& towards, const Spectrum& irradiance,
                            const std::string& name, Scene& scene, Remarks& remarks) {
-  if (!scene.sky) {
-    scene.sky = Sky{.name = "dark",
-                    .scale = constant_spectrum(scene.bands, 0.0f),
-                    .ground = constant_spectrum(scene.bands, 0.0f)};
-  }
+  if (!scene.sky) scene.sky = dark_sky(scene.bands);
   if (scene.sky->sun) {
     remarks.add("A scene has one sun here; further directional lights were left out", name);
     return;

@@ -23,7 +23,7 @@ constexpr const char* draco_name = "KHR_draco_mesh_compression";
   place.fail(fmt::format("is damaged: {} cannot unpack it", extension));
 }
 
-// What meshopt packs, and how.
+// Elements that meshopt has packed: their number, their bytes each, and the way of packing.
 struct MeshoptView {
   std::size_t count = 0, stride = 0;
   std::string mode{}, filter{};

@@ -39,7 +39,7 @@ void limit_child(std::int64_t bytes) {
   }
 }
 
-// What a library or a sanitizer prints on its way down is of no use to the reader of the message.
+// Output of a library or a sanitizer that fails would only confuse the reader of the message.
 void silence_child() {
   const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
   if (nowhere < 0) return;

@@ -91,7 +91,8 @@ std::optional<ImportedPicture> picture_of(const aiMaterial& from,
 }
 
 int first_uv_set(const aiMaterial& from) {
-  for (const auto& types : {color_pictures, normal_pictures, height_pictures, opacity_pictures}) {
+  for (const auto& types :
+       {color_pictures, normal_pictures, height_pictures, opacity_pictures, glow_pictures}) {
     if (const auto picture = picture_of(from, types)) return picture->uv_set;
   }
   return 0;
@@ -193,18 +194,27 @@ void InterchangeMaterials::lay_on_picture(const aiMaterial& from, Material& mate
 }
 
 void InterchangeMaterials::set_emission(const aiMaterial& from, Material& material) {
-  auto radiance = color_of(from, emissive_key);
-  if (const auto named = picture_of(from, glow_pictures)) {
-    // COLLADA has a picture in place of a colour, and FBX a picture times a factor.
-    const bool is_black = !radiance || !(*radiance > 0.0f).any();
-    if (is_black) radiance = Spectrum::Ones(3);
-    if (const auto picture = open(*named, PictureCode::srgb, material.name)) {
-      *radiance *= picture->mean.color.cast<float>();
-    } else if (is_black) {
-      return;
-    }
+  const auto radiance = color_of(from, emissive_key);
+  const auto scaled = [](const Spectrum& color) -> Spectrum {
+    return static_cast<float>(std::numbers::pi) * color;
+  };
+  if (radiance) material.emission = scaled(*radiance);
+  auto named = picture_of(from, glow_pictures);
+  const auto picture = named ? open(*named, PictureCode::srgb, material.name) : std::nullopt;
+  if (!picture) return;
+  // COLLADA has a picture in place of a colour, and FBX a picture times a factor.
+  const bool is_black = !radiance || !(*radiance > 0.0f).any();
+  const Spectrum factor = scaled(is_black ? Spectrum(Spectrum::Ones(3)) : *radiance);
+  material.emission = factor * picture->mean.color.cast<float>();
+  if (!material.is_emitter()) return;
+  if (named->uv_set != first_uv_set(from)) {
+    return remarks_.add(
+        "Pictures of emission with texture coordinates of their own were taken as "
+        "their mean in",
+        material.name);
   }
-  if (radiance) material.emission = static_cast<float>(std::numbers::pi) * *radiance;
+  named->image.picture = picture->color;
+  material.emission_texture = {.image = named->image, .factor = factor};
 }
 
 void InterchangeMaterials::set_relief(const aiMaterial& from, Material& material) {

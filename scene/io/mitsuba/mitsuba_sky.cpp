@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include "scene/errors.h"
+#include "scene/io/directional_light.h"
 #include "scene/io/mitsuba/mitsuba_sunsky.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
 #include "scene/io/pictures/environment_file.h"
@@ -14,11 +15,7 @@ namespace {
 
 // The scene's sky; created black if neither a sky nor a sun has been read before.
 Sky& sky_of(Scene& scene) {
-  if (!scene.sky) {
-    scene.sky = Sky{.name = "dark",
-                    .scale = constant_spectrum(scene.bands, 0.0f),
-                    .ground = constant_spectrum(scene.bands, 0.0f)};
-  }
+  if (!scene.sky) scene.sky = dark_sky(scene.bands);
   return *scene.sky;
 }
 
@@ -45,25 +42,22 @@ void add_map(const MitsubaNode& emitter, const MitsubaTree& tree, Sky& sky) {
   if (!(sky.scale >= 0.0f).all()) emitter.fail("has a scale below 0");
 }
 
-void add_directional(const MitsubaNode& emitter, MitsubaColors& colors, Scene& scene) {
+void add_directional(const MitsubaNode& emitter, MitsubaColors& colors, Scene& scene,
+                     Remarks& remarks) {
   const MitsubaNode* along = emitter.property("direction");
   const Eigen::Affine3d to_world = read_to_world(emitter);
   const Eigen::Vector3d way =
       to_world.linear() * (along ? read_mitsuba_point(*along) : Eigen::Vector3d::UnitZ());
   if (!(way.stableNorm() > 0.0)) emitter.fail("has a direction without length");
-  sky_of(scene).sun = Sun{.direction = -way.stableNormalized(),
-                          .irradiance = colors.positive_or(emitter, "irradiance", 1.0f)};
+  add_directional_light(-way, colors.positive_or(emitter, "irradiance", 1.0f), emitter.label(),
+                        scene, remarks);
 }
 
 // Adds the parts of the emitter.
 void add_parts(const MitsubaNode& emitter, const MitsubaTree& tree, const SkyParts& parts,
                Scene& scene, Remarks& remarks) {
   MitsubaColors colors(tree, remarks);
-  if (emitter.type == "directional") {
-    add_directional(emitter, colors, scene);
-    remarks.add("Directional emitters became a sun, a disc 0.53 degrees across", emitter.label());
-    return;
-  }
+  if (emitter.type == "directional") return add_directional(emitter, colors, scene, remarks);
   Sky& sky = sky_of(scene);
   const SkyParts clear = clear_day_parts(emitter);
   if (clear.dome || clear.sun) {

@@ -12,7 +12,7 @@ struct SkyParts {
   bool dome = false, sun = false;
 };
 
-/// What the emitters `sunsky`, `sky` and `sun` are; neither for others.
+/// Parts of the emitters `sunsky`, `sky` and `sun`; neither for others.
 SkyParts clear_day_parts(const MitsubaNode& emitter);
 
 /// Sets the `parts` of `sky` from a clear day by turbidity, with the axes and the sun's model

@@ -9,6 +9,7 @@
 #include "scene/io/radiance/radiance_sky_call.h"
 #include "scene/io/text_file.h"
 #include "scene/sky.h"
+#include "scene/sun_position.h"
 
 namespace lightwell {
 namespace {
@@ -59,7 +60,7 @@ GendaylitGiven read_gendaylit(SkyCall& call) {
 // Irradiances over all wavelengths and what describes the sky's state.
 struct Weather {
   double direct_normal = 0.0, diffuse_horizontal = 0.0;  // W/m^2
-  double clearness = 1.0, brightness = 0.0;
+  SkyState state{};
 };
 
 struct EfficacyClass {
@@ -86,42 +87,29 @@ Efficacy efficacy(const Weather& weather, double altitude) {
   constexpr double water = 2.0;  // cm that all vapour above would fill, gendaylit's
   const double Z = 0.5 * pi - altitude;
   const auto at = std::ranges::find_if(efficacy_classes, [&](const EfficacyClass& c) {
-    return weather.clearness < c.clearness_below;
+    return weather.state.clearness < c.clearness_below;
   });
   const auto &f = at->diffuse, &n = at->direct;
-  return {f[0] + f[1] * water + f[2] * std::cos(Z) + f[3] * std::log(weather.brightness),
+  return {f[0] + f[1] * water + f[2] * std::cos(Z) + f[3] * std::log(weather.state.brightness),
           std::max(0.0, n[0] + n[1] * water + n[2] * std::exp(5.73 * Z - 5.0) +
-                            n[3] * weather.brightness)};
-}
-
-// Air mass after Kasten 1966, and the extraterrestrial irradiance, W/m^2.
-double air_mass(double altitude) {
-  return 1.0 / (std::sin(altitude) + 0.15 * std::pow(altitude / degree + 3.885, -1.253));
-}
-
-double sunlight_above(int day) {
-  const double turn = 2.0 * pi * day / 365.0;  // Spencer 1971
-  return 1367.0 * (1.00011 + 0.034221 * std::cos(turn) + 0.00128 * std::sin(turn) +
-                   0.000719 * std::cos(2.0 * turn) + 0.000077 * std::sin(2.0 * turn));
+                            n[3] * weather.state.brightness)};
 }
 
 void describe(Weather& weather, double altitude, int day) {
-  const double Z = 0.5 * pi - altitude, Z3 = 1.041 * Z * Z * Z;
-  weather.clearness =
-      ((weather.diffuse_horizontal + weather.direct_normal) / weather.diffuse_horizontal + Z3) /
-      (1.0 + Z3);
-  weather.brightness =
-      std::clamp(weather.diffuse_horizontal * air_mass(altitude) / sunlight_above(day), 0.01, 0.6);
+  weather.state =
+      sky_state(weather.direct_normal, weather.diffuse_horizontal, altitude / degree, day);
+  // Limits of gendaylit.
+  weather.state.brightness = std::clamp(weather.state.brightness, 0.01, 0.6);
 }
 
 Weather weather_of(const GendaylitGiven& given, double altitude, const SkyCall& call) {
   const int day = day_number(given.sun);
   Weather weather{.direct_normal = given.first, .diffuse_horizontal = given.second};
   if (given.input == 'P') {
-    const double Z = 0.5 * pi - altitude;
-    weather.diffuse_horizontal = given.second * sunlight_above(day) / air_mass(altitude);
+    weather.diffuse_horizontal =
+        given.second * extraterrestrial_irradiance(day) / relative_air_mass(altitude / degree);
     weather.direct_normal =
-        weather.diffuse_horizontal * std::max(0.0, given.first - 1.0) * (1.0 + 1.041 * Z * Z * Z);
+        direct_normal_of(std::max(1.0, given.first), weather.diffuse_horizontal, altitude / degree);
   }
   if (given.input == 'G') weather.direct_normal = given.first / std::sin(altitude);
   if (!(weather.diffuse_horizontal > 0.0)) {
@@ -142,6 +130,34 @@ Weather weather_of(const GendaylitGiven& given, double altitude, const SkyCall& 
   return weather;
 }
 
+// Light of dome and sun in the output's unit: W/m^2 on open ground, and across the sun's rays.
+struct SkyLux {
+  double dome = 0.0, sun = 0.0;
+};
+
+SkyLux output_of(const GendaylitGiven& given, const Weather& weather, double altitude) {
+  if (given.output == 1) return {weather.diffuse_horizontal, weather.direct_normal};
+  const double unit = given.output == 0 ? white_efficacy : 1.0;
+  if (given.input == 'L') return {given.second / unit, given.first / unit};
+  const Efficacy lm = efficacy(weather, altitude);
+  return {weather.diffuse_horizontal * lm.diffuse / unit, weather.direct_normal * lm.direct / unit};
+}
+
+void mention_unit(int output, Remarks& remarks) {
+  if (output == 1) {
+    remarks.mention("Skies are in watts of all wavelengths (gendaylit -O 1), so lux mean nothing",
+                    "gendaylit");
+  } else if (output == 2) {
+    remarks.mention("Skies are in candela (gendaylit -O 2): watts of the results are lumens",
+                    "gendaylit");
+  }
+}
+
+SkyOfGensky kind_of(const SkyState& state) {
+  if (state.clearness <= 1.0) return SkyOfGensky::overcast;
+  return state.clearness < 6.0 ? SkyOfGensky::intermediate : SkyOfGensky::clear;
+}
+
 }  // namespace
 
 void pass_gendaylit(SkyCall& call, Remarks& remarks, const RadianceSink& sink) {
@@ -153,53 +169,32 @@ void pass_gendaylit(SkyCall& call, Remarks& remarks, const RadianceSink& sink) {
                           -sun.altitude / degree));
   }
   const Weather weather = weather_of(given, sun.altitude, call);
-  const Efficacy lm = efficacy(weather, sun.altitude);
-  Spectrum diffuse = Spectrum::Constant(1, static_cast<float>(weather.diffuse_horizontal));
-  double direct = weather.direct_normal;
-  if (given.output != 1) {
-    const double unit = given.output == 0 ? white_efficacy : 1.0;
-    diffuse *= static_cast<float>(lm.diffuse / unit);
-    direct *= lm.direct / unit;
-    if (given.input == 'L') {
-      diffuse.setConstant(static_cast<float>(given.second / unit));
-      direct = given.first / unit;
-    }
-  }
-  if (given.output == 1) {
-    remarks.mention("Skies are in watts of all wavelengths (gendaylit -O 1), so lux mean nothing",
-                    "gendaylit");
-  } else if (given.output == 2) {
-    remarks.mention("Skies are in candela (gendaylit -O 2): watts of the results are lumens",
-                    "gendaylit");
-  }
+  SkyLux light = output_of(given, weather, sun.altitude);
+  if (!given.with_sun) light.sun = 0.0;
+  mention_unit(given.output, remarks);
   const Eigen::Vector3d towards = sun.direction();
   Sky sky{.up = Eigen::Vector3d::UnitZ(), .north = Eigen::Vector3d::UnitY(), .bright = towards};
   sky.gradation = perez_sky(weather.direct_normal, weather.diffuse_horizontal,
                             sun.altitude / degree, day_number(given.sun));
   sky.scale = Spectrum::Ones(1);
-  // Our f has 1 - c exp(d pi/2) where the paper's has 1, and is the paper's over `factor`.
+  const double horizontal = static_cast<double>(diffuse_horizontal_irradiance(sky)[0]);
+  const double at_zenith = static_cast<double>(sky_radiance(sky, sky.up)[0]);
+  // Light of the ground: the dome's by the zenith's radiance, as gensky has it for the kind of sky.
+  const double dome_over_pi = light.dome / horizontal * at_zenith *
+                              zenith_shape(kind_of(weather.state), sun.altitude).horizontal;
+  const double ground = given.ground_reflectance * (dome_over_pi + light.sun * towards.z() / pi);
+  // SkyGradation's f has 1 - c exp(d pi/2) where the paper's has 1, and is the paper's over
+  // `factor`.
   const SkyGradation& g = sky.gradation;
   const double factor = 1.0 / (1.0 - g.c * std::exp(0.5 * pi * g.d));
-  const double horizontal = static_cast<double>(diffuse_horizontal_irradiance(sky)[0]);
-  const double diffuse_light = static_cast<double>(diffuse[0]);
-  const bool shines = given.with_sun && direct > 0.0;
-  // Light of the ground: the dome's by the zenith's radiance, as gensky has it for the kind of sky.
-  const double zenith =
-      diffuse_light / horizontal * static_cast<double>(sky_radiance(sky, sky.up)[0]);
-  const SkyOfGensky kind = weather.clearness <= 1.0  ? SkyOfGensky::overcast
-                           : weather.clearness < 6.0 ? SkyOfGensky::intermediate
-                                                     : SkyOfGensky::clear;
-  const double ground =
-      given.ground_reflectance * (zenith * zenith_shape(kind, sun.altitude).horizontal +
-                                  (shines ? direct * towards.z() / pi : 0.0));
   const Sun disc;  // 0.533 degrees across
-  pass_sky({.sun_radiance = shines ? direct / disc.solid_angle() : 0.0,
+  pass_sky({.sun_radiance = light.sun / disc.solid_angle(),
             .sun_degrees = disc.angle_degrees,
             .sun = towards,
             .function = "skybright",
             .file = "perezlum.cal",
-            .arguments = {diffuse_light / (factor * horizontal), ground, g.a, g.b, g.c * factor,
-                          g.d, g.e * factor, towards.x(), towards.y(), towards.z()}},
+            .arguments = {light.dome / (factor * horizontal), ground, g.a, g.b, g.c * factor, g.d,
+                          g.e * factor, towards.x(), towards.y(), towards.z()}},
            call.location(), sink);
 }
 

@@ -9,45 +9,20 @@
 #include <numbers>
 
 #include "scene/degree.h"
+#include "scene/io/convex_cut.h"
 
 namespace lightwell {
 namespace {
 
 using std::numbers::pi;
 
-Eigen::Vector3d point(const RadiancePrimitive& p, std::size_t first) {
-  return {p.reals[first], p.reals[first + 1], p.reals[first + 2]};
-}
-
-std::vector<Eigen::Vector3d> corners_of(const RadiancePrimitive& polygon) {
-  std::vector<Eigen::Vector3d> corners;
-  for (std::size_t i = 0; i + 2 < polygon.reals.size(); i += 3)
-    corners.push_back(point(polygon, i));
-  return corners;
-}
-
-// Area vector by Newell's method: twice the area along the normal.
-Eigen::Vector3d twice_area(const std::vector<Eigen::Vector3d>& corners) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-    sum += (corners[i] - corners[0]).cross(corners[i + 1] - corners[0]);
-  }
-  return sum;
-}
-
-Eigen::Vector3d longest_edge(const std::vector<Eigen::Vector3d>& corners) {
+Eigen::Vector3d longest_edge(const Loop& corners) {
   Eigen::Vector3d longest = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     const Eigen::Vector3d edge = corners[(i + 1) % corners.size()] - corners[i];
     if (edge.norm() > longest.norm() * (1.0 + 1e-9)) longest = edge;
   }
   return longest;
-}
-
-double grey(const Spectrum& color) {
-  // Weights of RADIANCE's primaries.
-  return 0.265 * static_cast<double>(color[0]) + 0.670 * static_cast<double>(color[1]) +
-         0.065 * static_cast<double>(color[2]);
 }
 
 // Half the angle of a spotlight's beam, radians.
@@ -68,9 +43,10 @@ std::vector<double> steps(double last, double step) {
 std::optional<RadianceLamps::Face> RadianceLamps::face_of(const RadiancePrimitive& p) {
   Face face;
   if (p.type == "polygon") {
-    const auto corners = corners_of(p);
-    const Eigen::Vector3d normal = twice_area(corners);
-    face.area = 0.5 * normal.norm();
+    Loop corners;
+    for (std::size_t i = 0; i + 2 < p.reals.size(); i += 3) corners.push_back(p.point(i));
+    const Eigen::Vector3d normal = area_vector(corners);
+    face.area = normal.norm();
     if (!(face.area > 0.0)) return std::nullopt;
     face.aim = normal.normalized();
     face.along = longest_edge(corners).normalized();
@@ -88,9 +64,9 @@ std::optional<RadianceLamps::Face> RadianceLamps::face_of(const RadiancePrimitiv
   if (p.type == "ring") {
     p.require_reals(8);
     const double inner = std::min(p.reals[6], p.reals[7]), outer = std::max(p.reals[6], p.reals[7]);
-    const Eigen::Vector3d normal = point(p, 3);
+    const Eigen::Vector3d normal = p.point(3);
     if (!(inner >= 0.0 && outer > inner) || !(normal.stableNorm() > 0.0)) return std::nullopt;
-    face.middle = point(p, 0);
+    face.middle = p.point(0);
     face.aim = normal.stableNormalized();
     face.along = face.aim.unitOrthogonal();
     face.area = pi * (outer * outer - inner * inner);
@@ -99,11 +75,11 @@ std::optional<RadianceLamps::Face> RadianceLamps::face_of(const RadiancePrimitiv
   }
   if (p.type == "cylinder") {
     p.require_reals(7);
-    const Eigen::Vector3d axis = point(p, 3) - point(p, 0);
+    const Eigen::Vector3d axis = p.point(3) - p.point(0);
     const double radius = std::abs(p.reals[6]), length = axis.stableNorm();
     if (!(radius > 0.0 && length > 0.0)) return std::nullopt;
     face.shape = Face::Shape::cylinder;
-    face.middle = 0.5 * (point(p, 0) + point(p, 3));
+    face.middle = 0.5 * (p.point(0) + p.point(3));
     face.aim = axis / length;
     face.along = face.aim.unitOrthogonal();
     face.area = 2.0 * radius * length;
@@ -115,7 +91,7 @@ std::optional<RadianceLamps::Face> RadianceLamps::face_of(const RadiancePrimitiv
   const double radius = std::abs(p.reals[3]);
   if (!(radius > 0.0)) return std::nullopt;
   face.shape = Face::Shape::sphere;
-  face.middle = point(p, 0);
+  face.middle = p.point(0);
   face.aim = -Eigen::Vector3d::UnitZ();
   face.along = Eigen::Vector3d::UnitX();
   face.area = pi * radius * radius;
@@ -171,7 +147,7 @@ SharedWeb RadianceLamps::web_of(const RadianceLight& light, const Face& face,
         for (const DirectionPattern* pattern : light.patterns) {
           factor *= pattern->factor(-out, std::max(seen, grazing));
         }
-        value = grey(factor) * face.area * std::max(seen, grazing);
+        value = radiance_luminance(factor) * face.area * std::max(seen, grazing);
       }
       values(static_cast<Eigen::Index>(c), static_cast<Eigen::Index>(g)) = value;
     }
@@ -188,7 +164,7 @@ bool RadianceLamps::add(const RadiancePrimitive& surface, const RadianceLight& l
   if (!face) return false;
   Eigen::Vector3d aim = face->aim;
   if (is_spot) {
-    aim = {light.material.reals[4], light.material.reals[5], light.material.reals[6]};
+    aim = light.material.point(4);
     if (!(aim.stableNorm() > 0.0)) light.material.fail("has a beam without direction");
     aim.stableNormalize();
   }

@@ -50,11 +50,12 @@ bool is_constant(const RadiancePrimitive& p, RadiancePattern& result) {
 constexpr std::array<std::string_view, 8> picture_functions = {
     "red", "green", "blue", "clip_r", "clip_g", "clip_b", "grey", "clipgrey"};
 
+const Eigen::Vector3d luminance_weights(0.265, 0.670, 0.065);  // of RADIANCE's primaries
+
 // Means of these functions over the pixels of a picture.
 Spectrum means_of(const BandArray& pixels) {
-  const Eigen::Vector3d luminance(0.265, 0.670, 0.065);  // weights of RADIANCE's primaries
   Eigen::ArrayXXd values(pixels.rows(), 4);
-  values << pixels.cast<double>(), (pixels.cast<double>().matrix() * luminance).array();
+  values << pixels.cast<double>(), (pixels.cast<double>().matrix() * luminance_weights).array();
   const Eigen::ArrayXd plain = values.colwise().mean(), cut = values.min(1.0).colwise().mean();
   Spectrum means(static_cast<Eigen::Index>(picture_functions.size()));
   means << plain.head(3).cast<float>(), cut.head(3).cast<float>(), static_cast<float>(plain[3]),
@@ -67,30 +68,11 @@ bool is_same(const RadiancePrimitive& a, const RadiancePrimitive& b) {
          a.frame.matrix() == b.frame.matrix();
 }
 
-bool is_same(const Spectrum& a, const Spectrum& b) {
-  return a.size() == b.size() && (a == b).all();
-}
-
-// True if two materials of RADIANCE reflect, pass and emit the same light.
-bool is_same(const Material& a, const Material& b) {
-  if (a.dielectric.has_value() != b.dielectric.has_value()) return false;
-  if (a.dielectric && (a.dielectric->index_of_refraction != b.dielectric->index_of_refraction ||
-                       a.dielectric->thin != b.dielectric->thin ||
-                       !is_same(a.dielectric->tint, b.dielectric->tint) ||
-                       !is_same(a.dielectric->absorption, b.dielectric->absorption) ||
-                       !is_same(a.dielectric->transmissivity, b.dielectric->transmissivity))) {
-    return false;
-  }
-  return is_same(a.reflectance, b.reflectance) && is_same(a.transmittance, b.transmittance) &&
-         is_same(a.regular_transmittance, b.regular_transmittance) &&
-         is_same(a.specular, b.specular) && is_same(a.emission, b.emission) &&
-         (a.coat ? a.coat->index_of_refraction : 0.0f) ==
-             (b.coat ? b.coat->index_of_refraction : 0.0f) &&
-         a.specular_roughness == b.specular_roughness && a.one_sided == b.one_sided &&
-         a.emits_both_sides == b.emits_both_sides;
-}
-
 }  // namespace
+
+double radiance_luminance(const Spectrum& rgb) {
+  return luminance_weights.dot(rgb.matrix().cast<double>());
+}
 
 int RadianceMaterials::index_of(const std::string& name, const RadiancePrimitive& user) {
   if (name == radiance_void) return none;
@@ -188,8 +170,9 @@ std::optional<int> RadianceMaterials::same_material(const std::string& name,
                                                     const Material& material) const {
   const auto of_name = materials_of_name_.find(name);
   if (of_name == materials_of_name_.end()) return std::nullopt;
+  const std::uint64_t hash = material_hash(material);
   for (const int i : of_name->second) {
-    if (is_same(scene_.materials[static_cast<std::size_t>(i)], material)) return i;
+    if (material_hash(scene_.materials[static_cast<std::size_t>(i)]) == hash) return i;
   }
   return std::nullopt;
 }

@@ -37,6 +37,10 @@ struct RadiancePrimitive {
   Eigen::Affine3d frame = Eigen::Affine3d::Identity();
 
   RadianceKind kind() const { return radiance_kind(type); }
+  /// The three real arguments from number `first` on.
+  Eigen::Vector3d point(std::size_t first) const {
+    return {reals[first], reals[first + 1], reals[first + 2]};
+  }
   /// Throws InputError "file:line: type 'name' problem".
   [[noreturn]] void fail(std::string_view problem) const;
   /// Throws InputError unless there are exactly `count` real arguments.

@@ -19,10 +19,6 @@ constexpr std::int64_t most_primitives = 2'000'000;
 constexpr std::size_t most_corners =
     2000;  // of a polygon; with more, it is a curve that strips show better
 
-Eigen::Vector3d point(const RadiancePrimitive& p, std::size_t first) {
-  return {p.reals[first], p.reals[first + 1], p.reals[first + 2]};
-}
-
 // Name without a last number: "box" of "box.12".
 std::string stem_of(const std::string& name) {
   const std::size_t dot = name.rfind('.');
@@ -133,7 +129,7 @@ void RadianceShapes::add_polygon(const RadiancePrimitive& p, int material) {
   stem_ = stem;
   material_ = material;
   Loop loop;
-  for (std::size_t i = 0; i < corners; ++i) loop.push_back(point(p, 3 * i));
+  for (std::size_t i = 0; i < corners; ++i) loop.push_back(p.point(3 * i));
   loop.erase(std::unique(loop.begin(), loop.end()), loop.end());
   while (loop.size() > 1 && loop.front() == loop.back()) loop.pop_back();
   if (loop.size() > 4 && !fault({loop}).empty()) {
@@ -170,10 +166,10 @@ void RadianceShapes::add_sphere(const RadiancePrimitive& p, int material) {
   if (!(radius > 0.0)) return remarks_.add("Shapes without area were left out", p.name);
   const bool inward = (p.type == "bubble") != (p.reals[3] < 0.0);
   if (!inward || !sides_differ(material)) {
-    return add_surface(p, material, Sphere{.center = point(p, 0), .radius = radius});
+    return add_surface(p, material, Sphere{.center = p.point(0), .radius = radius});
   }
   remarks_.add("Bubbles whose sides differ became polygons of the same area", p.name);
-  const Eigen::Affine3d transform = Eigen::Translation3d(point(p, 0)) * Eigen::Scaling(radius);
+  const Eigen::Affine3d transform = Eigen::Translation3d(p.point(0)) * Eigen::Scaling(radius);
   const std::vector<Loop> loops = sphere_loops();
   // The corners of a unit sphere about the origin are its normals.
   add_surface(p, material, placed_loops(loops, transform, true, repairs_, {}, loops));
@@ -184,7 +180,7 @@ void RadianceShapes::add_cone(const RadiancePrimitive& p, int material) {
   p.require_reals(is_cylinder ? 7 : 8);
   const double first = p.reals[6], second = p.reals.back();
   if (first * second < 0.0) p.fail("has radii of different signs");
-  const Eigen::Vector3d from = point(p, 0), axis = point(p, 3) - from;
+  const Eigen::Vector3d from = p.point(0), axis = p.point(3) - from;
   const double height = axis.stableNorm();
   if (!(height > 0.0) || !(std::abs(first) + std::abs(second) > 0.0)) {
     return remarks_.add("Shapes without area were left out", p.name);
@@ -201,7 +197,7 @@ void RadianceShapes::add_cone(const RadiancePrimitive& p, int material) {
 
 void RadianceShapes::add_ring(const RadiancePrimitive& p, int material) {
   p.require_reals(8);
-  const Eigen::Vector3d normal = point(p, 3);
+  const Eigen::Vector3d normal = p.point(3);
   const double inner = std::min(p.reals[6], p.reals[7]), outer = std::max(p.reals[6], p.reals[7]);
   if (!(inner >= 0.0)) p.fail(fmt::format("has the radius {}; it must not be negative", inner));
   if (!(normal.stableNorm() > 0.0)) p.fail("has no normal: its fourth to sixth number are 0");
@@ -210,7 +206,7 @@ void RadianceShapes::add_ring(const RadiancePrimitive& p, int material) {
     return remarks_.add("Shapes without area were left out", p.name);
   }
   remarks_.add("Rings were read as polygons of 32 corners and the same area", p.name);
-  const Eigen::Affine3d transform = along(point(p, 0), normal);
+  const Eigen::Affine3d transform = along(p.point(0), normal);
   Polygon ring = ring_polygon(inner, outer);
   ring.boundary = placed(std::move(ring.boundary), transform);
   for (Loop& hole : ring.holes) hole = placed(std::move(hole), transform);

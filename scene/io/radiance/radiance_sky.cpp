@@ -9,7 +9,8 @@
 #include <numbers>
 #include <utility>
 
-#include "scene/degree.h"
+#include "scene/environment_map.h"
+#include "scene/rotation_between.h"
 
 namespace lightwell {
 namespace {
@@ -19,24 +20,10 @@ using std::numbers::pi;
 constexpr double widest_sun = 10.0;                // degrees, the most that a Sun may have
 constexpr int map_width = 1024, map_height = 512;  // 0.35 degrees
 
-// Frame of a map: +y of the map is the zenith, +z the north.
-Eigen::Matrix3d to_map(const Eigen::Vector3d& up, const Eigen::Vector3d& north) {
-  Eigen::Matrix3d rows;
-  rows << up.cross(north).transpose(), up.transpose(), north.transpose();
-  return rows;
-}
-
 // Unit vector across `up`, as near to `wished` as can be.
 Eigen::Vector3d across(const Eigen::Vector3d& up, const Eigen::Vector3d& wished) {
   const Eigen::Vector3d part = wished - wished.dot(up) * up;
   return part.norm() > 1e-3 ? part.normalized() : up.unitOrthogonal();
-}
-
-// Direction of a position in a map's picture, in the map's frame (see EnvironmentMap).
-Eigen::Vector3d map_direction(double x, double y) {
-  const double longitude = 2.0 * pi * (x / map_width - 0.5), polar = pi * y / map_height;
-  return {-std::sin(polar) * std::sin(longitude), std::cos(polar),
-          std::sin(polar) * std::cos(longitude)};
 }
 
 double pixel_solid_angle(int row) {
@@ -44,37 +31,63 @@ double pixel_solid_angle(int row) {
          (std::cos(pi * row / map_height) - std::cos(pi * (row + 1) / map_height));
 }
 
+// Sets the pixels whose middles a disc covers.
+void paint(const Sun& disc, const RadianceLight& light, const Eigen::Matrix3d& to_map,
+           BandArray& radiance) {
+  const double edge = disc.cosine_of_edge();
+  for (int y = 0; y < map_height; ++y) {
+    for (int x = 0; x < map_width; ++x) {
+      const Eigen::Vector3d ray =
+          to_map.transpose() * map_direction((x + 0.5) / map_width, (y + 0.5) / map_height);
+      if (disc.direction.dot(ray) < edge) continue;
+      radiance.row(std::int64_t{y} * map_width + x) = light.radiance(ray, 1.0).transpose();
+    }
+  }
+}
+
+// Adds the light of a disc that the middles of pixels may miss, from a grid of points of equal
+// solid angle.
+void add_disc(const Sun& disc, const RadianceLight& light, const Eigen::Matrix3d& to_map,
+              BandArray& radiance) {
+  constexpr int grid =
+      16;  // points in either direction, finer than pixels on discs up to 5 degrees
+  const Eigen::Quaterniond aim = rotation_between(Eigen::Vector3d::UnitZ(), disc.direction);
+  for (int i = 0; i < grid * grid; ++i) {
+    const double height = 1.0 - (1.0 - disc.cosine_of_edge()) * (i / grid + 0.5) / grid;
+    const double turn = 2.0 * pi * (i % grid + 0.5) / grid, out = std::sqrt(1.0 - height * height);
+    const Eigen::Vector3d ray =
+        aim * Eigen::Vector3d(out * std::cos(turn), out * std::sin(turn), height);
+    const Eigen::Vector2d at = map_position(to_map * ray);
+    const int x = std::min(static_cast<int>(at.x() * map_width), map_width - 1);
+    const int y = std::min(static_cast<int>(at.y() * map_height), map_height - 1);
+    const double share = disc.solid_angle() / (grid * grid * pixel_solid_angle(y));
+    radiance.row(std::int64_t{y} * map_width + x) +=
+        static_cast<float>(share) * light.radiance(ray, 1.0).transpose();
+  }
+}
+
 }  // namespace
-
-double RadianceSky::Source::cosine_of_edge() const {
-  return std::cos(0.5 * degrees * degree);
-}
-
-double RadianceSky::Source::solid_angle() const {
-  const double sine = std::sin(0.25 * degrees * degree);
-  return 4.0 * pi * sine * sine;
-}
 
 void RadianceSky::add(const RadiancePrimitive& source, RadianceLight light) {
   source.require_reals(4);
-  const Eigen::Vector3d towards(source.reals[0], source.reals[1], source.reals[2]);
+  const Eigen::Vector3d towards = source.point(0);
   const double angle = source.reals[3];
   if (!(towards.stableNorm() > 0.0)) source.fail("has a direction without length");
   if (!(angle > 0.0)) source.fail(fmt::format("is {} degrees across; give more than 0", angle));
-  sources_.push_back({.name = source.name,
-                      .direction = towards.stableNormalized(),
-                      .degrees = std::min(angle, 360.0),
-                      .light = std::move(light)});
+  sources_.push_back(
+      {.name = source.name,
+       .disc = {.direction = towards.stableNormalized(), .angle_degrees = std::min(angle, 360.0)},
+       .light = std::move(light)});
 }
 
 // The narrow source that sends the most light.
 const RadianceSky::Source* RadianceSky::sun() const {
   const auto irradiance = [](const Source& s) {
-    return s.light.radiance(s.direction, 1.0).sum() * static_cast<float>(s.solid_angle());
+    return s.light.radiance(s.disc.direction, 1.0).sum() * static_cast<float>(s.disc.solid_angle());
   };
   const Source* best = nullptr;
   for (const Source& s : sources_) {
-    if (s.degrees > widest_sun || !(irradiance(s) > 0.0f)) continue;
+    if (s.disc.angle_degrees > widest_sun || !(irradiance(s) > 0.0f)) continue;
     if (!best || irradiance(s) > irradiance(*best)) best = &s;
   }
   return best;
@@ -87,77 +100,50 @@ void RadianceSky::finish(Scene& scene, const Eigen::Vector3d& up, Remarks& remar
   for (const Source& s : sources_) {
     if (&s != sun) others.push_back(&s);
   }
-  std::ranges::stable_sort(others, {}, &Source::degrees);
-  scene.sky = dome(others, up);
+  std::ranges::stable_sort(others, {}, [](const Source* s) { return s->disc.angle_degrees; });
+  Sky dark = dark_sky(scene.bands);
+  dark.up = up;
+  scene.sky = dome(others, dark);
   if (scene.sky->map) {
     remarks.mention(fmt::format("Skies were tabulated by direction, as a picture of {} x {}",
                                 map_width, map_height),
                     others.back()->name);
   }
   if (!sun) return;
-  scene.sky->sun = Sun{.direction = sun->direction,
-                       .irradiance = sun->light.radiance(sun->direction, 1.0) *
-                                     static_cast<float>(sun->solid_angle()),
-                       .angle_degrees = sun->degrees};
+  scene.sky->sun = sun->disc;
+  scene.sky->sun->irradiance =
+      sun->light.radiance(sun->disc.direction, 1.0) * static_cast<float>(sun->disc.solid_angle());
 }
 
 // `sources` from the narrowest to the widest.
-Sky RadianceSky::dome(const std::vector<const Source*>& sources, const Eigen::Vector3d& up) const {
-  Sky sky{.name = "dark", .up = up, .scale = Spectrum::Zero(3), .ground = Spectrum::Zero(3)};
+Sky RadianceSky::dome(const std::vector<const Source*>& sources, const Sky& dark) const {
+  Sky sky = dark;
+  // The pattern of a sky tells its zenith and north. Without one, the brighter of the hemispheres
+  // is above.
+  const auto pattern =
+      std::ranges::find_if(sources, [](const Source* s) { return !s->light.patterns.empty(); });
   Eigen::Vector3d north = Eigen::Vector3d::UnitY();
-  bool is_oriented = false;
-  for (const Source* s : sources) {
-    if (s->light.patterns.empty()) continue;
-    const Eigen::Matrix3d& turn = s->light.patterns.front()->turn();
+  if (pattern != sources.end()) {
+    const Eigen::Matrix3d& turn = (*pattern)->light.patterns.front()->turn();
     sky.up = turn.col(2);
     north = turn.col(1);
-    is_oriented = true;
-    break;
-  }
-  // Without a pattern, the brighter of the hemispheres is the sky.
-  float brightest = 0.0f;
-  for (const Source* s : sources) {
-    const float radiance = s->light.radiance(s->direction, 1.0).sum();
-    if (is_oriented || s->degrees != 180.0 || !(radiance > brightest)) continue;
-    brightest = radiance;
-    sky.up = s->direction;
+  } else {
+    float brightest = 0.0f;
+    for (const Source* s : sources) {
+      const float radiance = s->light.color.sum();
+      if (s->disc.angle_degrees != 180.0 || !(radiance > brightest)) continue;
+      brightest = radiance;
+      sky.up = s->disc.direction;
+    }
   }
   sky.north = across(sky.up, north);
-  if (sources.empty()) return sky;
-
-  const Eigen::Matrix3d map = to_map(sky.up, sky.north);
+  const Eigen::Matrix3d map = to_map_around(sky.up, sky.north);
   BandArray radiance = BandArray::Zero(std::int64_t{map_width} * map_height, 3);
-  for (int y = 0; y < map_height; ++y) {
-    for (int x = 0; x < map_width; ++x) {
-      const Eigen::Vector3d ray = map.transpose() * map_direction(x + 0.5, y + 0.5);
-      const auto seen = std::ranges::find_if(sources, [&](const Source* s) {
-        return s->degrees > widest_sun && s->direction.dot(ray) >= s->cosine_of_edge();
-      });
-      if (seen == sources.end()) continue;
-      radiance.row(std::int64_t{y} * map_width + x) = (*seen)->light.radiance(ray, 1.0).transpose();
-    }
+  for (auto s = sources.rbegin(); s != sources.rend(); ++s) {  // the narrowest last
+    if ((*s)->disc.angle_degrees > widest_sun) paint((*s)->disc, (*s)->light, map, radiance);
   }
-  // Discs that the grid may miss: their light goes to the pixels that their middle meets.
   for (const Source* s : sources) {
-    if (s->degrees > widest_sun) continue;
-    constexpr int grid = 16;
-    const Eigen::Quaterniond aim =
-        Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), s->direction);
-    for (int i = 0; i < grid * grid; ++i) {
-      const double height = 1.0 - (1.0 - s->cosine_of_edge()) * (i / grid + 0.5) / grid;
-      const double turn = 2.0 * pi * (i % grid + 0.5) / grid,
-                   out = std::sqrt(1.0 - height * height);
-      const Eigen::Vector3d ray =
-          aim * Eigen::Vector3d(out * std::cos(turn), out * std::sin(turn), height);
-      const Eigen::Vector3d local = map * ray;
-      const double u = 0.5 + std::atan2(-local.x(), local.z()) / (2.0 * pi);
-      const double v = std::acos(std::clamp(local.y(), -1.0, 1.0)) / pi;
-      const int x = std::min(static_cast<int>(u * map_width), map_width - 1);
-      const int y = std::min(static_cast<int>(v * map_height), map_height - 1);
-      const double share = s->solid_angle() / (grid * grid * pixel_solid_angle(y));
-      radiance.row(std::int64_t{y} * map_width + x) +=
-          static_cast<float>(share) * s->light.radiance(ray, 1.0).transpose();
-    }
+    if (s->disc.angle_degrees <= widest_sun) add_disc(s->disc, s->light, map, radiance);
   }
   if (!(radiance > 0.0f).any()) return sky;
   sky.kind = SkyKind::map;

@@ -24,15 +24,11 @@ class RadianceSky {
  private:
   struct Source {
     std::string name{};
-    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
-    double degrees = 0.0;  // across
+    Sun disc{};  // up to 360 degrees across; its irradiance is not set
     RadianceLight light{};
-
-    double cosine_of_edge() const;
-    double solid_angle() const;
   };
   const Source* sun() const;
-  Sky dome(const std::vector<const Source*>& sources, const Eigen::Vector3d& up) const;
+  Sky dome(const std::vector<const Source*>& sources, const Sky& dark) const;
 
   std::vector<Source> sources_;
 };
