@@ -431,8 +431,8 @@ Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node, Pixels pixels) {
 
 namespace {
 
-// What `read` makes of a bitmap's file; empty, with a remark, if it is missing, damaged or of
-// another format.
+// Calls `read` with the path of a bitmap's file and returns the picture; empty, with a remark, if
+// the file is missing, damaged or of another format.
 template <class Read>
 auto read_bitmap_file(const MitsubaTree& tree, const MitsubaNode& node, Remarks& remarks,
                       Read&& read) -> decltype(read(std::filesystem::path())) {

@@ -333,7 +333,8 @@ class MapReader {
                    [&](const auto& path) { return pictures_.picture(path, code); });
   }
 
-  // What `read` makes of the file; empty, with a remark, if it cannot be used.
+  // Calls `read` with the path of the file and returns the picture; empty, with a remark, if the
+  // file cannot be used.
   template <class Read>
   auto open_by(const std::string& name, const MtlBlock& b, const char* others, Read&& read)
       -> decltype(read(std::filesystem::path())) {

@@ -18,9 +18,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-// 16-bit texels: a code is the square root of a share, so the share is right to 2 / 65535 over its
-// root.
-constexpr double texel_rounding = 1e-4;
+// 16-bit texels: a code is 65535 times the root of a share, rounded by 1/2 at most, so a share in
+// [0,1] is off by root / 65535 at most. 0 and 1 are exact.
+constexpr double texel_rounding = 1.0 / 65535.0;
+// A value that a few floats make: each rounds by half of 2^-23.
+constexpr double some_floats = 4 * 0x1p-24;
 // EmissionTree leaves a rectangle whole that would move less than 0.6 % of the light.
 constexpr double of_a_part = 6e-3;
 
@@ -169,12 +171,14 @@ TEST(EmissionPicture, PatchesSendThePowerOfTheirTexels) {
     const int texel =
         across * static_cast<int>(across * at.y()) + static_cast<int>(across * at.x());
     const Spectrum wanted = M * texels[static_cast<std::size_t>(texel)];
-    EXPECT_LT((emission.of_element(e) - wanted).abs().maxCoeff(), texel_rounding * M);
-    EXPECT_LT((emission_at(mesh, e, at) - wanted).abs().maxCoeff(), texel_rounding * M);
+    // A texel, times a factor of the facet that is 1 but for the texels' and the floats' rounding.
+    constexpr double tolerance = 2.0 * (texel_rounding + some_floats) * M;
+    EXPECT_LT((emission.of_element(e) - wanted).abs().maxCoeff(), tolerance);
+    EXPECT_LT((emission_at(mesh, e, at) - wanted).abs().maxCoeff(), tolerance);
     power += mesh.element_area[e] * mesh.emission.row(p).transpose().cast<double>();
   }
   const Eigen::Array3d wanted = M * sum / (across * across);
-  EXPECT_LT((power / wanted - 1.0).abs().maxCoeff(), texel_rounding);
+  EXPECT_LT((power - wanted).abs().maxCoeff(), (texel_rounding + some_floats) * M);
 }
 
 // Texels are finer than the points of an element, and no edge of an element is an edge of a texel.
@@ -196,7 +200,8 @@ TEST(EmissionPicture, PatchesOfAnySizeSendTheIntegral) {
       power += mesh.area[p] * mesh.emission.row(p).transpose().cast<double>();
     }
     // Cells of the picture are a texel each.
-    EXPECT_LT((power / (sum / (across * across)) - 1.0).abs().maxCoeff(), texel_rounding) << size;
+    EXPECT_LT((power - sum / (across * across)).abs().maxCoeff(), texel_rounding + some_floats)
+        << size;
   }
 }
 
@@ -216,7 +221,9 @@ TEST(EmissionPicture, LightDependsOnTheRadianceAndNotOnItsTiles) {
   const Lit one(std::move(tiled)), other(whole);
   for (const auto& [at, normal] : receivers()) {
     const Spectrum E = one.irradiance(at, normal), wanted = other.irradiance(at, normal);
-    EXPECT_LT((E - wanted).abs().maxCoeff(), 1e-5f * wanted.sum());
+    // The cells and the closed forms are the same; floats round each band, and double precision
+    // the corners of cells.
+    EXPECT_LT((E - wanted).abs().maxCoeff(), some_floats * wanted.sum());
   }
 }
 
@@ -236,8 +243,9 @@ TEST(EmissionPicture, OfATurnedLayoutOnAnLKeepsItsPower) {
   EXPECT_EQ(tree.leaf_count(), 1);  // an even picture is not parted
   const Vector3d at(0.4, 0.5, 0.2), normal(0, 0, -1);
   const double F = form_factor(at, normal, 0, 1, 0, 0.4) + form_factor(at, normal, 0, 0.3, 0.4, 1);
-  EXPECT_NEAR(lit.irradiance(at, normal)[2], F, texel_rounding * F);
-  EXPECT_NEAR(lit.irradiance(at, normal)[1], 0.25 * F, texel_rounding * F);
+  // Texels of 1 are exact; the code of 0.25 is rounded.
+  EXPECT_NEAR(lit.irradiance(at, normal)[2], F, some_floats * F);
+  EXPECT_NEAR(lit.irradiance(at, normal)[1], 0.25 * F, (texel_rounding + some_floats) * F);
 }
 
 // A channel at twice the light, in one band alone, scales the picture.
@@ -249,10 +257,11 @@ TEST(EmissionPicture, IsScaledWithTheEmissionOfItsPatches) {
   lit.mesh.emission.col(2) *= 0.5f;
   const DirectLight relit(lit.scene, lit.mesh, {}, &lit.light);
   const Spectrum after = relit.irradiance(lit.caster, {.at = {at, normal, -1}, .key = 1});
-  EXPECT_NEAR(after[0], 2.0f * before[0], 1e-5f * before[0]);
-  EXPECT_NEAR(after[2], 0.5f * before[2], 1e-5f * before[2]);
+  // The factor of the facet is a quotient of floats, the light its product.
+  EXPECT_NEAR(after[0], 2.0f * before[0], some_floats * 2.0f * before[0]);
+  EXPECT_NEAR(after[2], 0.5f * before[2], some_floats * 0.5f * before[2]);
   const Emitter& emitter = relit.emitters()[0];
-  EXPECT_NEAR(exitance_at(emitter, {0.25, 0.5, 0.0})[0], 2.0f, 2.0f * texel_rounding);
+  EXPECT_NEAR(exitance_at(emitter, {0.25, 0.5, 0.0})[0], 2.0f, some_floats * 2.0f);
 }
 
 // A wall close to the screen reflects in its patches the light of the half that each is near.
@@ -260,9 +269,11 @@ TEST(EmissionPicture, PatchesReflectTheColourOfThePartThatTheySee) {
   constexpr float rho = 0.5f;
   Scene scene = screen(coloured_picture(2, 1, {red, blue}));
   const int grey = test::add_material(scene, test::diffuse(scene.bands, rho));
-  test::add_polygon(scene, "wall", grey, {{0, 0, 0.3}, {0, 1, 0.3}, {1, 1, 0.3}, {1, 0, 0.3}});
+  constexpr double distance = 0.3, patch = 0.0625;
+  test::add_polygon(scene, "wall", grey,
+                    {{0, 0, distance}, {0, 1, distance}, {1, 1, distance}, {1, 0, distance}});
   SolveOptions options;
-  options.mesh.max_patch_size = 0.25;
+  options.mesh.max_patch_size = patch;
   options.form_factors.rays_per_patch = 256;
   options.gather.rays = 64;
   options.error_points = 16;
@@ -280,16 +291,20 @@ TEST(EmissionPicture, PatchesReflectTheColourOfThePartThatTheySee) {
       E[2] += share * form_factor(at.position, at.normal, 0.5, 1.0, 0.0, 1.0);
     }
     const Spectrum B = solved.solution.patch_radiosity.row(p).transpose();
-    // The screen and the far wall are black, so light is reflected once. F of 16 points of a patch
-    // and of its elements' middles differ by 1 %, and kernels at the middles of the screen's
-    // patches are right to 2 %.
-    EXPECT_NEAR(B[0], rho * E[0], 0.03 * rho * E.sum());
-    EXPECT_NEAR(B[2], rho * E[2], 0.03 * rho * E.sum());
+    // The screen and the far wall are black, so light is reflected once. The midpoint rule over a
+    // patch of the size h of the screen is off by h^2 / 24 times the kernel's second derivatives:
+    // d^2 / (d^2 + x^2)^2 has 4 / d^2 of itself at most, in x and in y. A patch of the wall is
+    // summed over finer points, with less than a quarter of that.
+    constexpr double h_over_d = patch / distance;
+    constexpr double tolerance = 1.25 * 2.0 * 4.0 / 24.0 * h_over_d * h_over_d;
+    EXPECT_NEAR(B[0], rho * E[0], tolerance * rho * E.sum());
+    EXPECT_NEAR(B[2], rho * E[2], tolerance * rho * E.sum());
   }
   EXPECT_GT(walls, 8);
   const EnergyBalance balance = solved.solution.energy;
-  EXPECT_NEAR(balance.emitted, 1.0, 1e-4);  // half a square metre of red and of blue
-  EXPECT_NEAR((balance.absorbed + balance.escaped) / balance.emitted, 1.0, 1e-4);
+  // Half a square metre of red and of blue, in texels of 1, which are exact.
+  EXPECT_NEAR(balance.emitted, 1.0, some_floats);
+  EXPECT_NEAR((balance.absorbed + balance.escaped) / balance.emitted, 1.0, some_floats);
 }
 
 }  // namespace

@@ -170,6 +170,19 @@ DaeParts with_light(const std::string& light) {
                    R"(<instance_light url="#l"/></node>)"};
 }
 
+TEST_F(Interchange, PicturesOfEmissionShineAsPictures) {
+  std::filesystem::copy(data / "two-pixels.png", folder / "glow.png");
+  DaeParts parts = with_picture("glow.png");
+  parts.effect = R"(<emission><texture texture="sampler" texcoord="UV"/></emission>)";
+  const Material material = first_material(read_dae(parts));
+  ASSERT_TRUE(material.emission_texture);
+  constexpr auto pi = std::numbers::pi;
+  expect_rgb(material.emission_texture->factor, pi, pi, pi);
+  const Eigen::Array3f mean = material.emission_texture->image.picture->mean();
+  // The mean of the texels, each in a code of 16 bits, and that of the file itself.
+  EXPECT_LT((material.emission - static_cast<float>(pi) * mean).abs().maxCoeff(), pi / 65535);
+}
+
 TEST_F(Interchange, ColladaLightsAreLampsAndSuns) {
   const Scene point = read_dae(with_light("<point><color>4 2 1</color></point>"));
   ASSERT_EQ(point.lamps.size(), 1u);
