@@ -37,7 +37,8 @@ class PicturesOfLight : public test::SceneFileTest {
   }
 };
 
-constexpr float rounding = 1e-4f;  // of 16-bit texels
+// Codes of texels are 65535 times the root of a share, rounded by 1/2 at most.
+constexpr float rounding = 1.0f / 65535.0f;
 
 TEST_F(PicturesOfLight, OfNativeFilesMultiplyTheEmission) {
   const Scene scene =

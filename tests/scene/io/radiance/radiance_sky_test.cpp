@@ -156,11 +156,12 @@ TEST_F(RadianceSkies, AFunctionOfDirectionOfTheScenesOwnFileIsTheSky) {
        {Eigen::Vector3d(0.6, 0.0, 0.8), Eigen::Vector3d(0.48, -0.6, 0.64),
         Eigen::Vector3d(-0.36, 0.48, 0.8)}) {
     const Spectrum radiance = sky_radiance(*scene.sky, d);
-    // Bilinear between pixels 0.35 degrees apart: off by at most 1/8 (0.0061)^2 of the slope's
-    // change, and a pixel at a kink by half a pixel.
-    EXPECT_NEAR(radiance[0], 1.0, 1e-5);
-    EXPECT_NEAR(radiance[1], 2.0 * d.z(), 1e-4);
-    EXPECT_NEAR(radiance[2], 1.5 * std::max(0.0, d.x()), 1e-4);
+    // Bilinear between pixels h = 0.35 degrees apart: off by h^2 / 8 of the second derivative in
+    // either direction, which is at most the radiance's largest value here.
+    constexpr double h = 2.0 * pi / 1024.0, floats = 4 * 0x1p-24;
+    EXPECT_NEAR(radiance[0], 1.0, floats);
+    EXPECT_NEAR(radiance[1], 2.0 * d.z(), 2.0 * h * h / 4.0 + floats);
+    EXPECT_NEAR(radiance[2], 1.5 * std::max(0.0, d.x()), 1.5 * h * h / 4.0 + floats);
   }
   EXPECT_EQ(sky_radiance(*scene.sky, -Eigen::Vector3d::UnitZ()).sum(), 0.0f);
 }
@@ -225,7 +226,8 @@ TEST_F(RadianceSkies, XformTurnsSkyAndSun) {
        {Eigen::Vector3d(0.6, 0.0, 0.8), Eigen::Vector3d(-0.8, 0.36, 0.48),
         Eigen::Vector3d(0.0, 0.96, -0.28)}) {
     const Spectrum a = sky_radiance(*plain.sky, d), b = sky_radiance(*turned.sky, turn * d);
-    EXPECT_LT((a / b - 1.0f).abs().maxCoeff(), 1e-4) << d.transpose();
+    // The same picture, but for the rounding of its directions and of floats.
+    EXPECT_LT((a / b - 1.0f).abs().maxCoeff(), 8 * 0x1p-24) << d.transpose();
   }
 }
 

@@ -458,7 +458,7 @@ TEST_F(Radiance, RoundShapesHaveTheNormalsOfRoundOnes) {
               .normalized();
       const Eigen::Vector3d found =
           mesh.normal_maps[static_cast<std::size_t>(facet.normal_map)].at(p).normalized();
-      expect_near(found, expected, 1e-6);
+      expect_near(found, expected, 1e-9);
     }
   }
 }
