@@ -1,5 +1,7 @@
 #include "mesh/patches/pictured_emission.h"
 
+#include <algorithm>
+
 #include "mesh/patches/patch_textures.h"
 #include "scene/facet_textures.h"
 
@@ -66,6 +68,23 @@ Spectrum emission_at(const PatchMesh& mesh, int element, const Eigen::Vector3d& 
   }
   const Spectrum mean = (power / mesh.area[p]).cast<float>();
   return (mean > 0.0f).select(M * mesh.textures->emission(facet, point) / mean, 0.0f);
+}
+
+BandArray facet_emission(const PatchMesh& mesh) {
+  const int facets = mesh.facet.empty() ? 0 : 1 + *std::ranges::max_element(mesh.facet);
+  const Eigen::Index bands = mesh.emission.cols();
+  Eigen::ArrayXXd power = Eigen::ArrayXXd::Zero(facets, bands);
+  Eigen::ArrayXd area = Eigen::ArrayXd::Zero(facets);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto M = mesh.emission.row(mesh.patch[e]);
+    if (!(M > 0.0f).any()) continue;
+    power.row(mesh.facet[e]) += mesh.element_area[e] * M.cast<double>();
+    area[mesh.facet[e]] += mesh.element_area[e];
+  }
+  for (int f = 0; f < facets; ++f) {
+    if (area[f] > 0.0) power.row(f) /= area[f];
+  }
+  return power.cast<float>();
 }
 
 BandArray vertex_emission(const PatchMesh& mesh) {

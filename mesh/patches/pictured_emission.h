@@ -34,6 +34,10 @@ class PicturedEmission {
 /// Exitance at a point (metres) of an element, as PicturedEmission::at() has it, for few points.
 Spectrum emission_at(const PatchMesh& mesh, int element, const Eigen::Vector3d& point);
 
+/// Mean exitance of each facet over its patches that shine (facets of the mesh x bands), W/m^2; 0
+/// for facets without any.
+BandArray facet_emission(const PatchMesh& mesh);
+
 /// Exitance at vertices (vertices x bands): where a picture shines, the mean of the elements around
 /// the vertex, weighted by area; else that of the vertex's patch.
 BandArray vertex_emission(const PatchMesh& mesh);

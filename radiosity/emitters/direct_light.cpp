@@ -1,4 +1,5 @@
 #include "radiosity/emitters/direct_light.h"
+#include "mesh/patches/pictured_emission.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -315,25 +316,6 @@ std::vector<EmittingFacet> emitting_facets(const Scene& scene, const std::vector
   return emitting;
 }
 
-// Mean emission of the patches on the front of each facet that has some, W/m^2.
-std::vector<Spectrum> mean_emissions(const PatchMesh& mesh, std::size_t facet_count) {
-  std::vector<Eigen::ArrayXd> power(facet_count);
-  std::vector<double> area(facet_count, 0.0);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int p = mesh.patch[e];
-    const auto facet = static_cast<std::size_t>(mesh.facet[e]);
-    if (mesh.is_back[p] != 0 || facet >= facet_count) continue;
-    if (power[facet].size() == 0) power[facet].setZero(mesh.emission.cols());
-    power[facet] += mesh.element_area[e] * mesh.emission.row(p).transpose().cast<double>();
-    area[facet] += mesh.element_area[e];
-  }
-  std::vector<Spectrum> mean(facet_count);
-  for (std::size_t f = 0; f < facet_count; ++f) {
-    if (area[f] > 0.0) mean[f] = (power[f] / area[f]).cast<float>();
-  }
-  return mean;
-}
-
 // A patch on the front of each facet; -1: the mesh has none.
 std::vector<int> front_patches(const PatchMesh& mesh, std::size_t facet_count) {
   std::vector<int> front(facet_count, -1);
@@ -383,8 +365,8 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
       scene_area);
   const std::vector<int> front = front_patches(mesh, facets.size());
   const bool any_picture = std::ranges::any_of(emitting, [](auto& e) { return !!e.picture; });
-  std::vector<Spectrum> mean_of_facet;
-  if (any_picture) mean_of_facet = mean_emissions(mesh, facets.size());
+  BandArray mean_of_facet;
+  if (any_picture) mean_of_facet = facet_emission(mesh);
   // Rays over the hemisphere find a large emitter in mirrors with less noise than rays of its own
   // that meet the mirrors. Coats mirror little.
   const bool has_mirrors = std::ranges::any_of(scene.materials, [](const Material& material) {
@@ -414,7 +396,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
                       .area = emitting[i].area,
                       .emits_both_sides = material.emits_both_sides};
       if (const int p = front[emitter.facet]; p >= 0) {
-        emitter.exitance = emitter.picture ? mean_of_facet[static_cast<std::size_t>(emitter.facet)]
+        emitter.exitance = emitter.picture ? Spectrum(mean_of_facet.row(emitter.facet).transpose())
                                            : Spectrum(mesh.emission.row(p).transpose());
       }
       if (emitter.picture) {

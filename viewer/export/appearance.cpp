@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <numbers>
-#include <utility>
 
 #include "mesh/patches/pictured_emission.h"
 #include "raytrace/display.h"
@@ -50,28 +48,18 @@ std::vector<double> even_steps(double high) {
 // over the facet.
 void even_out_emission(const PatchMesh& mesh, BandArray& B) {
   if (!mesh.textures || !mesh.textures->has_emission()) return;
-  std::map<int, std::pair<Spectrum, float>> sums;  // of each facet: power, W, and area, m^2
   const auto shines = [&](int e) {
     return mesh.textures->has_emission(mesh.facet[e]) &&
            (mesh.emission.row(mesh.patch[e]) > 0.0f).any();
   };
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    if (!shines(e)) continue;
-    auto& [power, area] =
-        sums.try_emplace(mesh.facet[e], Spectrum::Zero(mesh.emission.cols()), 0.0f).first->second;
-    const auto weight = static_cast<float>(mesh.element_area[e]);
-    power += weight * mesh.emission.row(mesh.patch[e]).transpose();
-    area += weight;
-  }
-  const BandArray M = vertex_emission(mesh);
+  const BandArray M = vertex_emission(mesh), mean = facet_emission(mesh);
   std::vector<char> done(static_cast<std::size_t>(mesh.vertex_count()), 0);
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (!shines(e)) continue;
-    const auto& [power, area] = sums.at(mesh.facet[e]);
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       const int v = mesh.corners[e][c];
       if (done[static_cast<std::size_t>(v)]++ != 0) continue;
-      B.row(v) += (power / area).transpose() - M.row(v);
+      B.row(v) += mean.row(mesh.facet[e]) - M.row(v);
     }
   }
 }
