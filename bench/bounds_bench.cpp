@@ -25,7 +25,7 @@
 #include "mesh/build_patches.h"
 #include "mesh/cleaning/planar_regions.h"
 #include "radiosity/solve.h"
-#include "raytrace/probe.h"
+#include "raytrace/readings/probe.h"
 #include "scene/parallel.h"
 
 namespace {

@@ -18,7 +18,7 @@
 #include "mesh/build_patches.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/emitters/emitter_point.h"
-#include "raytrace/camera_ray.h"
+#include "raytrace/cameras/camera_ray.h"
 #include "scene/io/read_scene.h"
 #include "scene/rays/embree_queries.h"
 #include "scene/sampling.h"

@@ -28,7 +28,7 @@
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solve.h"
-#include "raytrace/probe.h"
+#include "raytrace/readings/probe.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 

@@ -1,4 +1,4 @@
-#include "raytrace/compare.h"
+#include "raytrace/display/compare.h"
 
 #include <fmt/format.h>
 

@@ -8,9 +8,9 @@
 
 #include "cli/console.h"
 #include "radiosity/solution/solution.h"
-#include "raytrace/image.h"
-#include "raytrace/layers.h"
-#include "raytrace/light_meter.h"
+#include "raytrace/display/light_meter.h"
+#include "raytrace/pictures/image.h"
+#include "raytrace/pictures/layers.h"
 #include "scene/scene.h"
 #include "viewer/export/appearance.h"
 

@@ -20,7 +20,7 @@
 #include "cli/steps.h"
 #include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/patches/mesh_bounds.h"
-#include "raytrace/encode_png.h"
+#include "raytrace/pictures/encode_png.h"
 #include "raytrace/scene_renderer.h"
 #include "scene/errors.h"
 #include "scene/io/lighting_design.h"

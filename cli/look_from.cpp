@@ -7,8 +7,8 @@
 #include "cli/arguments.h"
 #include "cli/outputs.h"
 #include "cli/quoted.h"
-#include "raytrace/camera_ray.h"
-#include "raytrace/probe.h"
+#include "raytrace/cameras/camera_ray.h"
+#include "raytrace/readings/probe.h"
 #include "scene/sampling.h"
 
 namespace lightwell {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "cli/arguments.h"
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 #include "raytrace/scene_renderer.h"
 
 namespace lightwell {

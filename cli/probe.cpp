@@ -1,4 +1,4 @@
-#include "raytrace/probe.h"
+#include "raytrace/readings/probe.h"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "mesh/elements/element_caster.h"
-#include "raytrace/sure_gather.h"
+#include "raytrace/readings/sure_gather.h"
 #include "scene/errors.h"
 
 namespace lightwell {

@@ -10,7 +10,7 @@
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "cli/time_limit.h"
-#include "raytrace/camera_ray.h"
+#include "raytrace/cameras/camera_ray.h"
 
 namespace lightwell {
 namespace {

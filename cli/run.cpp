@@ -11,7 +11,7 @@
 #include "cli/steps.h"
 #include "cli/time_limit.h"
 #include "mesh/patches/patch_textures.h"
-#include "raytrace/camera_ray.h"
+#include "raytrace/cameras/camera_ray.h"
 
 namespace lightwell {
 namespace fs = std::filesystem;

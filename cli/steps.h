@@ -11,7 +11,7 @@
 #include "cli/report.h"
 #include "cli/time_limit.h"
 #include "radiosity/solve.h"
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 #include "raytrace/scene_renderer.h"
 #include "scene/io/read_scene.h"
 #include "scene/scene.h"

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
-#include "raytrace/light_meter.h"
+#include "raytrace/display/light_meter.h"
 
 namespace lightwell {
 

@@ -17,8 +17,8 @@
 #include "cornell/sightlines.h"
 #include "mesh/cleaning/planar_regions.h"
 #include "radiosity/solution/solution_file.h"
-#include "raytrace/image.h"
-#include "raytrace/probe.h"
+#include "raytrace/pictures/image.h"
+#include "raytrace/readings/probe.h"
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
 

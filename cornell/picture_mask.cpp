@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "raytrace/camera_ray.h"
+#include "raytrace/cameras/camera_ray.h"
 #include "scene/parallel.h"
 
 namespace lightwell {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "cornell/sightlines.h"
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 
 namespace lightwell {
 

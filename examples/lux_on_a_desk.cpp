@@ -5,7 +5,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/solve.h"
-#include "raytrace/lux_grid.h"
+#include "raytrace/readings/lux_grid.h"
 #include "scene/io/luminaires/luminaire_file.h"
 
 using namespace lightwell;

@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "raytrace/camera_ray.h"
-#include "raytrace/shade.h"
+#include "raytrace/cameras/camera_ray.h"
+#include "raytrace/shading/shade.h"
 
 namespace lightwell {
 

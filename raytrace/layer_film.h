@@ -3,9 +3,9 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "raytrace/camera_ray.h"
-#include "raytrace/image.h"
-#include "raytrace/layers.h"
+#include "raytrace/cameras/camera_ray.h"
+#include "raytrace/pictures/image.h"
+#include "raytrace/pictures/layers.h"
 
 namespace lightwell {
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <optional>
 
-#include "raytrace/camera_ray.h"
-#include "raytrace/shade.h"
+#include "raytrace/cameras/camera_ray.h"
+#include "raytrace/shading/shade.h"
 #include "scene/sampling.h"
 
 namespace lightwell {

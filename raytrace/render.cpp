@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "radiosity/journal/journal_phase.h"
-#include "raytrace/camera_ray.h"
+#include "raytrace/cameras/camera_ray.h"
 #include "raytrace/gloss_mask.h"
 #include "raytrace/layer_film.h"
 #include "raytrace/pixel_samples.h"
 #include "raytrace/sampled_rows.h"
-#include "raytrace/shade.h"
+#include "raytrace/shading/shade.h"
 #include "scene/errors.h"
 #include "scene/facet_normals.h"
 #include "scene/facet_relief.h"

@@ -8,8 +8,8 @@
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/journal/run_control.h"
 #include "radiosity/solution/solution.h"
-#include "raytrace/image.h"
-#include "raytrace/layers.h"
+#include "raytrace/pictures/image.h"
+#include "raytrace/pictures/layers.h"
 #include "scene/progress.h"
 
 namespace lightwell {

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "raytrace/gloss_mask.h"
-#include "raytrace/image.h"
 #include "raytrace/layer_film.h"
+#include "raytrace/pictures/image.h"
 #include "raytrace/pixel_samples.h"
 #include "scene/progress.h"
 

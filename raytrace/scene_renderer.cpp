@@ -3,8 +3,8 @@
 #include <utility>
 #include <vector>
 
-#include "raytrace/caustic_map.h"
-#include "raytrace/indirect_slant.h"
+#include "raytrace/caustics/caustic_map.h"
+#include "raytrace/shading/indirect_slant.h"
 
 namespace lightwell {
 

@@ -7,7 +7,7 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/solution/solution.h"
-#include "raytrace/light_meter.h"
+#include "raytrace/display/light_meter.h"
 #include "raytrace/render.h"
 
 namespace lightwell {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cli/lighting/plan_lines.h"
-#include "raytrace/glare.h"
-#include "raytrace/lux_grid.h"
+#include "raytrace/readings/glare.h"
+#include "raytrace/readings/lux_grid.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/luminaires/luminaire_file.h"
 #include "viewer/export/appearance.h"

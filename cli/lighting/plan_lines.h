@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "raytrace/lux_grid.h"
+#include "raytrace/readings/lux_grid.h"
 #include "scene/scene.h"
 
 namespace lightwell {

@@ -9,9 +9,9 @@
 #include <iterator>
 #include <numbers>
 
-#include "raytrace/encode_png.h"
-#include "raytrace/isolux_lines.h"
-#include "raytrace/round_step.h"
+#include "raytrace/pictures/encode_png.h"
+#include "raytrace/readings/isolux_lines.h"
+#include "raytrace/readings/round_step.h"
 #include "scene/photometric_web.h"
 #include "viewer/export/page_data.h"
 

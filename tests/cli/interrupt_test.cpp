@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "radiosity/solution/solution_file.h"
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 #include "tests/cli/program.h"
 #include "tests/sanitizers.h"
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 #include "tests/cli/program.h"
 
 namespace lightwell::output_test {

@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "radiosity/solution/solution_file.h"
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 #include "tests/cli/program.h"
 
 namespace lightwell::picture_test {

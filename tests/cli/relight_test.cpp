@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "radiosity/solution/solution_file.h"
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 #include "tests/cli/program.h"
 
 namespace lightwell::relight_test {

@@ -1,6 +1,6 @@
 // Targets of the files that scenes, pictures and measurements are made of.
-#include "raytrace/image.h"
-#include "raytrace/probe.h"
+#include "raytrace/pictures/image.h"
+#include "raytrace/readings/probe.h"
 #include "scene/errors.h"
 #include "scene/io/luminaires/luminaire_file.h"
 #include "scene/io/pictures/environment_file.h"

@@ -12,7 +12,7 @@
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solve.h"
-#include "raytrace/shade.h"
+#include "raytrace/shading/shade.h"
 #include "scene/coat.h"
 #include "scene/io/read_scene.h"
 #include "scene/optics.h"

@@ -10,8 +10,8 @@
 
 #include "radiosity/solution/relight.h"
 #include "radiosity/solve.h"
-#include "raytrace/dome_on_mesh.h"
 #include "raytrace/render.h"
+#include "raytrace/shading/dome_on_mesh.h"
 #include "tests/raytrace/lit_scene.h"
 
 namespace lightwell::daylight_test {

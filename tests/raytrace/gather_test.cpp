@@ -1,4 +1,4 @@
-#include "raytrace/pixel_gather.h"
+#include "raytrace/shading/pixel_gather.h"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solve.h"
-#include "raytrace/shade.h"
+#include "raytrace/shading/shade.h"
 #include "scene/optics.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"

@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "radiosity/solve.h"
-#include "raytrace/probe.h"
+#include "raytrace/readings/probe.h"
 #include "raytrace/render.h"
 #include "tests/radiosity/test_scenes.h"
 

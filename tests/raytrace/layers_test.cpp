@@ -1,4 +1,4 @@
-#include "raytrace/layers.h"
+#include "raytrace/pictures/layers.h"
 
 #include <gtest/gtest.h>
 

@@ -8,11 +8,11 @@
 #include <span>
 #include <string>
 
-#include "raytrace/camera_ray.h"
-#include "raytrace/image.h"
-#include "raytrace/light_meter.h"
-#include "raytrace/pixel_solid_angle.h"
-#include "raytrace/probe.h"
+#include "raytrace/cameras/camera_ray.h"
+#include "raytrace/cameras/pixel_solid_angle.h"
+#include "raytrace/display/light_meter.h"
+#include "raytrace/pictures/image.h"
+#include "raytrace/readings/probe.h"
 #include "tests/raytrace/lit_scene.h"
 #include "tests/temporary_folder.h"
 

@@ -3,7 +3,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/solution/relight.h"
-#include "raytrace/probe.h"
+#include "raytrace/readings/probe.h"
 #include "raytrace/render.h"
 #include "tests/radiosity/two_lamps.h"
 

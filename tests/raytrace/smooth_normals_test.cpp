@@ -7,7 +7,7 @@
 
 #include "radiosity/paths/caustic_photons.h"
 #include "radiosity/solve.h"
-#include "raytrace/caustic_map.h"
+#include "raytrace/caustics/caustic_map.h"
 #include "scene/facet_normals.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"

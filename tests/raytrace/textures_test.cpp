@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "raytrace/layers.h"
+#include "raytrace/pictures/layers.h"
 #include "scene/parallel.h"
 #include "tests/pictures.h"
 #include "tests/raytrace/lit_scene.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "raytrace/shade.h"
+#include "raytrace/shading/shade.h"
 #include "scene/optics.h"
 #include "tests/raytrace/lit_scene.h"
 

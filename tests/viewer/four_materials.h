@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "radiosity/solve.h"
-#include "raytrace/light_meter.h"
+#include "raytrace/display/light_meter.h"
 #include "raytrace/scene_renderer.h"
 #include "scene/io/read_scene.h"
 

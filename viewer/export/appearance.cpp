@@ -6,9 +6,9 @@
 #include <numbers>
 
 #include "mesh/patches/pictured_emission.h"
-#include "raytrace/display.h"
-#include "raytrace/light_meter.h"
-#include "raytrace/round_step.h"
+#include "raytrace/display/display.h"
+#include "raytrace/display/light_meter.h"
+#include "raytrace/readings/round_step.h"
 #include "scene/coat.h"
 #include "scene/facet_textures.h"
 #include "scene/parallel.h"

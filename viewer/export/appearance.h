@@ -6,8 +6,8 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/solve.h"
-#include "raytrace/image.h"
-#include "raytrace/light_meter.h"
+#include "raytrace/display/light_meter.h"
+#include "raytrace/pictures/image.h"
 #include "scene/sky.h"
 
 namespace lightwell {

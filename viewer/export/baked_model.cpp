@@ -13,7 +13,7 @@
 #include "mesh/patches/mesh_bounds.h"
 #include "mesh/patches/sphere_grid.h"
 #include "radiosity/refine/illuminance_bound.h"
-#include "raytrace/display.h"
+#include "raytrace/display/display.h"
 #include "scene/errors.h"
 #include "scene/io/numbered_names.h"
 #include "scene/rotation_between.h"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "mesh/patches/patch_textures.h"
-#include "raytrace/display.h"
+#include "raytrace/display/display.h"
 #include "scene/facet_textures.h"
 
 namespace lightwell {

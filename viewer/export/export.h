@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "raytrace/light_meter.h"
+#include "raytrace/display/light_meter.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_model.h"
 #include "viewer/export/lightmap.h"

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "raytrace/encode_png.h"
+#include "raytrace/pictures/encode_png.h"
 #include "viewer/export/export.h"
 #include "viewer/export/gltf_parts.h"
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "radiosity/solution/relight.h"
-#include "raytrace/display.h"
-#include "raytrace/encode_png.h"
+#include "raytrace/display/display.h"
+#include "raytrace/pictures/encode_png.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "viewer/export/export.h"

@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "raytrace/display.h"
+#include "raytrace/display/display.h"
 #include "viewer/export/export.h"
 #include "viewer/export/write_whole.h"
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <span>
 
-#include "raytrace/encode_png.h"
+#include "raytrace/pictures/encode_png.h"
 #include "viewer/export/baked_channels.h"
 #include "viewer/export/fan.h"
 #include "viewer/export/write_whole.h"

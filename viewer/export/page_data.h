@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "raytrace/light_meter.h"
+#include "raytrace/display/light_meter.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_model.h"
 

@@ -14,7 +14,7 @@
 
 #include "mesh/patches/mesh_bounds.h"
 #include "radiosity/solution/vtk_messages.h"
-#include "raytrace/display.h"
+#include "raytrace/display/display.h"
 
 namespace lightwell {
 namespace {

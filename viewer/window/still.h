@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "radiosity/solve.h"
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 
 class vtkActor2D;
 class vtkImageData;

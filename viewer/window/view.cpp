@@ -9,7 +9,7 @@
 
 #include "radiosity/solution/relight.h"
 #include "radiosity/solution/vtk_messages.h"
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 #include "scene/errors.h"
 #include "viewer/window/camera_path.h"
 #include "viewer/window/live_solve.h"

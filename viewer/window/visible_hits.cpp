@@ -1,6 +1,6 @@
 #include "viewer/window/visible_hits.h"
 
-#include "raytrace/camera_ray.h"
+#include "raytrace/cameras/camera_ray.h"
 
 namespace lightwell {
 namespace {

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "radiosity/solution/vtk_messages.h"
-#include "raytrace/image.h"
+#include "raytrace/pictures/image.h"
 #include "viewer/window/walk_style.h"
 #include "viewer/window/x_display.h"
 

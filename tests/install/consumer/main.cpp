@@ -3,7 +3,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/solve.h"
-#include "raytrace/probe.h"
+#include "raytrace/readings/probe.h"
 #include "scene/scene.h"
 
 using namespace lightwell;

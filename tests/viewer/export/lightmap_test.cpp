@@ -4,7 +4,7 @@
 
 #include <numbers>
 
-#include "raytrace/probe.h"
+#include "raytrace/readings/probe.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "tests/raytrace/lit_scene.h"

@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "mesh/elements/element_caster.h"
-#include "raytrace/light_meter.h"
+#include "raytrace/display/light_meter.h"
 #include "tests/viewer/in_browser.h"
 #include "tests/viewer/lit_sides.h"
 #include "viewer/export/appearance.h"

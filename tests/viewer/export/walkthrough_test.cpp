@@ -7,7 +7,7 @@
 
 #include "mesh/build_patches.h"
 #include "mesh/elements/element_caster.h"
-#include "raytrace/probe.h"
+#include "raytrace/readings/probe.h"
 #include "tests/viewer/in_browser.h"
 #include "tests/viewer/lit_sides.h"
 #include "tests/viewer/pictured_wall.h"

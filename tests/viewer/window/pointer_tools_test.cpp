@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "raytrace/probe.h"
+#include "raytrace/readings/probe.h"
 #include "scene/facet_textures.h"
 #include "tests/viewer/channel_room.h"
 #include "tests/viewer/pictured_wall.h"

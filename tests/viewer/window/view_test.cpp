@@ -11,8 +11,8 @@
 #include <numbers>
 #include <thread>
 
-#include "raytrace/display.h"
-#include "raytrace/image.h"
+#include "raytrace/display/display.h"
+#include "raytrace/pictures/image.h"
 #include "scene/errors.h"
 #include "tests/temporary_folder.h"
 #include "tests/viewer/pictured_wall.h"

@@ -1,4 +1,4 @@
-// White balance: which light shows as grey. The rule of raytrace/light_meter.cpp.
+// White balance: which light shows as grey. The rule of raytrace/display/light_meter.cpp.
 
 const largest_gain = 64;
 

@@ -1,0 +1,295 @@
+#include "raytrace/readings/lux_grid.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "mesh/patches/mesh_bounds.h"
+#include "scene/errors.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+using Edge = std::pair<int, int>;
+
+/// Facets that lie in one plane.
+struct MeshPlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double area = 0.0;
+  std::vector<const Facet*> facets{};
+};
+
+std::vector<MeshPlane> planes_of(const PolygonMesh& mesh, double size) {
+  constexpr double same_direction = 1.0 - 1e-6;  // 0.08 degrees
+  const double same_place = 1e-5 * size;
+  std::vector<MeshPlane> planes;
+  for (const Facet& facet : mesh.facets) {
+    const Eigen::Vector3d normal = facet_normal(mesh, facet);
+    const Eigen::Vector3d point = mesh.vertices[static_cast<std::size_t>(facet.boundary.front())];
+    auto at = std::ranges::find_if(planes, [&](const MeshPlane& plane) {
+      return plane.normal.dot(normal) > same_direction &&
+             std::abs(plane.normal.dot(point - plane.point)) <= same_place;
+    });
+    if (at == planes.end()) at = planes.insert(at, {.normal = normal, .point = point});
+    at->area += facet_area(mesh, facet);
+    at->facets.push_back(&facet);
+  }
+  return planes;
+}
+
+/// Returns the edges of the outline, each of which belongs to one facet alone.
+std::vector<Edge> outline_of(const MeshPlane& plane) {
+  std::set<Edge> edges;
+  const auto add = [&](const std::vector<int>& loop) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Edge edge{loop[i], loop[(i + 1) % loop.size()]};
+      if (edges.erase({edge.second, edge.first}) == 0) edges.insert(edge);
+    }
+  };
+  for (const Facet* facet : plane.facets) {
+    add(facet->boundary);
+    for (const std::vector<int>& hole : facet->holes) add(hole);
+  }
+  return {edges.begin(), edges.end()};
+}
+
+/// The outline in coordinates of the plane.
+struct FlatOutline {
+  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> edges{};
+
+  bool holds(const Eigen::Vector2d& p, double margin) const {
+    bool inside = false;
+    for (const auto& [a, b] : edges) {
+      const Eigen::Vector2d along = b - a;
+      const double t = std::clamp(along.dot(p - a) / along.squaredNorm(), 0.0, 1.0);
+      if ((p - a - t * along).norm() < margin * (1.0 - 1e-9)) return false;
+      if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+      if (p.x() < a.x() + (p.y() - a.y()) * along.x() / along.y()) inside = !inside;
+    }
+    return inside;
+  }
+};
+
+const MeshPlane& largest(const std::vector<MeshPlane>& planes, const Eigen::Vector3d& up) {
+  constexpr double alike = 1e-6;
+  const MeshPlane* best = &planes.front();
+  for (const MeshPlane& plane : planes) {
+    const bool is_as_large = std::abs(plane.area - best->area) <= alike * best->area;
+    const bool faces_up = plane.normal.dot(up) > best->normal.dot(up) + alike;
+    if (is_as_large ? faces_up : plane.area > best->area) best = &plane;
+  }
+  return *best;
+}
+
+}  // namespace
+
+double greatest_grid_spacing(double length) {
+  constexpr double most = 10.0;
+  return std::min(most, 0.2 * std::pow(5.0, std::log10(length)));
+}
+
+LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
+                 const LuxGridOptions& options) {
+  const Surface& named = scene.surfaces[static_cast<std::size_t>(surface)];
+  const auto* mesh = std::get_if<PolygonMesh>(&named.shape);
+  if (!mesh || mesh->facets.empty()) {
+    throw InputError(fmt::format(
+        "surface '{}' is a sphere, over which there is no plane grid; name a plane surface",
+        named.name));
+  }
+  const MeshPlane plane = largest(planes_of(*mesh, scene_bounds(scene).diagonal()), up);
+  const std::vector<Edge> edges = outline_of(plane);
+  const auto place = [&](int v) { return mesh->vertices[static_cast<std::size_t>(v)]; };
+  LuxGrid grid{.name = named.name, .options = options, .area = plane.area};
+  double longest = 0.0;
+  for (const auto& [a, b] : edges) {
+    const Eigen::Vector3d along = place(b) - place(a);
+    // The first of equally long edges is kept, in spite of rounding.
+    if (along.norm() <= longest * (1.0 + 1e-9)) continue;
+    longest = along.norm();
+    grid.u = along.normalized();
+  }
+  grid.v = plane.normal.cross(grid.u);
+  // Plans of walls stand upright.
+  constexpr double level = 0.1;  // sine of the slope of a plane that counts as level
+  if (std::max(std::abs(grid.u.dot(up)), std::abs(grid.v.dot(up))) > level) {
+    if (std::abs(grid.u.dot(up)) > std::abs(grid.v.dot(up))) {
+      grid.u = std::exchange(grid.v, Eigen::Vector3d(grid.u));
+      grid.u = -grid.u;
+    }
+    if (grid.v.dot(up) < 0.0) {
+      grid.u = -grid.u;
+      grid.v = -grid.v;
+    }
+  }
+  FlatOutline outline;
+  Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector2d high = -low;
+  const auto flat = [&](int v) {
+    const Eigen::Vector3d p = place(v) - plane.point;
+    return Eigen::Vector2d(grid.u.dot(p), grid.v.dot(p));
+  };
+  for (const auto& [a, b] : edges) {
+    outline.edges.emplace_back(flat(a), flat(b));
+    low = low.cwiseMin(flat(a));
+    high = high.cwiseMax(flat(a));
+  }
+  low.array() += options.margin;
+  high.array() -= options.margin;
+  const Eigen::Vector2d size = high - low;
+  if (!(size.minCoeff() > 0.0)) {
+    throw InputError(
+        fmt::format("nothing is left of surface '{}' within a margin of {:g} m; give a smaller one",
+                    named.name, options.margin));
+  }
+  const double longer = size.maxCoeff(), shorter = size.minCoeff();
+  const double step = options.spacing > 0.0
+                          ? options.spacing
+                          : greatest_grid_spacing(longer > 2.0 * shorter ? shorter : longer);
+  grid.options.spacing = step;
+  const auto count = [&](double length) {
+    constexpr int most = 1000;
+    const double cells = std::ceil(length / step * (1.0 - 1e-9));
+    if (!(cells <= most)) {
+      throw InputError(
+          fmt::format("a spacing of {:g} m is too fine for surface '{}', which is {:.4g} m long: "
+                      "a grid has at most {} points a side",
+                      step, named.name, longer, most));
+    }
+    return std::max(1, static_cast<int>(cells));
+  };
+  grid.columns = count(size.x());
+  grid.rows = count(size.y());
+  grid.step_u = size.x() / grid.columns;
+  grid.step_v = size.y() / grid.rows;
+  grid.corner = plane.point + low.x() * grid.u + low.y() * grid.v + options.height * plane.normal;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const Eigen::Vector2d at(grid.step_u * (column + 0.5), grid.step_v * (row + 0.5));
+      if (!outline.holds(low + at, options.margin)) continue;
+      grid.cell.push_back(row * grid.columns + column);
+      grid.points.push_back(
+          {.position = grid.corner + at.x() * grid.u + at.y() * grid.v, .normal = plane.normal});
+    }
+  }
+  if (grid.points.empty()) {
+    throw InputError(fmt::format(
+        "no point of the grid lies on surface '{}'; give a smaller margin or spacing", named.name));
+  }
+  return grid;
+}
+
+LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
+  constexpr int ray_count = 64;
+  const SobolPoints sobol(ray_count);
+  // Rounding decides on which side of a face a point in its plane lies, so points beside it are
+  // tested too. Light inside a body is not light of the plane.
+  constexpr double beside = 1e-5;  // share of the scene's diagonal
+  const double aside = beside * mesh_bounds(caster.mesh()).diagonal();
+  const auto is_inside = [&](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
+    Eigen::Vector3d a, b;
+    tangent_frame(normal, a, b);
+    std::array<Ray, ray_count> rays;
+    std::array<ElementHit, ray_count> hits;
+    for (int i = 0; i < ray_count; ++i) {
+      const Eigen::Array4f u = sobol.point(i, 0);
+      const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
+      rays[static_cast<std::size_t>(i)] = {.origin = position,
+                                           .direction = d.x() * a + d.y() * b + d.z() * normal};
+    }
+    caster.closest_hits(rays, hits);
+    return std::ranges::all_of(
+        hits, [](const ElementHit& hit) { return hit.facet >= 0 && hit.from_back; });
+  };
+  const auto is_buried = [&](const Probe& point) {
+    // Rays from within a surface would meet the surface itself.
+    const Eigen::Vector3d above = point.position + aside * point.normal;
+    const std::array<Eigen::Vector3d, 5> places = {above, above + aside * grid.u,
+                                                   above - aside * grid.u, above + aside * grid.v,
+                                                   above - aside * grid.v};
+    return std::ranges::any_of(
+        places, [&](const Eigen::Vector3d& place) { return is_inside(place, point.normal); });
+  };
+  LuxGrid open = grid;
+  open.cell.clear();
+  open.points.clear();
+  for (std::size_t i = 0; i < grid.points.size(); ++i) {
+    if (is_buried(grid.points[i])) continue;
+    open.cell.push_back(grid.cell[i]);
+    open.points.push_back(grid.points[i]);
+  }
+  return open.points.empty() ? grid : open;
+}
+
+namespace {
+
+// Sets the mean, the extremes and the uniformity of a field from its points.
+void summarise(LuxField& field) {
+  field.mean = field.lux.mean();
+  field.least = field.lux.minCoeff();
+  field.greatest = field.lux.maxCoeff();
+  field.uniformity = field.mean > 0.0 ? field.least / field.mean : 0.0;
+}
+
+// Root mean square of the relative bounds of points. In near darkness the relative error would
+// reach 100 %, so 0.1 of the mean is the least divisor.
+double relative_bound(const LuxField& field) {
+  const Eigen::ArrayXd within = field.lux_within.isNaN().select(0.0, field.lux_within);
+  return std::sqrt((within / field.lux.max(0.1 * field.mean)).square().mean());
+}
+
+}  // namespace
+
+double bound_at(const LuxField& field, double lux) {
+  Eigen::Index at = 0;
+  (field.lux - lux).abs().minCoeff(&at);
+  return field.lux_within[at];
+}
+
+LuxField sum_of(const LuxField& a, const LuxField& b) {
+  // No bound is known where there is no light; then the bound is that of the other part.
+  const auto bound = [](const LuxField& part) {
+    return (part.lux == 0.0).select(0.0, part.lux_within).eval();
+  };
+  LuxField sum{.lux = a.lux + b.lux, .lux_within = bound(a) + bound(b)};
+  sum.lux_within =
+      (sum.lux == 0.0).select(std::numeric_limits<double>::quiet_NaN(), sum.lux_within);
+  summarise(sum);
+  if (!(sum.mean > 0.0)) return sum;
+  sum.point_within = relative_bound(sum);
+  sum.mean_within = (a.mean_within * a.mean + b.mean_within * b.mean) / sum.mean;
+  return sum;
+}
+
+LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
+                      const DirectLight& direct_light, const RadiositySolution& solution,
+                      const LuxGrid& grid, double factor, const GatherOptions& options) {
+  const auto count = static_cast<Eigen::Index>(grid.points.size());
+  ProbeBounds bounds;
+  const BandArray E =
+      probe_irradiance(scene, caster, direct_light, solution, grid.points, options, &bounds);
+  LuxField field{.lux = Eigen::ArrayXd(count), .lux_within = factor * bounds.lux_within};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    field.lux[i] = factor * luminous(scene.bands, E.row(i).transpose());
+  }
+  summarise(field);
+  if (!(field.mean > 0.0)) return field;
+  field.point_within = relative_bound(field);
+  const Eigen::ArrayXd within = field.lux_within.isNaN().select(0.0, field.lux_within);
+  const Eigen::ArrayXd shared = factor * bounds.read_within;
+  const double noise = (within.square() - shared.square()).max(0.0).sum();
+  field.mean_within =
+      std::hypot(std::sqrt(noise) / static_cast<double>(count), shared.mean()) / field.mean;
+  return field;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,155 @@
+#include "raytrace/readings/read_error.h"
+
+#include <algorithm>
+
+#include "mesh/patches/translucency.h"
+#include "radiosity/gather/gap_light.h"
+#include "radiosity/gather/patch_power.h"
+#include "radiosity/paths/light_path.h"
+#include "radiosity/refine/illuminance_bound.h"
+#include "scene/parallel.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int ray_count = 64;
+constexpr int most_bounces = 16;
+// Keeps these random numbers apart from those of gathers.
+constexpr std::uint64_t own_key = 0x4ead;
+
+class ReadErrors {
+ public:
+  // `missed` is the light that a path out of a gap at each patch, met by no ray, may bring, lx.
+  ReadErrors(const LitScene& lit, const BandArray& radiosity, const Eigen::ArrayXf& error,
+             const Eigen::ArrayXd& missed)
+      : mesh_(lit.mesh()),
+        caster_(lit.caster),
+        paths_(lit.scene, lit.caster, most_bounces),
+        gaps_(lit, radiosity, paths_),
+        error_(error),
+        missed_(missed),
+        directions_(ray_count) {}
+
+  double at(const GatherPoint& point, std::uint64_t key) const {
+    double sum = 0.0;
+    for (int i = 0; i < ray_count; ++i) {
+      const Eigen::Array4f u =
+          directions_.point(i, random_key(key, RandomPurpose::gather_rays, own_key));
+      const auto number = static_cast<std::uint64_t>(i);
+      sum += along(point, u, random_key(key, RandomPurpose::gather_paths, number, own_key));
+    }
+    return sum / ray_count;
+  }
+
+ private:
+  // rho e at the end of the path that begins with a direction from `u`, and the light missed if the
+  // path begins in a gap.
+  double along(const GatherPoint& point, const Eigen::Array4f& u, std::uint64_t key) const {
+    Eigen::Vector3d normal = point.normal;
+    Ray ray = cosine_ray(point.position, normal, point.facet, u[0], u[1]);
+    double share = 1.0, missed = 0.0;
+    for (std::uint64_t bounce = 0; bounce < most_bounces; ++bounce) {
+      ElementHit hit;
+      caster_.closest_hits({&ray, 1}, {&hit, 1});
+      if (hit.facet < 0) return missed;
+      if (point.facet < 0 || !gaps_.is_gap(normal, ray, hit)) {
+        return missed + end(ray, hit, share, key);
+      }
+      if (bounce == 0) missed = missed_[mesh_.patch[hit.element]];
+      share *= reflectance(hit.element);
+      normal = element_center(mesh_, hit.element).normal;
+      if (normal.dot(ray.direction) > 0.0) normal = -normal;
+      const auto random = [&](std::uint64_t i) {
+        return static_cast<float>(random_uniform(random_key(key, bounce, i)));
+      };
+      ray = cosine_ray(ray.origin + hit.t * ray.direction, normal, hit.facet, random(1), random(2));
+    }
+    return missed;
+  }
+
+  double end(const Ray& ray, const ElementHit& hit, double share, std::uint64_t key) const {
+    double sum = 0.0;
+    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) sum += share * reflected(hit.element);
+    if (!paths_.is_specular(hit.facet)) return sum;
+    paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+      if (end.element < 0) return;
+      sum += share * static_cast<double>(throughput.mean()) * reflected(end.element);
+    });
+    return sum;
+  }
+
+  double reflectance(int element) const {
+    return double{mesh_.reflectance.row(mesh_.patch[element]).mean()};
+  }
+  double reflected(int element) const {
+    const double sum = reflectance(element) * double{error_[element]};
+    const int patch = mesh_.patch[element];
+    if (mesh_.patch_behind(patch) < 0) return sum;
+    return sum +
+           double{mesh_.transmittance.row(patch).mean()} * double{error_[mesh_.twin[element]]};
+  }
+
+  static Ray cosine_ray(const Eigen::Vector3d& from, const Eigen::Vector3d& normal, int facet,
+                        float u, float v) {
+    Eigen::Vector3d a, b;
+    tangent_frame(normal, a, b);
+    const Eigen::Vector3d d = cosine_direction(u, v);
+    return {
+        .origin = from, .direction = d.x() * a + d.y() * b + d.z() * normal, .origin_group = facet};
+  }
+
+  const PatchMesh& mesh_;
+  const ElementCaster& caster_;
+  LightPaths paths_;
+  GapLight gaps_;
+  const Eigen::ArrayXf& error_;
+  const Eigen::ArrayXd& missed_;
+  SobolPoints directions_;
+};
+
+// Mean of rho E over the lit surfaces of each patch's part, lx.
+Eigen::ArrayXd mean_reflected(const LitScene& lit, const RadiositySolution& solution) {
+  const PatchMesh& mesh = lit.mesh();
+  const SceneParts& parts = solution.parts;
+  const BandArray E = solution.irradiance();
+  const Eigen::ArrayXXd of_patch = patch_integral(mesh, E);
+  Eigen::ArrayXXd sum = Eigen::ArrayXXd::Zero(parts.judged_count(), E.cols());
+  Eigen::ArrayXd area = Eigen::ArrayXd::Zero(parts.judged_count());
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (!(of_patch.row(p) > 0.0).any()) continue;
+    sum.row(parts.judged_with(p)) +=
+        of_patch.row(p) * scattered_share(mesh, p).transpose().cast<double>();
+    area[parts.judged_with(p)] += mesh.area[p];
+  }
+  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(mesh.patch_count());
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const int part = parts.judged_with(p);
+    if (!(area[part] > 0.0)) continue;
+    const Spectrum of_part = (sum.row(part) / area[part]).transpose().cast<float>();
+    mean[p] = luminous(lit.scene.bands, of_part);
+  }
+  return mean;
+}
+
+}  // namespace
+
+Eigen::ArrayXd read_errors(const LitScene& lit, const RadiositySolution& solution,
+                           const BandArray& radiosity, const GatherPoints& points, int rays) {
+  Eigen::ArrayXd errors = Eigen::ArrayXd::Zero(points.size());
+  const Eigen::ArrayXf of_elements = illuminance_errors(lit.mesh(), solution);
+  if (of_elements.size() != lit.mesh().element_count()) return errors;
+  constexpr double unseen = 3.0;  // of n trials, at odds of 19 to 1
+  const Eigen::ArrayXd missed = unseen / std::max(rays, 1) * mean_reflected(lit, solution);
+  const ReadErrors read(lit, radiosity, of_elements, missed);
+  parallel_for(points.size(), 8, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const GatherPoint point = points[i];
+      errors[i] = read.at(point, point.key.value_or(static_cast<std::uint64_t>(i)));
+    }
+  });
+  return errors;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,550 @@
+#include "raytrace/readings/specular_light.h"
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "raytrace/shading/shade.h"
+#include "scene/parallel.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int rays_per_stratum = 4;  // two by two
+
+// A square of Malley's unit square, which cosine_direction() maps to the hemisphere. Squares of
+// level 0 tile the unit square; a square may be split in four of the next level.
+struct Stratum {
+  int level = 0, column = 0, row = 0;
+  int children = -1;  // the first of four; -1: none
+  Spectrum mean{};
+  double own = 0.0;  // standard error of the mean of bands, by the stratum's own rays
+};
+
+// A path by way of smooth surfaces from one of the first rays.
+struct Seed {
+  Eigen::Vector3d direction;     // at the point, unit
+  Eigen::Vector3d origin, exit;  // last straight part; exit is unit
+  double end = 0.0;              // m, of the last straight part
+  double weight = 0.0;           // mean of the bands
+};
+struct Chain {
+  ChainTurns turns{};
+  std::vector<Seed> seeds{};
+  double weight = 0.0;      // sum over seeds
+  double heaviest = 0.0;    // weight of a seed
+  bool is_straight = true;  // light leaves it in the direction in which it came, as from a slab
+  bool is_sought = false;   // Newton's method seeks its paths
+
+  void add(const Seed& seed) {
+    constexpr double unbent = 1e-6;
+    seeds.push_back(seed);
+    weight += seed.weight;
+    heaviest = std::max(heaviest, seed.weight);
+    is_straight = is_straight && (seed.exit - seed.direction).norm() < unbent;
+  }
+};
+using Chains = std::map<std::uint64_t, Chain>;
+
+// A point that a path is to end at, or a direction that the path is to end in.
+struct Goal {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  bool is_direction = false;  // `position` is a unit direction towards a source at infinity
+};
+
+// A path that ends at its goal.
+struct Solution {
+  Eigen::Vector3d direction;  // unit, at the point
+  Eigen::Vector3d exit;       // unit, of the last straight part
+  double distance = 0.0;      // m, of the last straight part, to the goal
+  double spread = 0.0;        // |det A|, m^2/sr; for a direction sr/sr
+  Spectrum weight{};
+};
+
+class PointLight {
+ public:
+  PointLight(const LitScene& lit, const RayTree& tree, const GatherPoint& at,
+             const SpecularLightOptions& options, std::uint64_t key)
+      : lit_(lit),
+        tree_(tree),
+        at_(at),
+        options_(options),
+        key_(key),
+        bands_(lit.scene.bands.count()) {
+    frame_.col(2) = at.normal;
+    Eigen::Vector3d a, b;
+    tangent_frame(at.normal, a, b);
+    frame_.col(0) = a;
+    frame_.col(1) = b;
+  }
+
+  // Adds the light to E and returns the variance of the mean of its bands.
+  double gather(Spectrum& E) {
+    first_strata();
+    if (!has_specular_) return 0.0;
+    choose_chains();
+    const Spectrum lamps = lamps_without_surface();
+    split_around_emitters();
+    const double variance = refine((lamps / std::numbers::pi_v<float>).mean());
+    Spectrum sum = Spectrum::Zero(bands_);
+    for (const Stratum& s : strata_) {
+      if (s.children < 0) sum += s.mean * static_cast<float>(area(s));
+    }
+    E += std::numbers::pi_v<float> * sum + lamps;
+    return std::numbers::pi * std::numbers::pi * variance;
+  }
+
+ private:
+  static constexpr int first_side = 32;
+
+  Eigen::Vector3d direction(double u, double v) const {
+    return frame_ * cosine_direction(static_cast<float>(u), static_cast<float>(v));
+  }
+  Ray ray(const Eigen::Vector3d& direction) const {
+    return {.origin = at_.position, .direction = direction, .origin_group = at_.facet};
+  }
+
+  static double side(const Stratum& s) { return std::ldexp(1.0 / first_side, -s.level); }
+  static double area(const Stratum& s) { return side(s) * side(s); }
+
+  // Traces a stratum's rays. `chains` gets the paths of these rays; null: not wanted.
+  void sample(Stratum& s, Chains* chains) {
+    s.mean = Spectrum::Zero(bands_);
+    std::array<double, rays_per_stratum> value{};
+    for (int i = 0; i < rays_per_stratum; ++i) {
+      const std::uint64_t key =
+          random_key(key_, RandomPurpose::specular_light, static_cast<std::uint64_t>(rays_++));
+      const double u = side(s) * (s.column + 0.5 * (i % 2 + random_uniform(key)));
+      const double v = side(s) * (s.row + 0.5 * (i / 2 + random_uniform(random_key(key, 1))));
+      const Eigen::Vector3d d = direction(std::min(u, almost_one), std::min(v, almost_one));
+      std::function<void(const SpecularSegment&)> visit;
+      if (chains) {
+        visit = [&](const SpecularSegment& part) {
+          has_specular_ = true;
+          if (part.turns.count == 0) return;
+          Chain& chain = (*chains)[part.chain];
+          chain.turns = part.turns;
+          const double length = part.ray.direction.norm();
+          chain.add({.direction = d.normalized(),
+                     .origin = part.ray.origin,
+                     .exit = part.ray.direction / length,
+                     .end = part.end * length,
+                     .weight = static_cast<double>(part.weight.mean())});
+        };
+      }
+      const Spectrum L = tree_.trace_lamps(ray(d), key, visit);
+      s.mean += L / static_cast<float>(rays_per_stratum);
+      value[static_cast<std::size_t>(i)] = L.mean();
+    }
+    double mean = 0.0, square = 0.0;
+    for (const double x : value) mean += x / rays_per_stratum;
+    for (const double x : value) square += (x - mean) * (x - mean);
+    has_specular_ = has_specular_ || mean > 0.0;
+    s.own = std::sqrt(square / (rays_per_stratum * (rays_per_stratum - 1)));
+  }
+
+  void first_strata() {
+    for (int row = 0; row < first_side; ++row) {
+      for (int column = 0; column < first_side; ++column) {
+        strata_.push_back({.column = column, .row = row});
+        sample(strata_.back(), &chains_);
+      }
+    }
+  }
+
+  // Chooses the chains that are sought, the heaviest of both kinds. Chains through parallel faces
+  // are many, since light goes to and fro between any two of them; see all_straight() for the
+  // others.
+  void choose_chains() {
+    constexpr std::size_t most = 256;
+    std::array<std::vector<Chain*>, 2> kinds;
+    for (auto& [key, chain] : chains_) kinds[chain.is_straight ? 1 : 0].push_back(&chain);
+    for (std::vector<Chain*>& kind : kinds) {
+      std::ranges::stable_sort(
+          kind, [](const Chain* a, const Chain* b) { return a->weight > b->weight; });
+      if (kind.size() > most) kind.resize(most);
+      for (Chain* chain : kind) chain->is_sought = true;
+    }
+  }
+
+  void split(int i) {
+    const Stratum parent = strata_[static_cast<std::size_t>(i)];
+    strata_[static_cast<std::size_t>(i)].children = static_cast<int>(strata_.size());
+    Spectrum change = -parent.mean;
+    for (int k = 0; k < 4; ++k) {
+      strata_.push_back({.level = parent.level + 1,
+                         .column = 2 * parent.column + k % 2,
+                         .row = 2 * parent.row + k / 2});
+      sample(strata_.back(), nullptr);
+      change += 0.25f * strata_.back().mean;
+    }
+    // Neighbours that are not split compare themselves with these squares: half of an emitter may
+    // lie in one whose own rays missed it.
+    for (int up = 0; up <= parent.level; ++up, change *= 0.25f) {
+      const int around = stratum_at(parent.level - up, parent.column >> up, parent.row >> up);
+      strata_[static_cast<std::size_t>(around)].mean += change;
+    }
+  }
+
+  // Returns the stratum of a square, split or not, or the smallest one around the square.
+  int stratum_at(int level, int column, int row) const {
+    int i = (row >> level) * first_side + (column >> level);
+    for (int down = level - 1; down >= 0; --down) {
+      const int children = strata_[static_cast<std::size_t>(i)].children;
+      if (children < 0) break;
+      i = children + 2 * ((row >> down) & 1) + ((column >> down) & 1);
+    }
+    return i;
+  }
+
+  // Returns the standard error of a stratum's mean. Where an outline crosses a stratum, its few
+  // rays may agree by chance. The share p of the stratum before the outline is as likely to be any,
+  // so the expected squared error is 2 int p^4 (1 - p)^2 dp = 2/105 of the squared step.
+  double error(const Stratum& s) const {
+    constexpr double chance = 2.0 / 105.0;
+    const int end = first_side << s.level;
+    double step = 0.0;
+    for (int n = 0; n < 9; ++n) {
+      const int column = s.column + n % 3 - 1, row = s.row + n / 3 - 1;
+      if (column < 0 || row < 0 || column >= end || row >= end) continue;
+      const Stratum& other = strata_[static_cast<std::size_t>(stratum_at(s.level, column, row))];
+      step = std::max(step, static_cast<double>(std::abs(s.mean.mean() - other.mean.mean())));
+    }
+    return std::sqrt(s.own * s.own + chance * step * step);
+  }
+
+  // Splits the strata that differ most, in rounds, until the estimated error or the number of rays
+  // is reached. `known` is light that strata do not have to find. Returns the variance of the sum.
+  double refine(double known) {
+    const int most = rays_ + options_.most_rays;
+    while (true) {
+      double mean = known, variance = 0.0, worst = 0.0;
+      std::vector<double> deviation(strata_.size(), 0.0);
+      for (std::size_t i = 0; i < strata_.size(); ++i) {
+        const Stratum& s = strata_[i];
+        if (s.children >= 0) continue;
+        deviation[i] = area(s) * error(s);
+        mean += static_cast<double>(s.mean.mean()) * area(s);
+        variance += deviation[i] * deviation[i];
+        worst = std::max(worst, deviation[i]);
+      }
+      if (rays_ >= most || std::sqrt(variance) <= options_.accuracy * mean) return variance;
+      bool is_split = false;
+      for (std::size_t i = 0; i < deviation.size() && rays_ < most; ++i) {
+        if (deviation[i] < 0.25 * worst || deviation[i] <= 0.0 || strata_[i].level >= deepest) {
+          continue;
+        }
+        split(static_cast<int>(i));
+        is_split = true;
+      }
+      if (!is_split) return variance;
+    }
+  }
+
+  // Offset of a path from its goal across its last straight part: m, or sines for a direction.
+  static Eigen::Vector2d offset(const Goal& goal, const Eigen::Vector3d& origin,
+                                const Eigen::Vector3d& exit, const Eigen::Matrix3d& axes) {
+    if (goal.is_direction) {
+      const Eigen::Vector3d d = exit - goal.position;
+      return {d.dot(axes.col(0)), d.dot(axes.col(1))};
+    }
+    // Where the path crosses the plane through the goal across axes.col(2).
+    const double along = exit.dot(axes.col(2));
+    const double t = (goal.position - origin).dot(axes.col(2)) / along;
+    const Eigen::Vector3d d = origin + t * exit - goal.position;
+    return {d.dot(axes.col(0)), d.dot(axes.col(1))};
+  }
+
+  struct Traced {
+    Eigen::Vector3d origin, exit;
+    double end = 0.0;
+    Spectrum weight{};
+    Media media{};
+  };
+  std::optional<Traced> trace(const Eigen::Vector3d& direction, std::uint64_t chain,
+                              const ChainTurns& turns) const {
+    std::optional<Traced> found;
+    if (!(direction.dot(at_.normal) > 0.0)) return found;
+    tree_.trace_chain(ray(direction), turns, [&](const SpecularSegment& part) {
+      if (part.chain != chain) return;
+      found = Traced{.origin = part.ray.origin,
+                     .exit = part.ray.direction.normalized(),
+                     .end = part.end * part.ray.direction.norm(),
+                     .weight = part.weight,
+                     .media = part.media};
+    });
+    return found;
+  }
+
+  // Newton's method from the nearest of the first rays; empty where the chain does not lead to the
+  // goal, or where another surface hides the goal (`clearance`, m, before it).
+  std::optional<Solution> solve(const Goal& goal, std::uint64_t key, const Chain& chain,
+                                double clearance) const {
+    const auto miss = [&](const Seed& seed) {
+      const Eigen::Vector3d to = goal.is_direction
+                                     ? goal.position
+                                     : Eigen::Vector3d((goal.position - seed.origin).normalized());
+      return -to.dot(seed.exit.normalized());
+    };
+    const auto& nearest = *std::ranges::min_element(
+        chain.seeds, [&](const Seed& a, const Seed& b) { return miss(a) < miss(b); });
+    Eigen::Vector3d w = nearest.direction.normalized();
+    auto path = trace(w, key, chain.turns);
+    constexpr int most_steps = 20;
+    // Hits are known to about 1e-7 of their distance, and a difference over 1e-3 rad is exact to
+    // 1e-6 where the chain is flat.
+    constexpr double probe_angle = 1e-3;
+    for (int step = 0; path && step < most_steps; ++step) {
+      Eigen::Matrix3d axes;
+      axes.col(2) = path->exit;
+      Eigen::Vector3d a, b;
+      tangent_frame(path->exit, a, b);
+      axes.col(0) = a;
+      axes.col(1) = b;
+      const Eigen::Vector2d r = offset(goal, path->origin, path->exit, axes);
+      Eigen::Vector3d p, q;
+      tangent_frame(w, p, q);
+      const auto derivative = [&](const Eigen::Vector3d& side) -> std::optional<Eigen::Vector2d> {
+        const auto value = [&](double angle) -> std::optional<Eigen::Vector2d> {
+          const auto beside = trace((w + angle * side).normalized(), key, chain.turns);
+          if (!beside) return std::nullopt;
+          return offset(goal, beside->origin, beside->exit, axes);
+        };
+        const auto above = value(probe_angle), below = value(-probe_angle);
+        if (above && below) return (*above - *below) / (2.0 * probe_angle);
+        if (above) return (*above - r) / probe_angle;
+        if (below) return (r - *below) / probe_angle;
+        return std::nullopt;
+      };
+      const auto dp = derivative(p), dq = derivative(q);
+      if (!dp || !dq) return std::nullopt;
+      Eigen::Matrix2d A;
+      A << *dp, *dq;
+      const double det = A.determinant();
+      if (!(std::abs(det) > 0.0)) return std::nullopt;
+      const double distance =
+          goal.is_direction ? 0.0 : (goal.position - path->origin).dot(path->exit);
+      const double scale = goal.is_direction ? 1.0 : std::max(distance, clearance);
+      if (r.norm() <= 1e-6 * scale) {
+        const bool is_hidden = goal.is_direction
+                                   ? std::isfinite(path->end)
+                                   : distance <= 0.0 || path->end < distance - clearance;
+        if (is_hidden) return std::nullopt;
+        return Solution{
+            .direction = w,
+            .exit = path->exit,
+            .distance = distance,
+            .spread = std::abs(det),
+            .weight =
+                goal.is_direction
+                    ? path->weight
+                    : Spectrum(path->weight * path->media.passed(lit_.scene, -1, false, distance))};
+      }
+      Eigen::Vector2d move = -A.inverse() * r;
+      if (!(move.norm() < 1e6)) return std::nullopt;
+      if (move.norm() > 0.5) move *= 0.5 / move.norm();
+      std::optional<Traced> next;
+      Eigen::Vector3d moved = w;
+      for (int halving = 0; halving < 8 && !next; ++halving, move *= 0.5) {
+        moved = (w + move.x() * p + move.y() * q).normalized();
+        next = trace(moved, key, chain.turns);
+      }
+      path = next;
+      w = moved;
+    }
+    return std::nullopt;
+  }
+
+  // Light of lamps without surface, and of the sun, by way of smooth surfaces.
+  Spectrum lamps_without_surface() const {
+    Spectrum E = Spectrum::Zero(bands_);
+    for (const FreeSource& source : lit_.direct_light.free_sources()) {
+      if (source.is_dome() || !source.is_on()) continue;
+      const int side = has_sharp_shadows(source) ? 1 : opening_side;
+      for (int k = 0; k < side * side; ++k) {
+        const double u = (k % side + 0.5) / side, v = (k / side + 0.5) / side;
+        E += lamp_light(source, u, v) / static_cast<float>(side * side);
+      }
+    }
+    return E;
+  }
+
+  Spectrum lamp_light(const FreeSource& source, double u, double v) const {
+    Spectrum E = Spectrum::Zero(bands_);
+    const SourceSample seen = sample_source(source, at_.position, u, v);
+    const auto* lamp = std::get_if<LampLight>(&source.shape);
+    Goal goal{.position = seen.direction, .is_direction = true};
+    double clearance = 0.0;
+    if (lamp) {
+      clearance = lamp->clearance;
+      goal = {.position = at_.position + (seen.distance + clearance) * seen.direction};
+    }
+    Spectrum straight = Spectrum::Zero(bands_);
+    std::vector<std::uint64_t> found;  // straight chains, ascending
+    Eigen::Vector3d towards = Eigen::Vector3d::Zero();
+    for (const auto& [key, chain] : chains_) {
+      if (!chain.is_sought) continue;
+      const auto path = solve(goal, key, chain, clearance);
+      if (!path) continue;
+      double intensity = 1.0;
+      if (lamp) {
+        // The same point of the lamp, from a metre away in the direction of the path.
+        const SourceSample near = sample_source(source, goal.position - path->exit, u, v);
+        const double r = near.distance + clearance;
+        intensity = near.irradiance * r * r;
+      }
+      const double kernel = intensity * path->direction.dot(at_.normal) / path->spread;
+      (chain.is_straight ? straight : E) +=
+          path->weight * source.light * static_cast<float>(kernel);
+      if (!chain.is_straight) continue;
+      found.push_back(key);
+      towards = path->direction;
+    }
+    if (found.empty()) return E;
+    return E + static_cast<float>(all_straight(goal, towards, found, clearance)) * straight;
+  }
+
+  // Light of all straight chains over that of the chains in `found`, by the first rays within ten
+  // degrees of `towards` whose last part passes the goal: chains through parallel faces lead to the
+  // goal from nearly the same direction.
+  double all_straight(const Goal& goal, const Eigen::Vector3d& towards,
+                      const std::vector<std::uint64_t>& found, double clearance) const {
+    const double near = std::cos(std::numbers::pi / 18.0);
+    double all = 0.0, of_found = 0.0;
+    for (const auto& [key, chain] : chains_) {
+      if (!chain.is_straight) continue;
+      const bool is_found = std::ranges::binary_search(found, key);
+      for (const Seed& seed : chain.seeds) {
+        if (seed.direction.dot(towards) < near) continue;
+        const double distance = (goal.position - seed.origin).dot(seed.exit);
+        const bool passes = goal.is_direction ? !std::isfinite(seed.end)
+                                              : distance > 0.0 && seed.end >= distance - clearance;
+        if (!passes) continue;
+        all += seed.weight;
+        if (is_found) of_found += seed.weight;
+      }
+    }
+    constexpr double most = 2.0;
+    return of_found > 0.0 ? std::min(most, all / of_found) : 1.0;
+  }
+
+  // Splits the strata in which emitters are seen by way of smooth surfaces until a stratum is not
+  // larger than the emitter.
+  void split_around_emitters() {
+    const auto& emitters = lit_.direct_light.emitters();
+    if (emitters.size() > most_sought) return;
+    for (const Emitter& emitter : emitters) {
+      Eigen::Vector3d middle = emitter.sphere.center;
+      if (!emitter.is_sphere) {
+        middle.setZero();
+        for (const Eigen::Vector3d& corner : emitter.loops.front()) middle += corner;
+        middle /= static_cast<double>(emitter.loops.front().size());
+      }
+      const double radius = emitter.is_sphere ? emitter.sphere.radius : std::sqrt(emitter.area);
+      for (const auto& [key, chain] : chains_) {
+        if (!chain.is_sought || chain.heaviest < least_sought) continue;
+        const auto path = solve({.position = middle}, key, chain, 2.0 * radius);
+        if (!path) continue;
+        const double facing = emitter.is_sphere ? 1.0 : std::abs(path->exit.dot(emitter.normal));
+        const double cosine = path->direction.dot(at_.normal);
+        const double share = emitter.area * facing * cosine / (path->spread * std::numbers::pi);
+        split_around(path->direction, 0.25 * share);
+      }
+    }
+  }
+
+  // Splits the stratum of a direction until its area is `share` at most.
+  void split_around(const Eigen::Vector3d& d, double share) {
+    const Eigen::Vector3d local = frame_.transpose() * d;
+    const Eigen::Vector2d at = square_point(local.x(), local.y());
+    while (rays_ < first_rays + options_.most_rays / 2) {
+      constexpr int finest = first_side << deepest;
+      const int i = stratum_at(deepest, std::min(static_cast<int>(at.x() * finest), finest - 1),
+                               std::min(static_cast<int>(at.y() * finest), finest - 1));
+      const Stratum& s = strata_[static_cast<std::size_t>(i)];
+      if (area(s) <= share || s.level >= deepest) return;
+      split(i);
+    }
+  }
+
+  // Inverse of cosine_direction().
+  static Eigen::Vector2d square_point(double x, double y) {
+    const double r = std::hypot(x, y);
+    if (!(r > 0.0)) return {0.5, 0.5};
+    constexpr double four_over_pi = 4.0 * std::numbers::inv_pi;
+    double a = 0.0, b = 0.0;
+    if (std::abs(x) > std::abs(y)) {
+      a = std::copysign(r, x);
+      b = a * four_over_pi * std::atan(y / x);
+    } else {
+      b = std::copysign(r, y);
+      a = b * four_over_pi * std::atan(x / y);
+    }
+    return {0.5 * (a + 1.0), 0.5 * (b + 1.0)};
+  }
+
+  static constexpr double least_sought = 1e-2;  // of chains in which emitters are sought
+  static constexpr int first_rays = first_side * first_side * rays_per_stratum;
+  static constexpr int opening_side = 3;           // points of a lamp's opening along each side
+  static constexpr std::size_t most_sought = 256;  // emitters that are looked for one by one
+  static constexpr int deepest = 11;               // level; float directions have no more digits
+  static constexpr double almost_one = 1.0 - 1e-7;
+
+  const LitScene& lit_;
+  const RayTree& tree_;
+  const GatherPoint& at_;
+  const SpecularLightOptions& options_;
+  std::uint64_t key_;
+  int bands_, rays_ = 0;
+  bool has_specular_ = false;
+  Eigen::Matrix3d frame_;
+  std::vector<Stratum> strata_{};
+  Chains chains_{};
+};
+
+}  // namespace
+
+SpecularIrradiance specular_irradiance(const LitScene& lit, const RadiositySolution& solution,
+                                       std::span<const GatherPoint> points,
+                                       const SpecularLightOptions& options) {
+  const auto count = static_cast<Eigen::Index>(points.size());
+  const int bands = lit.scene.bands.count();
+  SpecularIrradiance result{.irradiance = BandArray::Zero(count, bands),
+                            .variance = Eigen::ArrayXf::Zero(count)};
+  const auto& materials = lit.scene.materials;
+  const auto is_specular = [](const Material& material) { return material.is_specular(); };
+  if (std::ranges::none_of(materials, is_specular) || lit.direct_light.light_count() == 0) {
+    return result;
+  }
+  // The mean over many directions needs few branches of each.
+  const RenderOptions tree_options{.max_depth = options.max_depth,
+                                   .min_contribution = 1e-2f,
+                                   .slant = std::make_shared<const BandArray>()};
+  const RayTree tree(lit.scene, lit.caster, lit.direct_light, solution, tree_options);
+  std::atomic<int> done = 0;
+  parallel_for(static_cast<int>(count), 1, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const GatherPoint& at = points[static_cast<std::size_t>(i)];
+      const std::uint64_t key = random_key(at.key.value_or(static_cast<std::uint64_t>(i)),
+                                           RandomPurpose::specular_light, options.replica);
+      Spectrum E = Spectrum::Zero(bands);
+      result.variance[i] = static_cast<float>(PointLight(lit, tree, at, options, key).gather(E));
+      result.irradiance.row(i) = E.transpose();
+      report(options.progress, "mirrored light", static_cast<double>(++done) / count);
+    }
+  });
+  return result;
+}
+
+}  // namespace lightwell

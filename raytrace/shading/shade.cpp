@@ -1,0 +1,435 @@
+#include "raytrace/shading/shade.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+
+#include "radiosity/gather/final_gather.h"
+#include "raytrace/shading/indirect_slant.h"
+#include "scene/optics.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+// Effort of one of many samples, as a share of the rays of a sample that stands alone.
+constexpr float share_of_many = 1.0f / 16.0f;
+
+int root_facet(std::vector<int>& parent, int i) {
+  while (parent[i] != i) i = parent[i] = parent[parent[i]];
+  return i;
+}
+
+// Returns the smooth surface of each facet: facets that share mesh vertices belong together, so
+// that the facets of a tessellated column do not count as edges.
+std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
+  std::vector<int> parent(facet_count);
+  std::iota(parent.begin(), parent.end(), 0);
+  std::vector<int> facet_of_vertex(mesh.vertex_count(), -1);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int facet = mesh.facet[e];
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      int& other = facet_of_vertex[mesh.corners[e][c]];
+      if (other < 0) other = facet;
+      parent[root_facet(parent, facet)] = root_facet(parent, other);
+    }
+  }
+  for (int f = 0; f < facet_count; ++f) parent[f] = root_facet(parent, f);
+  return parent;
+}
+
+// Returns the part of SpecularSegment::chain that stands for a facet. Facets of one plane have the
+// same; so have all facets of a curved surface.
+std::uint64_t chain_key(bool is_curved, int surface, const Eigen::Vector3d& normal,
+                        const Eigen::Vector3d& point, double diagonal) {
+  constexpr double steps = 1e5;  // of directions, and of distances to the scene's diagonal
+  if (is_curved) return random_key(static_cast<std::uint64_t>(surface), 1);
+  const auto rounded = [](double x) {
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(steps * x)));
+  };
+  return random_key(random_key(rounded(normal.x()), rounded(normal.y()), rounded(normal.z())),
+                    rounded(normal.dot(point) / diagonal), 2);
+}
+
+}  // namespace
+
+RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+                 const RadiositySolution& solution, const RenderOptions& options)
+    : scene_(scene),
+      caster_(caster),
+      direct_light_(direct_light),
+      solution_(solution),
+      options_(options),
+      textures_(std::make_shared<const FacetTextures>(scene)),
+      pictured_emission_(caster.mesh()),
+      normals_(scene),
+      relief_(scene),
+      with_layers_(std::any_of(options.layers.begin(), options.layers.end(),
+                               [](Layer layer) { return first_sampled_column(layer) >= 0; })),
+      white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
+      gloss_points_(gloss_point_count),
+      lamps_(direct_light),
+      openings_(scene, direct_light),
+      bases_(scene.materials) {
+  if (textures_->is_empty()) textures_ = nullptr;
+  constexpr double rounding = 1e-6;  // share of the scene's diagonal
+  if (!normals_.is_empty()) least_lift_ = rounding * scene_bounds(scene).diagonal();
+  if (options.pass == Pass::gather) {
+    gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
+  }
+  if (!relief_.is_empty() && options.pass != Pass::gather) {
+    slant_ = options.slant ? options.slant
+                           : std::make_shared<const BandArray>(indirect_slant(
+                                 scene, caster, direct_light, solution, options.max_depth));
+  }
+  if (options.pass == Pass::automatic) dome_ = dome_on_mesh(caster.mesh(), direct_light, solution);
+  if (needs_caustic_photons(solution, options)) {
+    caustics_ = options.caustics ? options.caustics
+                                 : trace_caustics(scene, caster, direct_light, options.photons,
+                                                  options.max_depth, options.run.progress);
+  }
+  for (const Material& material : scene.materials) {
+    const auto& glass = material.dielectric;
+    absorbs_ = absorbs_ || (glass && (glass->absorption > 0.0f).any());
+    auto& of_sides = lobes_.emplace_back();
+    for (const bool is_back : {false, true}) {
+      if (material.gloss_roughness() > 0.0f) of_sides[is_back].emplace(material, is_back);
+    }
+  }
+  const auto is_rough_mirror = [](const Material& material) {
+    return material.gloss_roughness() > 0.0f && !material.dielectric;
+  };
+  if (std::any_of(scene.materials.begin(), scene.materials.end(), is_rough_mirror)) {
+    bright_ =
+        BrightPatches(scene, caster, gatherable_radiosity(caster.mesh(), direct_light, solution));
+  }
+  for (const FacetRef& ref : scene_facets(scene)) {
+    const Surface& surface = scene.surfaces[ref.surface];
+    FacetShape shape{.material = surface.material};
+    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+      shape.is_sphere = true;
+      shape.point = sphere->center;
+    } else {
+      const auto& polygons = std::get<PolygonMesh>(surface.shape);
+      const Facet& facet = polygons.facets[ref.facet];
+      shape.point = polygons.vertices[facet.boundary.front()];
+      shape.normal = facet_normal(polygons, facet);
+    }
+    facets_.push_back(shape);
+  }
+  const auto joined = smooth_surfaces(caster.mesh(), static_cast<int>(facets_.size()));
+  const double diagonal = scene_bounds(scene).diagonal();
+  for (std::size_t f = 0; f < facets_.size(); ++f) {
+    FacetShape& shape = facets_[f];
+    shape.smooth_surface = joined[f];
+    shape.chain = chain_key(shape.is_sphere || normals_.is_given(static_cast<int>(f)), joined[f],
+                            shape.normal, shape.point, diagonal);
+  }
+}
+
+RaySample RayTree::trace(const Ray& ray, std::uint64_t key, float effort,
+                         const PixelCone& cone) const {
+  const int bands = scene_.bands.count();
+  TreeState state{.result = {.radiance = Spectrum::Zero(bands)},
+                  .key = key,
+                  .effort = effort,
+                  .caster = &caster_,
+                  .gloss_key = key};
+  follow({.ray = ray, .weight = Spectrum::Ones(bands), .cone = cone}, state);
+  return state.result;
+}
+
+RaySample RayTree::trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
+                                     const ElementCaster& caster, const PixelCone& cone) const {
+  const int bands = scene_.bands.count();
+  TreeState state{.result = {.radiance = Spectrum::Zero(bands)},
+                  .key = random_key(key, static_cast<std::uint64_t>(number)),
+                  .effort = share_of_many,
+                  .caster = &caster,
+                  .number = number,
+                  .gloss_key = key};
+  follow({.ray = ray, .weight = Spectrum::Ones(bands), .cone = cone}, state);
+  return state.result;
+}
+
+Spectrum RayTree::trace_lamps(const Ray& ray, std::uint64_t key,
+                              const std::function<void(const SpecularSegment&)>& visit) const {
+  const int bands = scene_.bands.count();
+  TreeState state{.result = {.radiance = Spectrum::Zero(bands)},
+                  .key = key,
+                  .caster = &caster_,
+                  .lamps_alone = true,
+                  .visit = visit ? &visit : nullptr,
+                  .gloss_key = key};
+  follow({.ray = ray, .weight = Spectrum::Ones(bands)}, state);
+  return state.result.radiance;
+}
+
+void RayTree::trace_chain(const Ray& ray, const ChainTurns& turns,
+                          const std::function<void(const SpecularSegment&)>& visit) const {
+  TreeState state{
+      .caster = &caster_, .shades = false, .lamps_alone = true, .visit = &visit, .turns = &turns};
+  follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count())}, state);
+}
+
+// Traces a ray without shading: the result has no radiance.
+RaySample RayTree::outline(const Ray& ray, const PixelCone& cone) const {
+  TreeState state{.caster = &caster_, .shades = false};
+  follow({.ray = ray, .weight = Spectrum::Ones(scene_.bands.count()), .cone = cone}, state);
+  return state.result;
+}
+
+void RayTree::follow(Branch branch, TreeState& state) const {
+  ElementHit hit;
+  state.caster->closest_hits({&branch.ray, 1}, {&hit, 1});
+  RaySample& result = state.result;
+  if (state.visit && branch.is_sharp && !branch.is_direct) {
+    (*state.visit)({.ray = branch.ray,
+                    .end = hit.facet < 0 ? std::numeric_limits<double>::infinity() : hit.t,
+                    .weight = branch.weight,
+                    .media = branch.media,
+                    .chain = branch.chain,
+                    .turns = branch.turns});
+  }
+  if (!openings_.empty() && shows_lamp(branch, hit, state)) return;
+  if (!state.lamps_alone && branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
+    const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
+    result.fingerprint = random_key(result.fingerprint, branch.node,
+                                    static_cast<std::uint64_t>(seen), hit.from_back);
+  }
+  if (hit.facet < 0) return add_background(branch, state);
+  const ShadingPoint at = shading_point(branch.ray, hit, *state.caster);
+  if (absorbs_) {
+    branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
+                                         (at.position - branch.ray.origin).norm());
+  }
+  if (state.shades && with_layers_ && branch.node == 1) {
+    const Eigen::Vector3d smooth = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
+    const Eigen::Vector3d normal = bent_normal(branch, hit, at, smooth, state);
+    result.layers.segment<3>(first_sampled_column(Layer::normal)) = normal.cast<float>();
+  }
+  if (state.shades && hit.element >= 0) {
+    if (state.lamps_alone) {
+      shade_lamp(branch, hit, at, state);
+    } else {
+      shade(branch, hit, at, state);
+    }
+  }
+  split(branch, hit, at, state);
+}
+
+// Adds the radiance of the opening of a luminaire where it hides the hit. Rough surfaces sample
+// lamps in add_free_source().
+bool RayTree::shows_lamp(const Branch& branch, const ElementHit& hit, TreeState& state) const {
+  if (state.lamps_alone || !branch.is_sharp) return false;
+  const double end = hit.facet < 0 ? std::numeric_limits<double>::infinity() : hit.t;
+  Ray ray = branch.ray;
+  ray.direction.normalize();
+  const auto seen = openings_.first(ray, end * branch.ray.direction.norm());
+  if (!seen) return false;
+  if (branch.weight.maxCoeff() >= options_.contrast) {
+    constexpr std::uint64_t of_lamps = std::uint64_t{1} << 32;  // beyond all smooth surfaces
+    state.result.fingerprint = random_key(state.result.fingerprint, branch.node,
+                                          of_lamps + static_cast<std::uint64_t>(seen->lamp), false);
+  }
+  if (state.shades) add_seen(branch, seen->radiance, state);
+  return true;
+}
+
+// Adds radiance of the sky, and of the sun except off rough surfaces, which sample the sun in
+// add_free_source().
+void RayTree::add_background(const Branch& branch, TreeState& state) const {
+  if (!state.shades || !scene_.sky || (state.lamps_alone && branch.is_sharp)) return;
+  const Eigen::Vector3d direction = branch.ray.direction.normalized();
+  Spectrum L = Spectrum::Zero(scene_.bands.count());
+  for (const FreeSource& source : direct_light_.free_sources()) {
+    if (source.is_dome()) {
+      if (state.lamps_alone) continue;
+      Spectrum dome = source.light * sky_radiance(*scene_.sky, direction);
+      if (branch.sky) {
+        const double aimed = direct_light_.sky()->density(*branch.sky, direction);
+        dome *= static_cast<float>(branch.sky_lobe_density / (branch.sky_lobe_density + aimed));
+      }
+      L += dome;
+    } else if (const auto* light = std::get_if<SunLight>(&source.shape)) {
+      const Sun& sun = light->sun;
+      if (branch.lobe_density > 0.0 || direction.dot(sun.direction) < sun.cosine_of_edge())
+        continue;
+      L += source.light / static_cast<float>(sun.solid_angle());
+    }
+  }
+  add_seen(branch, L, state);
+}
+
+// Adds radiance of something that no light of the scene falls on.
+void RayTree::add_seen(const Branch& branch, const Spectrum& L, TreeState& state) const {
+  const Spectrum seen = branch.weight * L;
+  state.result.radiance += seen;
+  if (!with_layers_) return;
+  const Layer layer = branch.node == 1 ? Layer::emission : Layer::specular;
+  state.result.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, seen);
+}
+
+// The number of the branch of a lobe: twice the parent's and the lobe, 1 at the eye. Far from the
+// eye, where twice the number is more than 64 bits hold, a number that is not met nearer.
+static std::uint64_t child_node(std::uint64_t node, std::uint64_t lobe) {
+  constexpr std::uint64_t deep = std::uint64_t{1} << 62;
+  return node < deep ? 2 * node + lobe : deep | random_key(node, lobe);
+}
+
+void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+                    TreeState& state) const {
+  const Material& material = scene_.materials[facets_[hit.facet].material];
+  // The back of a one-sided mirror is black.
+  if (!material.is_specular() || (!material.dielectric && hit.element < 0)) return;
+  SurfaceInteraction interaction{.material = material,
+                                 .direction = branch.ray.direction,
+                                 .normal = at.normal,
+                                 .from_back = hit.from_back,
+                                 .polarisation = branch.polarisation};
+  if (has_own_normals(hit.facet)) {
+    const Eigen::Vector3d smooth = at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
+    interaction.normal = visible_normal(branch.ray.direction, at.normal,
+                                        bent_normal(branch, hit, at, smooth, state));
+  }
+  Branch here = branch;
+  if (!goes_on_at_coat(interaction, here, state)) return;
+  if (material.gloss_roughness() > 0.0f) {
+    if (material.passes_straight() && !(state.turns && branch.depth >= state.turns->count)) {
+      constexpr std::uint64_t straight = 1;
+      grow(here, child_node(here.node, straight), straight_sample(interaction), hit, at, state);
+    }
+    return scatter(here, interaction, hit, at, state);
+  }
+  if (state.turns && branch.depth >= state.turns->count) return;
+  SmoothScattering lobes = smooth_scattering(interaction);
+  if (state.shades && here.weight.maxCoeff() < options_.min_contribution) {
+    choose_one(here, lobes, state);
+  }
+  for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
+    if (state.turns && !state.turns->follows(here.depth, lobes.sample[i].crosses)) continue;
+    grow(here, child_node(here.node, i), lobes.sample[i], hit, at, state);
+  }
+}
+
+void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
+                   const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
+  const int material = facets_[hit.facet].material;
+  const Material& what = scene_.materials[material];
+  const bool off_lobe = sample.density > 0.0;
+  Branch branch{.weight = parent.weight * sample.weight,
+                .depth = parent.depth + 1,
+                .node = node,
+                .is_sharp = parent.is_sharp,
+                .met_glass = parent.met_glass || what.dielectric || what.passes_straight(),
+                .is_direct = parent.is_direct && sample.crosses && is_clear_pane(what),
+                .chain = random_key(parent.chain, facets_[hit.facet].chain, sample.crosses),
+                .turns = parent.turns,
+                .lobe_density = sample.density,
+                .bright = sample.density > 0.0 ? parent.bright : nullptr,
+                .sky = off_lobe || (sample.crosses && is_clear_pane(what)) ? parent.sky : nullptr,
+                .sky_lobe_density = off_lobe ? sample.density : parent.sky_lobe_density,
+                .behind_coat = parent.behind_coat + (parent.behind_coat > 0 || what.coat ? 1 : 0),
+                .cone = {.start = cone_width(parent, at), .spread = parent.cone.spread},
+                .media = parent.media,
+                .polarisation = sample.polarisation};
+  if (!survives(branch, state)) return;
+  if (branch.depth > deepest_path(options_.max_depth, branch.met_glass || !branch.is_sharp)) {
+    ++state.result.depth_cut;
+    state.result.cut_weight += branch.weight.maxCoeff();
+    return;
+  }
+  if (parent.depth < ChainTurns::most) {
+    branch.turns.crosses |= std::uint64_t{sample.crosses} << parent.depth;
+    branch.turns.count = branch.depth;
+  } else {
+    branch.turns = {};
+  }
+  branch.media.cross(material, what, sample, hit.from_back);
+  branch.ray = {
+      .origin = at.position, .direction = sample.direction.normalized(), .origin_group = hit.facet};
+  if (has_own_normals(hit.facet)) {
+    branch.ray.direction = on_its_side(branch.ray.direction, at.normal, sample.crosses);
+  }
+  follow(branch, state);
+}
+
+// Largest share of any band that a surface mirrors of the interaction's light.
+float RayTree::mirrored_share(const SurfaceInteraction& interaction) {
+  return scattering_weight(interaction,
+                           {.direction = reflect(interaction.direction, interaction.normal)})
+      .maxCoeff();
+}
+
+// Ends most branches that meet a coat behind another, and strengthens the rest. One in six goes on
+// of those that meet the second coat steeply, with a quarter of the first coat's weight.
+bool RayTree::goes_on_at_coat(const SurfaceInteraction& interaction, Branch& branch,
+                              const TreeState& state) const {
+  if (!interaction.material.coat || branch.behind_coat == 0 || !state.shades) return true;
+  constexpr float left_weight = 0.25f;
+  const float chance = mirrored_share(interaction) / left_weight;
+  if (chance >= 1.0f) return true;
+  if (!(roulette(branch, 1, state) < static_cast<double>(chance))) return false;
+  branch.weight /= chance;
+  return true;
+}
+
+// A number in [0,1) of a branch, `purpose` 0 or 1.
+double RayTree::roulette(const Branch& branch, int purpose, const TreeState& state) {
+  return random_uniform(random_key(state.key, branch.node, RandomPurpose::ray_tree_roulette,
+                                   static_cast<std::uint64_t>(2 * branch.depth + purpose)));
+}
+
+// Leaves one of two lobes, by their weights, with the weight of both: a branch of little weight
+// does not fork.
+void RayTree::choose_one(const Branch& branch, SmoothScattering& lobes,
+                         const TreeState& state) const {
+  const float first = lobes.sample[0].weight.maxCoeff(), second = lobes.sample[1].weight.maxCoeff();
+  if (lobes.count < 2 || !(first + second > 0.0f)) return;
+  const float chance = first / (first + second);
+  const bool is_first = roulette(branch, 1, state) < static_cast<double>(chance);
+  lobes.sample[is_first ? 0 : 1].weight /= is_first ? chance : 1.0f - chance;
+  lobes.sample[is_first ? 1 : 0].weight.setZero();
+}
+
+// Ends branches far below the least weight by Russian roulette (Arvo & Kirk 1990): a survivor
+// stands for those that end. A tree without light needs no branch of little weight, and a single
+// path has no other branch.
+bool RayTree::survives(Branch& branch, const TreeState& state) const {
+  const float weight = branch.weight.maxCoeff();
+  if (weight >= options_.min_contribution || state.turns) return weight > 0.0f;
+  if (!state.shades) return false;
+  constexpr float far_below = 0.1f;
+  const float least = far_below * options_.min_contribution;
+  if (weight >= least) return true;
+  const double chance = double{weight} / double{least};
+  if (!(roulette(branch, 0, state) < chance)) return false;
+  branch.weight *= static_cast<float>(1.0 / chance);
+  return true;
+}
+
+RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& hit,
+                                             const ElementCaster& caster) const {
+  const FacetShape& facet = facets_[hit.facet];
+  ShadingPoint at{.position = ray.origin + hit.t * ray.direction,
+                  .rest_normal = facet.normal,
+                  .pose = caster.pose_of(hit.facet)};
+  at.rest = at.pose ? Eigen::Vector3d(at.pose->inverse() * at.position) : at.position;
+  if (facet.is_sphere) {
+    at.rest_normal = (at.rest - facet.point).normalized();
+  } else {
+    // The point is projected onto the facet's plane in double, since the caster's distances are
+    // float.
+    at.rest -= facet.normal.dot(at.rest - facet.point) * facet.normal;
+  }
+  if (at.rest_normal.dot(at.turned_back(ray.direction)) > 0.0) at.rest_normal = -at.rest_normal;
+  at.position = at.pose ? Eigen::Vector3d(*at.pose * at.rest) : at.rest;
+  at.normal = at.turned(at.rest_normal);
+  return at;
+}
+
+}  // namespace lightwell

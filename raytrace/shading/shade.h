@@ -1,0 +1,361 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "mesh/elements/element_caster.h"
+#include "mesh/patches/pictured_emission.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/emitters/sky_light.h"
+#include "radiosity/gather/bright_patches.h"
+#include "radiosity/solution/solution.h"
+#include "raytrace/cameras/pixel_cone.h"
+#include "raytrace/caustics/caustic_map.h"
+#include "raytrace/render.h"
+#include "raytrace/shading/dome_on_mesh.h"
+#include "raytrace/shading/lamp_samples.h"
+#include "raytrace/shading/pixel_gather.h"
+#include "raytrace/shading/visible_lamps.h"
+#include "scene/coat.h"
+#include "scene/facet_normals.h"
+#include "scene/facet_relief.h"
+#include "scene/facet_textures.h"
+#include "scene/sampling.h"
+#include "scene/scene.h"
+#include "scene/specular.h"
+
+namespace lightwell {
+
+/// Result of tracing a ray.
+struct RaySample {
+  Spectrum radiance{};  ///< W/(m^2 sr)
+  /// Layers that are averaged over a pixel; zero unless RenderOptions::layers has any of the
+  /// sampled layers.
+  SampledLayers layers = SampledLayers::Zero();
+  std::uint64_t fingerprint = 0;  ///< identifies the surfaces seen, see RayTree
+  /// A rough mirror or a rough clear surface was met, at first or behind smooth ones. (The light of
+  /// coats is a small share of a pixel's.)
+  bool sees_gloss = false;
+  std::int64_t depth_cut = 0;  ///< branches that ended at max_depth
+  float cut_weight = 0.0f;     ///< sum over these branches of the largest weight of any band
+};
+
+/// What light does at each smooth surface of a path: it is reflected or it crosses.
+struct ChainTurns {
+  static constexpr int most = 64;
+  std::uint64_t crosses = 0;  ///< bit i: the light crosses surface i
+  int count = 0;              ///< surfaces, at most `most`; a longer path has no turns
+
+  bool follows(int i, bool crossing) const { return ((crosses >> i) & 1U) == (crossing ? 1U : 0U); }
+};
+
+/// A straight part of a path behind at least one smooth mirror or clear body.
+struct SpecularSegment {
+  const Ray& ray;           ///< from the last surface on
+  double end;               ///< m along the ray to the next surface, infinite without one
+  const Spectrum& weight;   ///< share of radiance that reaches the path's beginning
+  const Media& media;       ///< bodies that the segment runs in
+  std::uint64_t chain = 0;  ///< the same for paths by way of the same surfaces in the same order
+  ChainTurns turns{};       ///< what happened at these surfaces
+};
+
+/// Whitted's ray tree (1980) over a radiosity solution. Radiance at a hit is the sum over the parts
+/// of the material:
+/// - diffuse: L = (M + rho E) / pi, for a translucent sheet (M + rho E + tau E_behind) / pi;
+/// - mirror: specular * L(reflected), with a coat times Fresnel's reflectance;
+/// - base under a coat: L = (M + rho g(out) E) / pi, with each lamp's part of E times g(in), see
+///   CoatedBase; light of sky and surfaces counts as even;
+/// - clear dielectric: R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R;
+/// - regular transmittance of a sheet: tau_r L(straight on);
+/// - rough mirror or dielectric: the mean over some directions of its lobe, see sample_scattering.
+///
+/// Smooth surfaces polarise the light, which decides over its share at the surfaces behind them
+/// (see Polarisation). A branch below RenderOptions::min_contribution no longer forks: it is
+/// reflected or crosses by chance, with the weight of both, and ends by Russian roulette below a
+/// tenth of that. So many weak branches together lose nothing in the mean.
+///
+/// Within an absorbing body L falls by the law of Beer and Lambert, see Media. L inside a
+/// dielectric is the basic radiance L/n^2, which refraction leaves unchanged; a path that ends
+/// outside again needs no factor n^2.
+///
+/// The *fingerprint* is equal for two rays whose trees see the same smooth surfaces from the same
+/// sides in the same order. Branches that weigh less than RenderOptions::contrast are left out,
+/// since a single such branch cannot change a pixel by more than the contrast. Surfaces seen by way
+/// of rough surfaces are left out too.
+///
+/// Rough mirrors and coats draw directions towards what their site sees of the sky (see SkySites)
+/// beside those of their lobes, weighted by the balance heuristic (Veach & Guibas 1995). Otherwise
+/// a window in a rough floor would be found by chance.
+///
+/// If a surface has normals at vertices, diffuse reflection, mirrors and glass use the interpolated
+/// normals (Phong 1975). The facets alone decide which side is seen and what is hidden. No branch
+/// continues below the facet that it should leave (see visible_normal). Shadow rays start on the
+/// smooth surface that the facets approximate, so that neighbouring facets do not shade it (Hanika
+/// 2021, "Hacking the Shadow Terminator"); since the start lies before the facet, no light comes
+/// through the facet.
+///
+/// Relief bends the normal of mirrors, glass and coats by its slope, and gives each light that
+/// falls on a diffuse surface a gain (see ReliefSlope). The solution's indirect light has
+/// the gain of its indirect_slant(); caustics have none. In Pass::automatic the light of the dome
+/// gets rays. Where no picture is made (trace_lamps, trace_chain), surfaces are
+/// flat.
+///
+/// Branches that meet a coat behind another coat end by Russian roulette: far from grazing they
+/// have less than a hundredth of the light.
+///
+/// A lamp by way of a rough coat and further surfaces is found by chance only, which would show as
+/// a few bright pixels. The light of lamps in one sample of the coat's lobe is limited to four
+/// times the mean of the other samples, and twice what the lobe finds besides.
+///
+/// Behind a coat that mirrors less than a quarter of the light, or blurs it, diffuse surfaces show
+/// the solution's irradiance: shadow rays there would cost more than those of the coated surface.
+///
+/// Textures are filtered over the PixelCone of a ray, which grows with the length of the path as if
+/// all surfaces on the way were flat.
+class RayTree {
+ public:
+  RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
+          const RadiositySolution& solution, const RenderOptions& options);
+
+  /// Traces a ray. `key` decides the shadow samples; `effort`, (0, 1], scales their number, for
+  /// samples that are averaged with others.
+  RaySample trace(const Ray& ray, std::uint64_t key, float effort = 1.0f,
+                  const PixelCone& cone = {}) const;
+  /// Returns the sample of a ray that shows nothing: black.
+  RaySample nothing() const { return {.radiance = Spectrum::Zero(scene_.bands.count())}; }
+  /// Traces one of many samples of the same key that are averaged, numbered from 0. Each has few
+  /// shadow and gather rays and one direction per rough surface; these are well spread over all
+  /// samples.
+  RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
+                              const PixelCone& cone = {}) const {
+    return trace_one_of_many(ray, key, number, caster_, cone);
+  }
+  /// Traces one of many samples with `caster`, the result of ElementCaster::at() of a caster that
+  /// knows the scene's motions.
+  RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
+                              const ElementCaster& caster, const PixelCone& cone = {}) const;
+  /// Radiance along a ray, W/(m^2 sr), of DirectLight's lights by way of mirrors, gloss and clear
+  /// bodies alone. Left out:
+  /// - light straight through clear panes, which is direct light;
+  /// - light of diffuse surfaces and of the sky's dome, which hemisphere rays find;
+  /// - lamps without surface and the sun behind smooth surfaces alone, which rays find by chance
+  ///   only; `visit` gets the parts of such paths.
+  ///
+  /// One direction leaves each rough surface; `key` decides this direction.
+  Spectrum trace_lamps(const Ray& ray, std::uint64_t key,
+                       const std::function<void(const SpecularSegment&)>& visit = {}) const;
+  /// Calls `visit` for the straight parts of the path that takes `turns` at the smooth surfaces it
+  /// meets.
+  void trace_chain(const Ray& ray, const ChainTurns& turns,
+                   const std::function<void(const SpecularSegment&)>& visit) const;
+  /// Returns the fingerprint of a ray, without shadow rays.
+  std::uint64_t fingerprint(const Ray& ray, const PixelCone& cone = {}) const {
+    return outline(ray, cone).fingerprint;
+  }
+  /// Returns RaySample::sees_gloss of a ray, without shadow rays.
+  bool sees_gloss(const Ray& ray) const { return outline(ray, {}).sees_gloss; }
+
+ private:
+  /// Geometry and material of a facet.
+  struct FacetShape {
+    int material = 0;
+    int smooth_surface = 0;  ///< the same for facets that share vertices
+    bool is_sphere = false;
+    std::uint64_t chain = 0;  ///< the same for facets of one plane or of one curved surface
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the plane, or the sphere's centre
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  };
+  /// A point hit by a ray. The normal is unit and on the side that the ray came from.
+  struct ShadingPoint {
+    Eigen::Vector3d position, normal;
+    Eigen::Vector3d rest, rest_normal;  ///< position and normal in the rest pose
+    /// Motion from the rest pose; null: the surface stands still.
+    const Eigen::Isometry3d* pose = nullptr;
+
+    Eigen::Vector3d turned(const Eigen::Vector3d& v) const { return pose ? pose->linear() * v : v; }
+    Eigen::Vector3d turned_back(const Eigen::Vector3d& v) const {
+      return pose ? Eigen::Vector3d(pose->linear().transpose() * v) : v;
+    }
+  };
+  /// A ray of the tree.
+  struct Branch {
+    Ray ray{};
+    Spectrum weight{};  ///< share of the ray's radiance that reaches the eye, per band
+    int depth = 0;
+    /// Number in the tree: 1 for the root, 2 p and 2 p + 1 for the children of p, a random key for
+    /// branches off rough surfaces.
+    std::uint64_t node = 1;
+    bool is_sharp = true;     ///< no rough surface on the way
+    bool met_glass = false;   ///< a clear surface on the way
+    bool is_direct = true;    ///< nothing but smooth thin panes on the way, straight through
+    std::uint64_t chain = 0;  ///< see SpecularSegment
+    ChainTurns turns{};       ///< see SpecularSegment
+    /// Probability density of the direction, 1/sr, off a rough surface, which samples lamps as
+    /// well; else 0.
+    double lobe_density = 0.0;
+    /// View by which the rough surface at the branch's origin aims at bright patches as well; null:
+    /// no such rays.
+    const BrightPatches::View* bright = nullptr;
+    bool is_aimed = false;  ///< aimed at a bright patch
+    /// Site by which the rough surface at the start of the path aims at the sky as well, if nothing
+    /// but clear panes followed; null: no such rays.
+    const SkySites::Site* sky = nullptr;
+    double sky_lobe_density = 0.0;  ///< lobe_density of that surface's direction
+    int behind_coat = 0;  ///< surfaces on the way from the first coat on, that one included
+    PixelCone cone{};     ///< of the ray, from its origin on
+    Media media{};
+    Polarisation polarisation{};
+  };
+  /// Irradiance at a point, W/m^2, direct and indirect. A coated base gets direct light by its
+  /// angle (see LightQuery::base).
+  struct Arriving {
+    Spectrum direct{}, indirect{};
+    /// On the facet, before coat and relief, for layers; empty: as `direct`.
+    Spectrum direct_on_facet{};
+  };
+  /// Diffuse radiosity towards a ray without emission, W/m^2, of direct and of indirect light.
+  struct Scattered {
+    Spectrum direct{}, indirect{};
+  };
+  /// State and result of a tree while it grows.
+  struct TreeState {
+    RaySample result{};
+    std::uint64_t key = 0;
+    float effort = 1.0f;
+    const ElementCaster* caster = nullptr;
+    bool shades = true;        ///< false: fingerprint alone
+    bool lamps_alone = false;  ///< see trace_lamps
+    const std::function<void(const SpecularSegment&)>* visit = nullptr;
+    const ChainTurns* turns = nullptr;  ///< the one path to follow; null: all
+    std::optional<int> number{};  ///< number among many samples of one key; none: a sample alone
+    std::uint64_t gloss_key = 0;  ///< the same for all samples of one key
+    /// Gets the light of lamps that a sample of a coat's lobe finds by chance; null: such light
+    /// counts as all other.
+    Spectrum* by_chance = nullptr;
+  };
+
+  RaySample outline(const Ray& ray, const PixelCone& cone) const;
+  void follow(Branch branch, TreeState& state) const;
+  bool shows_lamp(const Branch& branch, const ElementHit& hit, TreeState& state) const;
+  void add_background(const Branch& branch, TreeState& state) const;
+  void add_seen(const Branch& branch, const Spectrum& L, TreeState& state) const;
+  void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+             TreeState& state) const;
+  int lobe_samples(const SurfaceInteraction& interaction, const Branch& branch,
+                   const TreeState& state) const;
+  void scatter(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
+               const ShadingPoint& at, TreeState& state) const;
+  void add_lamp(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
+                const ShadingPoint& at, const Eigen::Array4d& u, float share,
+                TreeState& state) const;
+  void add_free_source(const Branch& branch, const SurfaceInteraction& interaction,
+                       const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u,
+                       float share, TreeState& state) const;
+  void add_bright_patch(const Branch& branch, const SurfaceInteraction& interaction,
+                        const ElementHit& hit, const ShadingPoint& at,
+                        const BrightPatches::View& view, const Eigen::Array4d& u, float share,
+                        TreeState& state) const;
+  const SkySites::Site* sky_site(const Branch& branch, const SurfaceInteraction& interaction,
+                                 const ElementHit& hit, const ShadingPoint& at,
+                                 const TreeState& state) const;
+  void add_sky(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
+               const ShadingPoint& at, const SkySites::Site& site, const Eigen::Array4d& u,
+               float share, TreeState& state) const;
+  float share_of_bright(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
+  Spectrum emission(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
+  const RoughLobe& lobe(int material, bool from_back) const;
+  static float mirrored_share(const SurfaceInteraction& interaction);
+  bool goes_on_at_coat(const SurfaceInteraction& interaction, Branch& branch,
+                       const TreeState& state) const;
+  static bool is_by_chance(const Branch& branch, const TreeState& state) {
+    constexpr int straight_from_the_coat = 1;
+    return state.by_chance && branch.behind_coat > straight_from_the_coat && !branch.is_sharp;
+  }
+  void add_reflected(const Branch& branch, const Spectrum& seen, TreeState& state) const;
+  void add_found_by_chance(const std::vector<Spectrum>& found, const Spectrum& other,
+                           TreeState& state) const;
+  void grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
+            const ElementHit& hit, const ShadingPoint& at, TreeState& state) const;
+  static double roulette(const Branch& branch, int purpose, const TreeState& state);
+  void choose_one(const Branch& branch, SmoothScattering& lobes, const TreeState& state) const;
+  bool survives(Branch& branch, const TreeState& state) const;
+  ShadingPoint shading_point(const Ray& ray, const ElementHit& hit,
+                             const ElementCaster& caster) const;
+  /// Origin of shadow rays, and the facet that the rays leave; -1: none.
+  struct ShadowOrigin {
+    Eigen::Vector3d position;
+    int facet = -1;
+  };
+  ShadowOrigin shadow_origin(const ElementHit& hit, const ShadingPoint& at) const;
+  Eigen::Vector3d smooth_normal(const ElementHit& hit, const ShadingPoint& at) const;
+  /// True if normals for shading may differ from the facet's.
+  bool has_own_normals(int facet) const {
+    return normals_.is_given(facet) || relief_.is_given(facet);
+  }
+  void shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+             TreeState& state) const;
+  void shade_lamp(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+                  TreeState& state) const;
+  const CoatedBase* base_at(const ElementHit& hit) const {
+    return bases_.empty() ? nullptr : bases_.of(facets_[hit.facet].material);
+  }
+  Arriving arriving(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
+                    const TreeState& state) const;
+  Arriving arriving_behind(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
+                           const TreeState& state) const;
+  Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
+  Eigen::Matrix<double, 3, 2> footprint(const Branch& branch, const ShadingPoint& at) const;
+  std::optional<ReliefSlope> relief_at(const Branch& branch, const ElementHit& hit,
+                                       const ShadingPoint& at, const Eigen::Vector3d& normal,
+                                       const TreeState& state) const;
+  Eigen::Vector3d bent_normal(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+                              const Eigen::Vector3d& normal, const TreeState& state) const;
+  Arriving arriving_from_mesh(const ElementHit& hit, const ShadingPoint& at, bool is_dim,
+                              const Eigen::Vector3d& normal,
+                              const std::optional<ReliefSlope>& relief) const;
+  double cone_width(const Branch& branch, const ShadingPoint& at) const {
+    return branch.cone.start + branch.cone.spread * (at.position - branch.ray.origin).norm();
+  }
+  float indirect_gain(const ElementHit& hit, const ShadingPoint& at,
+                      const std::optional<ReliefSlope>& relief) const;
+  Spectrum indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
+                            const std::optional<ReliefSlope>& relief) const;
+  void add_caustics(const ElementHit& hit, const ShadingPoint& at, Spectrum& indirect) const;
+  void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
+                   const Spectrum& rho, const Scattered& scattered, const Arriving& E,
+                   TreeState& state) const;
+
+  const Scene& scene_;
+  const ElementCaster& caster_;
+  const DirectLight& direct_light_;
+  const RadiositySolution& solution_;
+  const RenderOptions& options_;
+  std::shared_ptr<const FacetTextures> textures_{};  ///< null: no textures
+  PicturedEmission pictured_emission_;
+  FacetNormals normals_;
+  FacetRelief relief_;
+  std::shared_ptr<const BandArray> slant_{};  ///< see indirect_slant(); null or empty: none
+  /// Least height of a shadow ray's origin over its facet, m, beyond rounding.
+  double least_lift_ = 0.0;
+  bool with_layers_ = false;
+  Eigen::Array3f white_rgb_;             ///< RGB of a reflectance of 1 under equal-energy light
+  std::optional<PixelGather> gather_{};  ///< for Pass::gather
+  DomeOnMesh dome_{};                    ///< for Pass::automatic
+  std::shared_ptr<const CausticMap> caustics_{};  ///< replaces the solution's caustics; null: none
+  static constexpr int gloss_point_count = 1024;
+  SobolPoints gloss_points_;  ///< samples of one key; further samples use a new scrambling
+  LampSamples lamps_;
+  VisibleLamps openings_;
+  BrightPatches bright_{};  ///< rough mirrors aim at these beside the lamps
+  /// Lobes of the front and the back of each material; empty if the material is not rough.
+  std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};
+  CoatedBases bases_;
+  bool absorbs_ = false;  ///< whether any body absorbs light
+  std::vector<FacetShape> facets_{};
+};
+
+}  // namespace lightwell

@@ -1,0 +1,287 @@
+// Steps of RayTree at diffuse surfaces: normals, reflectance, and the light that arrives.
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "raytrace/shading/shade.h"
+#include "scene/optics.h"
+#include "scene/random_purpose.h"
+
+namespace lightwell {
+namespace {
+
+constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
+
+// Returns shadow options for a branch: half the weight, half the rays, since the noise of a light
+// branch may be larger. Halving keeps powers of two, which stratify best.
+ShadowOptions shadows_for(ShadowOptions shadows, float weight, int fewest) {
+  for (; weight <= 0.5f && shadows.min_rays >= 2 * fewest; weight *= 2.0f) {
+    shadows.min_rays /= 2;
+    shadows.max_rays /= 2;
+  }
+  return shadows;
+}
+
+}  // namespace
+
+// Normals of the file if given; else normals of the mesh's vertices, which round off a tessellated
+// surface and equal the facet's normal on a flat one.
+Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const ShadingPoint& at) const {
+  if (facets_[hit.facet].is_sphere) return at.normal;
+  if (normals_.is_given(hit.facet)) {
+    return at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
+  }
+  const PatchMesh& mesh = caster_.mesh();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (int c = 0; c < mesh.corner_count(hit.element); ++c) {
+    normal += hit.weights[c] * mesh.vertex_normal[mesh.corners[hit.element][c]];
+  }
+  return normal.norm() > 0.0 ? at.turned(normal.normalized()) : at.normal;
+}
+
+RayTree::ShadowOrigin RayTree::shadow_origin(const ElementHit& hit, const ShadingPoint& at) const {
+  const PatchMesh& mesh = caster_.mesh();
+  // An origin above a lamp's facet would be lit by the lamp itself.
+  const bool shines = (mesh.emission.row(mesh.patch[hit.element]) > 0.0f).any();
+  if (!normals_.is_given(hit.facet) || shines) return {at.position, hit.facet};
+  if (normals_.at(hit.facet, at.rest, at.rest_normal) == at.rest_normal) {
+    return {at.position, hit.facet};
+  }
+  const double height = normals_.height(hit.facet, at.rest, at.rest_normal);
+  return {at.position + std::max(height, least_lift_) * at.normal, -1};
+}
+
+// Reflectance of the texture, averaged over the pixel's footprint on the surface; of the patch
+// without a texture.
+Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
+                              const ShadingPoint& at) const {
+  const PatchMesh& mesh = caster_.mesh();
+  const int patch = mesh.patch[hit.element];
+  const bool is_black_back =
+      mesh.is_back[patch] != 0 && scene_.materials[facets_[hit.facet].material].one_sided;
+  if (!textures_ || !textures_->is_textured(hit.facet) || is_black_back) {
+    return mesh.reflectance.row(patch).transpose();
+  }
+  return textures_->reflectance(hit.facet, at.rest, footprint(branch, at));
+}
+
+// Sides of the pixel's footprint on the surface, in the rest pose.
+Eigen::Matrix<double, 3, 2> RayTree::footprint(const Branch& branch, const ShadingPoint& at) const {
+  const double width = cone_width(branch, at);
+  const Eigen::Vector3d direction = at.turned_back(branch.ray.direction.normalized());
+  const Eigen::Vector3d& normal = at.rest_normal;
+  constexpr double grazing = 1e-3;  // cosine; a texture seen at a smaller one is a streak anyway
+  const double cosine = std::max(grazing, std::abs(direction.dot(normal)));
+  const Eigen::Vector3d across = normal.cross(direction);
+  const double sine = across.norm();
+  const Eigen::Vector3d side =
+      sine > grazing ? Eigen::Vector3d(across / sine) : normal.unitOrthogonal();
+  Eigen::Matrix<double, 3, 2> sides;
+  sides << width * side, width / cosine * side.cross(normal);
+  return sides;
+}
+
+// Slope of the relief about `normal`, that of the smooth surface; empty: the surface is flat there.
+std::optional<ReliefSlope> RayTree::relief_at(const Branch& branch, const ElementHit& hit,
+                                              const ShadingPoint& at, const Eigen::Vector3d& normal,
+                                              const TreeState& state) const {
+  if (!relief_.is_given(hit.facet) || state.lamps_alone) return std::nullopt;
+  const Eigen::Vector3d rest = relief_.rise(hit.facet, at.rest, footprint(branch, at));
+  const Eigen::Vector3d rise = at.turned(rest);
+  // Seen from behind, a rise is a hollow.
+  const double side = facets_[hit.facet].normal.dot(at.rest_normal) < 0.0 ? -1.0 : 1.0;
+  return ReliefSlope{.normal = normal, .rise = side * (rise - rise.dot(normal) * normal)};
+}
+
+// Normal of the relief about `normal`.
+Eigen::Vector3d RayTree::bent_normal(const Branch& branch, const ElementHit& hit,
+                                     const ShadingPoint& at, const Eigen::Vector3d& normal,
+                                     const TreeState& state) const {
+  const auto relief = relief_at(branch, hit, at, normal, state);
+  return relief ? relief->bent() : normal;
+}
+
+// Irradiance behind a translucent sheet.
+RayTree::Arriving RayTree::arriving_behind(const ElementHit& hit, const ShadingPoint& at,
+                                           const Branch& branch, const TreeState& state) const {
+  ShadingPoint other = at;
+  other.normal = -at.normal;
+  other.rest_normal = -at.rest_normal;
+  return arriving(hit_behind(caster_.mesh(), hit), other, branch, state);
+}
+
+// Adds L = (M + rho E + tau E_behind) / pi, weighted by share_of_bright().
+void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+                    TreeState& state) const {
+  const float share = share_of_bright(branch, hit, at);
+  Spectrum M = emission(branch, hit, at);
+  if (!direct_light_.owns(hit.facet, hit.from_back)) M *= share;
+  Spectrum rho = share * reflectance(branch, hit, at);
+  const int patch = caster_.mesh().patch[hit.element];
+  const bool is_translucent = caster_.mesh().patch_behind(patch) >= 0;
+  Spectrum tau;
+  if (is_translucent) tau = share * caster_.mesh().transmittance.row(patch).transpose();
+  if (const CoatedBase* base = base_at(hit)) {
+    const Eigen::Vector3d direction = branch.ray.direction.normalized();
+    const Eigen::Vector3d normal = visible_normal(
+        direction, at.normal, bent_normal(branch, hit, at, smooth_normal(hit, at), state));
+    const double cosine = -direction.dot(normal);
+    rho *= static_cast<float>(base->factor(cosine));
+    tau *= static_cast<float>(base->factor(cosine));
+  }
+  Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
+  if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, state);
+  Scattered scattered{.direct = rho * E.direct, .indirect = rho * E.indirect};
+  if (is_translucent) {
+    const Arriving behind = arriving_behind(hit, at, branch, state);
+    scattered.direct += tau * behind.direct;
+    scattered.indirect += tau * behind.indirect;
+  }
+  if (is_by_chance(branch, state) && direct_light_.owns(hit.facet, hit.from_back)) {
+    *state.by_chance += branch.weight * one_over_pi * M;
+    M.setZero();
+  }
+  state.result.radiance +=
+      branch.weight * one_over_pi * (M + scattered.direct + scattered.indirect);
+  if (with_layers_) note_layers(branch, hit, M, rho, scattered, E, state);
+}
+
+// Adds the emission of DirectLight's emitters, which hemisphere rays do not read.
+void RayTree::shade_lamp(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
+                         TreeState& state) const {
+  if (branch.is_direct || !direct_light_.owns(hit.facet, hit.from_back)) return;
+  state.result.radiance += branch.weight * one_over_pi * emission(branch, hit, at);
+}
+
+// Irradiance of the solution. Closed forms of all lights cost more than the ray, so a dim hit takes
+// direct light as even.
+RayTree::Arriving RayTree::arriving_from_mesh(const ElementHit& hit, const ShadingPoint& at,
+                                              bool is_dim, const Eigen::Vector3d& normal,
+                                              const std::optional<ReliefSlope>& relief) const {
+  const PatchMesh& mesh = caster_.mesh();
+  Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
+             .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
+  if (!is_dim) E.indirect *= indirect_gain(hit, at, relief);
+  const CoatedBase* base = base_at(hit);
+  if (is_dim || !(base || relief)) return E;
+  E.direct_on_facet = E.direct;
+  const SurfacePoint point{at.position, normal, hit.facet};
+  if (base) E.direct *= static_cast<float>(direct_light_.base_gain(point, *base));
+  if (relief) E.direct *= static_cast<float>(direct_light_.relief_gain(point, *relief));
+  return E;
+}
+
+RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,
+                                    const Branch& branch, const TreeState& state) const {
+  const PatchMesh& mesh = caster_.mesh();
+  const Eigen::Vector3d normal = smooth_normal(hit, at);
+  const CoatedBase* base = base_at(hit);
+  const std::optional<ReliefSlope> relief = relief_at(branch, hit, at, normal, state);
+  constexpr float weak = 0.25f;
+  const bool is_dim =
+      branch.behind_coat > 0 && (!branch.is_sharp || branch.weight.maxCoeff() < weak);
+  if (options_.pass == Pass::interpolate || is_dim) {
+    return arriving_from_mesh(hit, at, is_dim, normal, relief);
+  }
+  const float share = state.effort * branch.weight.maxCoeff();
+  ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? 4 : 8);
+  // Many samples of a pixel average their shadows. A second stage of rays, cast only where the
+  // first disagree, would leave a part of thin shadows out of that mean.
+  if (state.number) shadows.max_rays = shadows.min_rays;
+  Arriving E;
+  const ShadowOrigin from = shadow_origin(hit, at);
+  const bool has_dome = !relief && dome_.is_fine(hit.element);
+  LightQuery query{.at = {from.position, normal, from.facet},
+                   .key = random_key(state.key, branch.node, RandomPurpose::ray_tree_shadows),
+                   .shadows = shadows,
+                   .lights = has_dome ? Lights::all_but_dome : Lights::all};
+  const auto direct = [&] {
+    Spectrum sum = direct_light_.irradiance(*state.caster, query);
+    if (has_dome) sum += interpolate(mesh, dome_.irradiance, hit);
+    return sum;
+  };
+  if ((base || relief) && with_layers_) E.direct_on_facet = direct();
+  query.base = base;
+  query.relief = relief ? &*relief : nullptr;
+  E.direct = direct();
+  if (gather_) {
+    E.indirect = gather_->indirect_irradiance(
+        *state.caster,
+        {.position = at.position,
+         .normal = at.normal,
+         .smooth_normal = normal,
+         .facet = hit.facet,
+         .relief = query.relief},
+        random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers), share);
+  } else {
+    E.indirect = indirect_of_mesh(hit, at, relief);
+  }
+  add_caustics(hit, at, E.indirect);
+  return E;
+}
+
+// Factor of the solution's indirect light on a slope of the relief.
+float RayTree::indirect_gain(const ElementHit& hit, const ShadingPoint& at,
+                             const std::optional<ReliefSlope>& relief) const {
+  if (!relief || !slant_ || slant_->size() == 0) return 1.0f;
+  const Eigen::Vector3d slant = interpolate(caster_.mesh(), *slant_, hit).matrix().cast<double>();
+  return static_cast<float>(std::clamp(1.0 - relief->rise.dot(at.turned(slant)), 0.0, 2.0));
+}
+
+// The solution's indirect light, without its own caustics if photons replace these.
+Spectrum RayTree::indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
+                                   const std::optional<ReliefSlope>& relief) const {
+  Spectrum E = interpolate(caster_.mesh(), solution_.indirect_irradiance, hit);
+  if (caustics_ && solution_.caustic_irradiance.size() > 0) {
+    // The difference may be slightly negative by rounding.
+    E = (E - interpolate(caster_.mesh(), solution_.caustic_irradiance, hit)).max(0.0f);
+  }
+  return indirect_gain(hit, at, relief) * E;
+}
+
+// Adds caustics, which neither gathered light nor indirect_of_mesh() has.
+void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at,
+                           Spectrum& indirect) const {
+  if (solution_.caustic_irradiance.size() == 0) return;
+  if (!caustics_) {
+    if (gather_) indirect += interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
+    return;
+  }
+  indirect += caustics_->irradiance(at.rest, at.rest_normal, hit.element);
+}
+
+void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
+                          const Spectrum& rho, const Scattered& scattered, const Arriving& E,
+                          TreeState& state) const {
+  const Bands& bands = scene_.bands;
+  const auto three = [&](Layer layer) {
+    return state.result.layers.segment<3>(first_sampled_column(layer));
+  };
+  const auto light = [&](const Spectrum& radiosity) {
+    const Spectrum L = branch.weight * one_over_pi * radiosity;
+    return linear_rgb(bands, L);
+  };
+  if (branch.node == 1) {
+    // Bands without a white, such as infrared, have no colour; their albedo is the grey of the
+    // mean.
+    three(Layer::albedo) = (white_rgb_ > 0.0f).all()
+                               ? Eigen::Array3f(linear_rgb(bands, rho) / white_rgb_)
+                               : Eigen::Array3f::Constant(rho.mean());
+    three(Layer::emission) = light(M);
+    three(Layer::direct) = light(scattered.direct);
+    three(Layer::indirect) = light(scattered.indirect);
+  } else {
+    three(Layer::specular) += light(M + scattered.direct + scattered.indirect);
+  }
+  // Refracted children alone have odd numbers, so all bits of a number straight through glass are
+  // ones.
+  const bool is_straight = branch.is_sharp && (branch.node & (branch.node + 1)) == 0;
+  if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
+    const Spectrum all = (E.direct_on_facet.size() > 0 ? E.direct_on_facet : E.direct) + E.indirect;
+    state.result.layers[first_sampled_column(Layer::illuminance)] =
+        static_cast<float>(luminous(bands, all));
+  }
+}
+
+}  // namespace lightwell

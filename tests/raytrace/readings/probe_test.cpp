@@ -1,0 +1,213 @@
+#include "raytrace/readings/probe.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "scene/errors.h"
+#include "scene/io/read_scene.h"
+#include "tests/raytrace/lit_scene.h"
+#include "tests/temporary_folder.h"
+
+namespace lightwell::probe_test {
+namespace {
+
+constexpr auto pi_f = std::numbers::pi_v<float>;
+const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+
+BandArray interpolated(const TracedScene& lit, const std::vector<Probe>& probes) {
+  return interpolate_irradiance(lit.caster, lit.solution, probes);
+}
+BandArray gathered(const TracedScene& lit, const std::vector<Probe>& probes, int rays = 256) {
+  return probe_irradiance(lit.scene, lit.caster, lit.direct_light, lit.solution, probes,
+                          {.rays = rays});
+}
+
+/// A closed room with a block on the floor; all surfaces emit M and reflect rho, E = M / (1 - rho).
+constexpr float rho = 0.5f, M = 1.0f, B = M / (1.0f - rho);
+const TracedScene& furnace() {
+  static const auto lit = [] {
+    const Paint paint{.reflectance = rho, .exitance = M, .one_sided = true};
+    auto scene = std::make_unique<TracedScene>(SceneBuilder()
+                                                   .box(paint, {0, 0, 0}, {2, 2, 2}, true)
+                                                   .box(paint, {0.5, 0.5, 0}, {1, 1, 1}, false)
+                                                   .build());
+    scene->set_indirect([](const auto&) { return B; });
+    return scene;
+  }();
+  return *lit;
+}
+
+struct NamedProbe {
+  const char* name;
+  Probe probe;
+};
+class FurnaceProbe : public ::testing::TestWithParam<NamedProbe> {};
+
+TEST_P(FurnaceProbe, SeesTheSameLightEverywhere) {
+  // In a closed room every ray ends on radiosity B, so the gather has no noise but float rounding.
+  const std::vector<Probe> probes = {GetParam().probe};
+  EXPECT_NEAR(gathered(furnace(), probes)(0, 0), B, 1e-4 * B);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Places, FurnaceProbe,
+    ::testing::Values(NamedProbe{"floor", {{1.5, 1.5, 0}, {0, 0, 1}}},
+                      NamedProbe{"little_above_floor", {{1.5, 1.5, 1e-5}, {0, 0, 1}}},
+                      NamedProbe{"little_below_floor", {{1.5, 1.5, -1e-5}, {0, 0, 1}}},
+                      NamedProbe{"ceiling", {{0.3, 0.3, 2}, {0, 0, -1}}},
+                      NamedProbe{"free", {{1.5, 1.5, 1}, {0, 0.6, 0.8}}},
+                      NamedProbe{"floor_at_wall", {{0, 1.3, 0}, {0, 0, 1}}},
+                      NamedProbe{"wall_at_floor", {{2, 1.3, 0}, {-1, 0, 0}}},
+                      NamedProbe{"corner", {{0, 0, 0}, {0, 0, 1}}},
+                      NamedProbe{"floor_at_block", {{0.5, 0.7, 0}, {0, 0, 1}}},
+                      NamedProbe{"block_edge", {{0.5, 0.7, 1}, {0, 0, 1}}},
+                      NamedProbe{"block_side_at_edge", {{0.5, 0.7, 1}, {-1, 0, 0}}}),
+    [](const auto& place) { return place.param.name; });
+
+TEST(InterpolateIrradiance, IsExactForALinearField) {
+  TracedScene lit(SceneBuilder()
+                      .polygon({.reflectance = 0.5f}, {{0, 0, 1}, {2, 0, 1}, {2, 1, 1}, {0, 1, 1}})
+                      .build());
+  const auto E = [](const Eigen::Vector3d& p) { return static_cast<float>(3 + p.x() - p.y()); };
+  lit.set_indirect(E);
+  std::vector<Probe> probes;
+  for (const double x : {0.0, 0.13, 0.77, 1.99, 2.0}) {
+    for (const double y : {0.0, 0.41, 1.0}) probes.push_back({{x, y, 1}, up});
+  }
+  const BandArray values = interpolated(lit, probes);
+  // A probe on the rim is moved inwards by at most 1e-5 of the diagonal.
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    EXPECT_NEAR(values(static_cast<Eigen::Index>(i), 2), E(probes[i].position), 1e-4);
+  }
+}
+
+TEST(InterpolateIrradiance, TellsTheSidesOfAWallApart) {
+  TracedScene lit(SceneBuilder().square({.reflectance = 0.5f}, {0, 0, 0}, up, 1).build());
+  for (int v = 0; v < lit.mesh.vertex_count(); ++v) {
+    lit.solution.direct_irradiance.row(v) = lit.mesh.vertex_normal[v].z() > 0 ? 5.0f : 1.0f;
+  }
+  const BandArray E = interpolated(lit, {{{0.1, 0.2, 0}, up}, {{0.1, 0.2, 0}, -up}});
+  EXPECT_FLOAT_EQ(E(0, 0), 5.0f);
+  EXPECT_FLOAT_EQ(E(1, 0), 1.0f);
+}
+
+TEST(InterpolateIrradiance, ProbeOffEverySurfaceIsNamedInFileUnits) {
+  TracedScene lit(
+      SceneBuilder().square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1).build());
+  lit.solution.metres_per_unit = 1e-3;
+  lit.solution.unit_name = "mm";
+  const auto refusal = [&](const Probe& probe) {
+    return message_of<InputError>([&] { interpolated(lit, {{{0, 0, 0}, up}, probe}); });
+  };
+  // With a scene diagonal of 2.83 m, a probe 0.1 m off the surface is refused, one 0.1 mm off is
+  // not.
+  EXPECT_TRUE(says(refusal({{0.5, 0.25, 0.1}, up}), "probe 2 at (500, 250, 100) mm lies on no"));
+  EXPECT_EQ(refusal({{0.5, 0.25, 1e-4}, up}), "");
+  EXPECT_TRUE(says(refusal({{0.5, 0.25, 0}, Eigen::Vector3d::UnitX()}), "lies on no surface"));
+  EXPECT_TRUE(says(refusal({{0.5, 0.25, 0}, -up}), "back of a one-sided surface"));
+}
+
+TEST(ProbeIrradiance, UnderASmallLampIsTheClosedForm) {
+  // The form factor of a parallel square lamp of half width a at height h above the probe is that
+  // of four corner rectangles (Howell, A catalog of radiation heat transfer configuration factors,
+  // B-4).
+  constexpr double a = 0.5, h = 2.0;
+  const double X = a / h, root = std::sqrt(1 + X * X);
+  const double F = 4.0 / (2 * std::numbers::pi) * 2 * (X / root) * std::atan(X / root);
+  const TracedScene lit(SceneBuilder()
+                            .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 5)
+                            .square({.exitance = 7.0f, .one_sided = true}, {0, 0, h}, -up, a)
+                            .build());
+  ASSERT_EQ(lit.direct_light.emitters().size(), 1u);
+  const BandArray E = gathered(lit, {{{0, 0, 0}, up}, {{0, 0, 1e-4}, up}, {{0, 0, 0}, -up}});
+  EXPECT_NEAR(E(0, 0), 7.0 * F, 1e-5 * 7.0 * F);
+  EXPECT_NEAR(E(1, 0), 7.0 * F, 1e-3 * 7.0 * F);  // on the floor, 1e-4 m above it or not
+  EXPECT_EQ(E(2, 0), 0.0f);
+}
+
+TEST(ProbeIrradiance, OnTheFoldOfABentFloorIsShadedByNeitherHalf) {
+  // Two triangles of a quadrilateral that deviates from a plane by 2 mm meet along the diagonal.
+  TracedScene lit(SceneBuilder()
+                      .polygon({.reflectance = 0.5f, .one_sided = true},
+                               {{-1, -1, 0}, {1, -1, 2e-3}, {1, 1, 0}})
+                      .polygon({.reflectance = 0.5f, .one_sided = true},
+                               {{-1, -1, 0}, {1, 1, 0}, {-1, 1, 2e-3}})
+                      .square({.exitance = 7.0f, .one_sided = true}, {0, 0, 2}, -up, 0.2)
+                      .build());
+  ASSERT_EQ(lit.direct_light.emitters().size(), 1u);
+  const BandArray E = gathered(lit, {{{0.1, 0.1, 0}, up}, {{0.11, 0.09, 1e-5}, up}});
+  EXPECT_GT(E(1, 0), 0.0f);
+  EXPECT_NEAR(E(0, 0), E(1, 0), 0.01 * E(1, 0));  // 14 mm apart under a lamp 2 m up
+}
+
+TEST(ProbeIrradiance, BelowAStackOfTwoFloorsSeesNeither) {
+  // Two sheets lie in one plane. The caster may hit either; the other must not shade the probe.
+  TracedScene lit(SceneBuilder()
+                      .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 1)
+                      .square({.reflectance = 0.5f, .one_sided = true}, {0, 0, 0}, up, 0.5)
+                      .square({.exitance = pi_f}, {0, 0, 1}, -up, 100)
+                      .build());
+  const BandArray E = gathered(lit, {{{0.1, 0.2, 0}, up}}, 1024);
+  EXPECT_NEAR(E(0, 0), pi_f, 1e-3 * pi_f);  // the lamp fills the hemisphere to (1/100)^2
+}
+
+/// Illuminance at a point of the floor of a scene file, lx.
+double lux_at(const std::string& text, const Eigen::Vector3d& position) {
+  const TemporaryFolder folder;
+  const Scene scene = read_scene(folder.write("scene.toml", text));
+  const SolvedScene solved = solve_scene(scene, options_for_probes());
+  const ElementCaster caster(solved.mesh);
+  const DirectLight direct_light(scene, solved.mesh);
+  const std::array<Probe, 1> probe{Probe{position, up}};
+  const BandArray E =
+      probe_irradiance(scene, caster, direct_light, solved.solution, probe, {.rays = 64});
+  return luminous(scene.bands, E.row(0).transpose());
+}
+
+/// E under the middle of a square panel of even luminance L, side a and height h:
+/// 4 L (s / r) atan(s / r) with s = a / 2 and r^2 = s^2 + h^2. In a closed room that emits M
+/// everywhere, E = M / (1 - rho). Direct light is a closed form, and the room's light is the same
+/// in every direction; what remains is rounding to float.
+TEST(ProbeIrradiance, LightGivenAsPeopleSeeItIsLux) {
+  const std::string panel = R"(
+[materials.dark]
+[materials.panel]
+)";
+  const std::string geometry = R"(
+[[surfaces]]
+material = "panel"
+polygon = [[-0.5, -0.5, 2], [-0.5, 0.5, 2], [0.5, 0.5, 2], [0.5, -0.5, 2]]
+[[surfaces]]
+material = "dark"
+polygon = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]
+)";
+  const double r = std::sqrt(0.25 + 4.0), of_unit = 4.0 * (0.5 / r) * std::atan(0.5 / r);
+  for (const std::string bands :
+       {"", "[bands]\nlumens_per_watt = 179\n", "[bands]\nkind = \"spectral\"\ncount = 5\n"}) {
+    const std::string head = bands + panel;
+    const double under_1000 = lux_at(head + "luminance = 1000\n" + geometry, {0, 0, 0});
+    EXPECT_NEAR(under_1000, 1000.0 * of_unit, 1e-4 * under_1000) << bands;
+    // An area of 1 m^2 that emits pi lm has L = 1.
+    const std::string pi_lumens = std::to_string(std::numbers::pi);
+    for (const std::string key : {"lumens", "luminous_exitance"}) {
+      const double lux = lux_at(head + key + " = " + pi_lumens + "\n" + geometry, {0, 0, 0});
+      EXPECT_NEAR(lux, of_unit, 1e-4 * of_unit) << key;
+    }
+    const std::string closed = R"(
+[materials.wall]
+reflectance = 0.5
+luminous_exitance = 100
+[[surfaces]]
+material = "wall"
+box = { min = [0, 0, 0], max = [2, 2, 2], inward = true }
+)";
+    EXPECT_NEAR(lux_at(bands + closed, {0.7, 0.4, 0}), 200.0, 0.02) << bands;
+  }
+}
+
+}  // namespace
+}  // namespace lightwell::probe_test
