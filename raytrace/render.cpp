@@ -9,7 +9,6 @@
 #include <cmath>
 #include <optional>
 #include <span>
-#include <stdexcept>
 #include <tuple>
 #include <vector>
 
@@ -32,8 +31,7 @@ namespace {
 
 // Samples are keyed by their point on a lattice of this many steps per pixel, whatever the
 // subdivision, so a finer picture keeps the samples of a coarser one.
-constexpr int max_levels = 6;
-constexpr int lattice_steps = 1 << max_levels;
+constexpr int lattice_steps = 1 << deepest_subdivision;
 
 struct Counters {
   std::atomic<std::int64_t> eye_rays{0}, depth_cut{0};
@@ -502,29 +500,6 @@ class TileRenderer {
 };
 
 }  // namespace
-
-void validate(const RenderOptions& options) {
-  const auto fail = [](const std::string& what) { throw std::invalid_argument("render: " + what); };
-  const auto within = [&](const char* what, int value, int low, int high) {
-    if (value >= low && value <= high) return;
-    fail(fmt::format("{} is {}, it must lie between {} and {}", what, value, low, high));
-  };
-  within("max_subdivision", options.max_subdivision, 0, max_levels);
-  within("max_depth", options.max_depth, 0, deepest_tree);
-  within("gather_rays", options.gather_rays, 1, most_gather_rays);
-  within("photons", options.photons, 0, most_photons);
-  within("glossy_rays", options.glossy_rays, 1, 256);
-  within("sampling.most", options.sampling.most, 0, SampleOptions::limit);
-  within("sampling.least", options.sampling.least, 1, SampleOptions::limit);
-  if (!(options.sampling.noise >= 0.0f)) fail("sampling.noise must not be negative");
-  if (!(options.contrast > 0.0f)) fail("contrast must be above 0");
-  if (!(options.min_contribution >= 0.0f)) fail("min_contribution must not be negative");
-}
-
-bool needs_caustic_photons(const RadiositySolution& solution, const RenderOptions& options) {
-  return options.pass != Pass::interpolate && options.photons > 0 &&
-         solution.caustic_irradiance.size() > 0;
-}
 
 Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
              const RadiositySolution& solution, const Camera& camera, const RenderOptions& options,

@@ -79,6 +79,13 @@ std::vector<Eigen::Vector3d> opening_outline(const Lamp& lamp) {
   return opening_at(lamp, 0.0);
 }
 
+double luminous_area(const LampOpening& opening, double height, const Eigen::Vector3d& way) {
+  const double across = opening.along_c0 * way.y(), along = opening.along_c90 * way.x();
+  const double width =
+      opening.is_round ? std::hypot(across, along) : std::abs(across) + std::abs(along);
+  return opening_area(opening) * std::abs(way.z()) + height * width;
+}
+
 BodyEnds body_ends(const Lamp& lamp) {
   if (!lamp.body.is_known()) return {};
   const double height = lamp.body.height, ahead = share_ahead(lamp);

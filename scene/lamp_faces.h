@@ -31,4 +31,17 @@ BodyEnds body_ends(const Lamp& lamp);
 /// of the light, 2 mm in front of the ends of the body, and the body between `ends`.
 std::vector<LampFace> lamp_faces(const Lamp& lamp, const BodyEnds& ends);
 
+/// Area of a luminaire's opening and of its luminous sides of this height, m^2, projected along the
+/// unit vector `way` in the luminaire's own frame. The sides are those of a box, or of a cylinder
+/// over an ellipse if the opening is round.
+double luminous_area(const LampOpening& opening, double height, const Eigen::Vector3d& way);
+
+/// Least area of an opening seen edge on, as a share of its area: a flat opening has none, but a
+/// real one has a rim.
+inline constexpr double rim_of_opening = 0.05;
+
+/// Share of the way to a lamp's opening that must be free for the opening to be seen: a ceiling in
+/// the plane of the opening, or the holder around a lamp, does not hide the lamp.
+inline constexpr double way_before_opening = 0.999;
+
 }  // namespace lightwell

@@ -12,6 +12,7 @@
 #include "mesh/patches/pictured_emission.h"
 #include "mesh/patches/translucency.h"
 #include "raytrace/readings/specular_light.h"
+#include "scene/lamp_faces.h"
 
 namespace lightwell {
 namespace {
@@ -165,14 +166,6 @@ double position_index(double sigma, double tau) {
   }
   return std::exp((35.2 - 0.31889 * tau - 1.22 * std::exp(-2.0 * tau / 9.0)) * 1e-3 * sigma +
                   (21.0 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
-}
-
-double luminous_area(const LampOpening& opening, double height, const Eigen::Vector3d& way) {
-  const double across = opening.along_c0 * way.y(), along = opening.along_c90 * way.x();
-  const double width =
-      opening.is_round ? std::hypot(across, along) : std::abs(across) + std::abs(along);
-  const double area = opening.along_c0 * opening.along_c90 * (opening.is_round ? pi / 4.0 : 1.0);
-  return area * std::abs(way.z()) + height * width;
 }
 
 bool counts_for_glare(double ahead, double beside, double above) {

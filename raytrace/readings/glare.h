@@ -24,19 +24,6 @@ namespace lightwell {
 /// for r = tan sigma below 0.6, else 1 + 1.2 r.
 double position_index(double sigma, double tau);
 
-/// Area of a luminaire's opening and of its luminous sides of this height, m^2, projected along the
-/// unit vector `way` in the luminaire's own frame. The sides are those of a box, or of a cylinder
-/// over an ellipse if the opening is round.
-double luminous_area(const LampOpening& opening, double height, const Eigen::Vector3d& way);
-
-/// Least area of an opening seen edge on, as a share of its area: a flat opening has none, but a
-/// real one has a rim.
-inline constexpr double rim_of_opening = 0.05;
-
-/// Share of the way to a lamp's opening that must be free for the opening to be seen: a ceiling in
-/// the plane of the opening, or the holder around a lamp, does not hide the lamp.
-inline constexpr double way_before_opening = 0.999;
-
 /// Returns whether a point counts for glare, by its distances along the line of sight, beside it
 /// and above it. The table of CIE 117 ends at 3 times the distance along the line of sight to the
 /// sides, and at 1.9 times above.

@@ -11,6 +11,7 @@
 #include "radiosity/closed_forms/polygon_exchange.h"
 #include "raytrace/readings/glare.h"
 #include "scene/errors.h"
+#include "scene/lamp_faces.h"
 
 namespace lightwell {
 namespace {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <variant>
 
-#include "raytrace/readings/glare.h"
 #include "scene/lamp_faces.h"
 
 namespace lightwell {

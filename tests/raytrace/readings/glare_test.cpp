@@ -1,4 +1,5 @@
 #include "raytrace/readings/glare.h"
+#include "scene/lamp_faces.h"
 
 #include <gtest/gtest.h>
 
