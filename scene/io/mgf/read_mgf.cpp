@@ -13,7 +13,7 @@
 #include "scene/io/numbered_names.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
-#include "scene/io/radiance/radiance_xform.h"
+#include "scene/io/radiance/text/radiance_xform.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 #include "scene/io/scene_size.h"

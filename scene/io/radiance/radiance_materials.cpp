@@ -11,9 +11,9 @@
 #include "scene/errors.h"
 #include "scene/io/default_material.h"
 #include "scene/io/pictures/environment_file.h"
-#include "scene/io/radiance/radiance_expression.h"
-#include "scene/io/radiance/radiance_loader.h"
-#include "scene/io/radiance/radiance_place.h"
+#include "scene/io/radiance/files/radiance_loader.h"
+#include "scene/io/radiance/patterns/radiance_place.h"
+#include "scene/io/radiance/text/radiance_expression.h"
 #include "scene/io/sheets.h"
 
 namespace lightwell {

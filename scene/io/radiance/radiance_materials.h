@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "scene/io/numbered_names.h"
-#include "scene/io/radiance/radiance_direction.h"
-#include "scene/io/radiance/radiance_primitive.h"
+#include "scene/io/radiance/patterns/radiance_direction.h"
+#include "scene/io/radiance/text/radiance_primitive.h"
 #include "scene/io/remarks.h"
 #include "scene/scene.h"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "scene/io/radiance/radiance_materials.h"
-#include "scene/io/radiance/radiance_primitive.h"
+#include "scene/io/radiance/text/radiance_primitive.h"
 #include "scene/io/remarks.h"
 #include "scene/scene.h"
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "scene/io/radiance/radiance_primitive.h"
+#include "scene/io/radiance/text/radiance_primitive.h"
 #include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
 #include "scene/scene.h"

@@ -8,8 +8,8 @@
 #include <cmath>
 
 #include "scene/errors.h"
-#include "scene/io/radiance/radiance_loader.h"
-#include "scene/io/radiance/radiance_project.h"
+#include "scene/io/radiance/files/radiance_loader.h"
+#include "scene/io/radiance/files/radiance_project.h"
 #include "scene/io/radiance/radiance_shapes.h"
 #include "scene/io/radiance/radiance_view.h"
 #include "scene/io/read_scene.h"

@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-#include "scene/io/radiance/radiance_expression.h"
+#include "scene/io/radiance/text/radiance_expression.h"
 #include "tests/sanitizers.h"
 #include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
