@@ -274,7 +274,9 @@ void SolveArguments::add_to(CLI::App& command) {
   add_memory(command, memory)->group(group);
   command
       .add_option("--gather-rays", solve.gather.rays,
-                  "final-gather rays per mesh vertex, a power of two (default 1024)")
+                  "final-gather rays per mesh vertex, a power of two (default 1024, or fewer where "
+                  "elements "
+                  "leave a larger error)")
       ->type_name("N")
       ->check(power_of_two())
       ->group(group);
@@ -322,7 +324,8 @@ std::string SolveArguments::text(const Scene& scene) const {
     effort += fmt::format(" --max-elements {}", solve.refine.max_elements);
   }
   if (!solve.accuracy) {
-    effort = refinement_text(solve.refine) + fmt::format(" --gather-rays {}", solve.gather.rays);
+    effort = refinement_text(solve.refine);
+    if (solve.gather.rays > 0) effort += fmt::format(" --gather-rays {}", solve.gather.rays);
   }
   return fmt::format(
       "{}{} --form-factors {}{} --solver {} --rays {} --tolerance {:g} --max-sweeps {}{}{}",

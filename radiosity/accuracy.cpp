@@ -1,6 +1,7 @@
 #include "radiosity/accuracy.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -100,8 +101,21 @@ double target_of_sky_rays(int rays) {
   return 0.01 * std::pow(sky_rays_for_one_percent / rays, 1.0 / sky_rays_law);
 }
 
+namespace {
+
+constexpr int rays_for_one_percent = 1024;
+
+}  // namespace
+
+int rays_worth(double left) {
+  constexpr double of_the_error = 1.0 / 6.0;
+  constexpr unsigned fewest = 256;
+  const int enough = rays_for_noise(rays_for_one_percent, 0.01, of_the_error * left);
+  return std::min(rays_by_default,
+                  static_cast<int>(std::max(fewest, std::bit_ceil(static_cast<unsigned>(enough)))));
+}
+
 Effort first_effort(double target, bool refines) {
-  constexpr int rays_for_one_percent = 1024;
   return {.refine_tolerance = refines ? share_of_interpolation * target : 0.0,
           .gather_rays = rays_for_noise(rays_for_one_percent, 0.01, target)};
 }

@@ -55,6 +55,14 @@ double target_of_sky_rays(int rays);
 /// The noise that the final gather may leave, relative to the mean irradiance: 55 % of `target`.
 double noise_share(double target);
 
+/// Rays of the final gather if neither they nor an accuracy are asked for.
+inline constexpr int rays_by_default = 1024;
+
+/// The rays of rays_by_default that are worth their time where refinement ended at a limit with the
+/// error `left` by its own estimate, relative to the mean: those whose noise is a sixth of that, a
+/// power of two from 256 on. More would not show.
+int rays_worth(double left);
+
 /// The effort of the next attempt, after `spent` left an `error` of which `noise` is that of rays
 /// (both gathers of the error estimate); all relative to the mean irradiance. Empty if more would
 /// not help. Noise falls with the number of rays, the error of interpolation with the tolerance of

@@ -67,6 +67,7 @@ void require_finite(const Scene& scene, const RadiositySolution& solution) {
 SolveOptions effective_options(const SolveOptions& options, double target,
                                const SolvedScene& solved, int columns) {
   SolveOptions effective = options;
+  if (effective.gather.rays == 0) effective.gather.rays = rays_by_default;
   if (target > 0.0) {
     // Three levels more: at a tight accuracy the errors left are at the edges of shadows, some of
     // them on large elements.
@@ -108,6 +109,7 @@ class GatherAttempts {
         options_(with_portals(
             sources, solved,
             effective_options(options, target_, solved, sources.by_channel.column_count()))),
+        may_save_rays_(options.gather.rays == 0 && !(target_ > 0.0)),
         pilot_gathers_(std::in_place, scene, std::move(solved.mesh), sources.by_channel,
                        solved.solution) {
     options_.refine.parts = solved.solution.parts;
@@ -116,7 +118,7 @@ class GatherAttempts {
     std::vector<Effort> efforts;
     for (const double target : targets_) {
       efforts.push_back(target > 0.0 ? first_effort(target, options.refine.tolerance > 0.0)
-                                     : Effort{options.refine.tolerance, options.gather.rays});
+                                     : Effort{options.refine.tolerance, options_.gather.rays});
     }
     take(std::move(efforts));
   }
@@ -197,8 +199,19 @@ class GatherAttempts {
       take(std::move(efforts));
     }
     take_mesh(may_repeat());
+    if (may_save_rays_) save_rays();
     give_back_free_pages();  // splitting elements leaves many
     if (pilot_->tree) spent_["refine"] += watch_.lap();
+  }
+
+  // Fewer rays of the final gather where the elements leave a large error that rays do not reduce.
+  void save_rays() {
+    if (refinement_.outcome == RefineOutcome::tolerance_reached) return;
+    std::vector<Effort> efforts = efforts_;
+    for (std::size_t p = 0; p < std::min(efforts.size(), refinement_.parts.size()); ++p) {
+      efforts[p].gather_rays = rays_worth(refinement_.parts[p].estimate);
+    }
+    take(std::move(efforts));
   }
 
   // Makes the mesh of the pilot gather that of the solution.
@@ -376,6 +389,7 @@ class GatherAttempts {
   State state_ = State::has_nothing;
   RefineReport refinement_{};
   bool has_refined_ = false;
+  bool may_save_rays_;
   std::optional<PilotGathers> pilot_gathers_;
   std::optional<PilotGather> pilot_{};
   std::optional<ElementCaster> caster_{};

@@ -26,8 +26,8 @@ struct SolveOptions {
   /// not kept. Of the options of form factors and solver only `form_factors.max_specular_depth`
   /// then counts. Empty: all form factors are kept, and a solver reads them.
   std::optional<ProgressiveOptions> progressive{};
-  GatherOptions gather{.rays = 1024,
-                       .shadows = {.min_rays = 32, .max_rays = 256, .sky_rays = 1024}};
+  /// With `rays` 0 they are rays_by_default() or fewer (see rays_worth()).
+  GatherOptions gather{.rays = 0, .shadows = {.min_rays = 32, .max_rays = 256, .sky_rays = 1024}};
   RefineOptions refine{};
   /// The error to reach. Chooses the rays of `gather` and, if `refine` has a tolerance, that
   /// tolerance, and raises both until the error estimate is below. If `refine` has no limit of

@@ -82,6 +82,8 @@ enum class RandomPurpose : std::uint64_t {
   importance_walks = 0x1390,
   // Paths from openings; (opening, purpose, number).
   portal_paths = 0x9047a1,
+  // One light in place of all; (key of a query, purpose, channel).
+  drawn_lights = 0xd4a3,
 };
 
 /// True for every purpose. Two purposes of equal value are two equal cases, which no compiler
@@ -137,6 +139,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::pixel_gather_paths:
     case RandomPurpose::pixel_gather_aims:
     case RandomPurpose::part_rays:
+    case RandomPurpose::drawn_lights:
     case RandomPurpose::side_rays:
     case RandomPurpose::lamp_face_rays:
     case RandomPurpose::part_vectors:

@@ -16,6 +16,7 @@
 #include "radiosity/visibility/shadow_rays.h"
 #include "scene/limits.h"
 #include "scene/picture_cells.h"
+#include "scene/random_purpose.h"
 
 namespace lightwell {
 namespace {
@@ -79,6 +80,23 @@ void tile(const PatchMesh& mesh, Emitter& emitter) {
     emitter.area_cdf.push_back(sum);
   }
   for (double& share : emitter.area_cdf) share /= sum;
+}
+
+void measure(Emitter& emitter) {
+  if (emitter.is_sphere) {
+    emitter.center = emitter.sphere.center;
+    emitter.radius = emitter.sphere.radius;
+    return;
+  }
+  double before = 0.0;
+  for (std::size_t t = 0; t < emitter.triangles.size(); ++t) {
+    const auto& [a, b, c] = emitter.triangles[t];
+    emitter.center += (emitter.area_cdf[t] - before) / 3.0 * (a + b + c);
+    before = emitter.area_cdf[t];
+  }
+  for (const Eigen::Vector3d& corner : emitter.loops[0]) {
+    emitter.radius = std::max(emitter.radius, (corner - emitter.center).norm());
+  }
 }
 
 // A shadow ray to a sample point of a polygon; its weight is the sample's kernel cos cos / r^2.
@@ -162,6 +180,7 @@ struct LightShadow {
   double F = 0.0;
   int channel = 0;
   std::uint64_t key = 0;
+  double chance = 1.0;            // by which the light was drawn
   int least = 0, most = 0;        // rays
   std::optional<double> share{};  // visible; empty: rays are needed
   EmissionTree::View view{};      // of an emitter that shines by a picture; else without parts
@@ -339,6 +358,17 @@ Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
   return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
 }
 
+double approximate_kernel(const Emitter& emitter, const Eigen::Vector3d& from) {
+  const Eigen::Vector3d to = from - emitter.center;
+  const double distance2 = to.squaredNorm();
+  if (emitter.is_sphere) return 1.0 / std::max(distance2, emitter.radius * emitter.radius);
+  const double height = to.dot(emitter.normal);
+  if (!emitter.emits_both_sides && !(height > 0.0)) return 0.0;
+  const double size2 = emitter.area / std::numbers::pi;
+  return (std::abs(height) + 0.1 * std::sqrt(size2)) /
+         (std::sqrt(distance2 + size2) * (distance2 + size2));
+}
+
 Spectrum exitance_at(const Emitter& emitter, const Eigen::Vector3d& point) {
   if (!emitter.picture) return emitter.exitance;
   return emitter.picture_scale.head<3>() * emitter.picture->at(point);
@@ -413,6 +443,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
         emitter.is_sphere = true;
         emitter.sphere = std::get<Sphere>(surface.shape);
       }
+      measure(emitter);
       owned_[emitter.facet] = emitter.is_sphere ? Owned::front : Owned::whole;
       emitters_.push_back(std::move(emitter));
     }
@@ -567,6 +598,75 @@ Eigen::ArrayXd DirectLight::base_gains(const SurfacePoint& at, const CoatedBase&
   return (sum.col(1) > 0.0).select(sum.col(0) / sum.col(1), 1.0);
 }
 
+// About what a light would give at a point without occluders, mean of the bands, W/m^2.
+double DirectLight::approximate_light(int light, const SurfacePoint& at) const {
+  const auto& [point, normal, facet] = at;
+  const auto emitter_count = static_cast<int>(emitters_.size());
+  if (light >= emitter_count) {
+    const FreeSource& source = free_sources_[light - emitter_count];
+    const SourceSample middle = sample_source(source, point, 0.5, 0.5);
+    return std::max(0.0, middle.direction.dot(normal)) * middle.irradiance *
+           static_cast<double>(source.light.mean());
+  }
+  const Emitter& emitter = emitters_[light];
+  const Eigen::Vector3d to = emitter.center - point;
+  const double above = to.dot(normal) + emitter.radius;
+  if (facet == emitter.facet || !(above > 0.0)) return 0.0;
+  const double cosine = std::min(1.0, above / std::hypot(to.norm(), emitter.radius));
+  return cosine * approximate_kernel(emitter, point) * emitter.area * std::numbers::inv_pi *
+         static_cast<double>(emitter.exitance.mean());
+}
+
+// All lights of a query, or one of each channel and the sky's dome.
+std::vector<DirectLight::Choice> DirectLight::chosen_lights(const LightQuery& query) const {
+  std::vector<Choice> lights;
+  const int first = first_light(query.lights);
+  if (!query.one_stands_for_all) {
+    for (int i = first; i < light_count(); ++i) lights.push_back({.light = i});
+    return lights;
+  }
+  // Each light that is on has a part of the chance whatever its estimate, since the middle of a
+  // light may lie below the horizon or outside of a beam of which other points see a part.
+  constexpr double even = 0.1;
+  struct Candidates {
+    std::vector<int> light{};
+    std::vector<double> weight{};
+    double sum = 0.0;
+  };
+  std::vector<Candidates> channels(static_cast<std::size_t>(channel_count_));
+  const auto emitter_count = static_cast<int>(emitters_.size());
+  for (int i = first; i < light_count(); ++i) {
+    const Emitter* emitter = i < emitter_count ? &emitters_[i] : nullptr;
+    const FreeSource* source = emitter ? nullptr : &free_sources_[i - emitter_count];
+    if (source && source->is_dome()) {
+      lights.push_back({.light = i});
+      continue;
+    }
+    if (!((emitter ? emitter->exitance : source->light) > 0.0f).any()) continue;
+    Candidates& of_channel = channels[static_cast<std::size_t>(
+        emitter ? first_column(emitter->facet) / bands_ : source->channel)];
+    of_channel.light.push_back(i);
+    of_channel.weight.push_back(approximate_light(i, query.at));
+    of_channel.sum += of_channel.weight.back();
+  }
+  for (std::size_t c = 0; c < channels.size(); ++c) {
+    const auto& [light, weight, sum] = channels[c];
+    if (light.empty()) continue;
+    const auto count = static_cast<double>(light.size());
+    const double by_weight = sum > 0.0 ? (1.0 - even) / sum : 0.0;
+    const double by_number = sum > 0.0 ? even / count : 1.0 / count;
+    double left = random_uniform(random_key(query.key, RandomPurpose::drawn_lights, c));
+    std::size_t k = 0;
+    double chance = by_weight * weight[k] + by_number;
+    while (k + 1 < light.size() && left >= chance) {
+      left -= chance;
+      chance = by_weight * weight[++k] + by_number;
+    }
+    lights.push_back({.light = light[k], .chance = chance});
+  }
+  return lights;
+}
+
 template <class Add>
 void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
                                  EmitterVisibility* visibility, Add&& add) const {
@@ -575,8 +675,9 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
   const auto emitter_count = static_cast<int>(emitters_.size());
   std::vector<LightShadow> shadows;
   std::optional<LightShadow> dome;
-  for (int i = first_light(query.lights); i < light_count(); ++i) {
-    LightShadow shadow{.index = i, .key = random_key(query.key, static_cast<std::uint64_t>(i))};
+  for (const auto& [i, chance] : chosen_lights(query)) {
+    LightShadow shadow{
+        .index = i, .key = random_key(query.key, static_cast<std::uint64_t>(i)), .chance = chance};
     if (i < emitter_count) {
       shadow.emitter = &emitters_[i];
       shadow.channel = first_column(shadow.emitter->facet) / bands_;
@@ -617,7 +718,8 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     const ShadowTally& tally = tallies[i];
     const double share = tally.share();
     const bool is_dimmed = tally.dimmed > 0.0;
-    const double F = receiver.is_plain() ? s.F : s.F * factor(s.index, query.at, receiver);
+    const double F =
+        (receiver.is_plain() ? s.F : s.F * factor(s.index, query.at, receiver)) / s.chance;
     const bool by_picture = s.has_picture() && !s.share;
     Spectrum through;
     if (is_dimmed && by_picture) {

@@ -41,6 +41,9 @@ struct Emitter {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   std::vector<std::array<Eigen::Vector3d, 3>> triangles{};  ///< tile the polygon, to place samples
   std::vector<double> area_cdf{};  ///< running share of the area, one per triangle, last is 1
+  /// Middle of the area, and the greatest distance of a point from there, m.
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  double radius = 0.0;
 };
 
 constexpr int most_shadow_rays = 256;  ///< that pictures and solves choose
@@ -83,6 +86,10 @@ struct LightQuery {
   /// ShadowOptions::sky_rays to NoiseGoal::most_times as many; otherwise `shadows` decides alone.
   NoiseGoal sky_noise{};
   Lights lights = Lights::all;
+  /// True for one of many points whose light is averaged: one light of each channel stands for all
+  /// of them, drawn in proportion to about what each would give, besides the sky's dome. The mean
+  /// over keys is the same; a point costs one closed form and one set of shadow rays.
+  bool one_stands_for_all = false;
   /// If set, each light counts times CoatedBase::factor() at its angle: irradiance as the base
   /// under a coat gets it. The light of the sky's dome is taken as even.
   const CoatedBase* base = nullptr;
@@ -182,6 +189,13 @@ class DirectLight {
 
  private:
   int first_light(Lights lights) const;
+  /// A light to be added, over the chance that it was drawn.
+  struct Choice {
+    int light = 0;
+    double chance = 1.0;
+  };
+  std::vector<Choice> chosen_lights(const LightQuery& query) const;
+  double approximate_light(int light, const SurfacePoint& at) const;
   /// Factor of the light that arrives from a direction: that of a coated base, of relief, or both.
   struct Receiver {
     const CoatedBase* base = nullptr;

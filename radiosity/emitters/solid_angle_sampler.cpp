@@ -35,6 +35,11 @@ SolidAngleSampler::SolidAngleSampler(const Emitter& emitter, const Vector3d& poi
   // A polygon fills at most area / height^2 of solid angle.
   const double square = height_ * height_;
   if (large * square > emitter.area || square < in_plane * in_plane * emitter.area) return;
+  // Nor does it fill more than area height / r^3, with the distance r of its nearest point.
+  const double nearest = (emitter.center - point).norm() - emitter.radius;
+  if (nearest > 0.0 && large * nearest * nearest * nearest > emitter.area * std::abs(height_)) {
+    return;
+  }
   double sum = 0.0;
   for (const auto& corners : emitter.triangles) {
     const Vector3d a = (corners[0] - point).normalized(), b = (corners[1] - point).normalized(),

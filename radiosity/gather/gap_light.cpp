@@ -20,8 +20,7 @@ constexpr int most_bounces = 16;
 // Narrower gaps are contacts: which of two surfaces in one plane a ray meets is a matter of
 // rounding.
 constexpr double narrowest_gap = 1e-4;
-// Many rays end in a gap, so each needs one shadow ray to a light, whatever share of the light of
-// its channel that is.
+// Many rays end in a gap, so each needs one light and one shadow ray.
 constexpr ShadowOptions shadows{.min_rays = 1, .max_rays = 1};
 
 // A cosine-distributed ray from a surface.
@@ -156,7 +155,9 @@ void GapLight::add(const ElementCaster& caster, const Ray& first_ray, const Elem
     const float survival = rho.maxCoeff();
     if (random_uniform(random_key(bounce_key, 3)) >= static_cast<double>(survival)) return;
     share *= rho.transpose() / survival;
-    add_direct(caster, {.at = at, .key = bounce_key, .shadows = shadows}, share, sum);
+    add_direct(caster,
+               {.at = at, .key = bounce_key, .shadows = shadows, .one_stands_for_all = true}, share,
+               sum);
     ray = scattered(at, bounce_key);
     caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.facet < 0) return;
@@ -181,7 +182,8 @@ void GapLight::add_near_portal(const ElementCaster& caster, const Portals& porta
                         .facet = first_hit.facet};
   const std::uint64_t portal_key = random_key(key, RandomPurpose::gap_rays, most_bounces);
   const Spectrum rho = mesh.reflectance.row(mesh.patch[first_hit.element]).transpose();
-  add_direct(caster, {.at = at, .key = portal_key, .shadows = shadows}, rho, sum);
+  add_direct(caster, {.at = at, .key = portal_key, .shadows = shadows, .one_stands_for_all = true},
+             rho, sum);
   // One ray of two kinds, each with the same chance; weights as of the balance heuristic.
   const Portals::View view = portals.view(at.position, at.normal, 1);
   const auto number = [&](std::uint64_t i) { return random_uniform(random_key(portal_key, i)); };

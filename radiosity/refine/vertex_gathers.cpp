@@ -22,11 +22,15 @@ constexpr std::uint64_t first_pilot_replica = 1000;
 // element of the deepest level (see vertex_gather_points).
 constexpr double finest_inset = 0.02;
 
+// Vertices at the start above which they count as many.
+constexpr int many_vertices = 1 << 15;
+
 // Rays of each of the two pilot gathers. A sixteenth of the final gather's rays suffices where its
-// noise has a goal; an eighth otherwise, since with half as many the predictions made of the pilot
-// gathers showed as faint blotches on walls.
-int pilot_rays(int rays, bool has_noise_goal) {
-  const int share = has_noise_goal ? 16 : 8;
+// noise has a goal, or where many vertices share what they find (see combine_with_predictions());
+// an eighth otherwise, since with half as many the predictions made of the pilot gathers showed as
+// faint blotches on walls.
+int pilot_rays(int rays, bool suffice) {
+  const int share = suffice ? 16 : 8;
   return static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::max(1, rays / share))));
 }
 
@@ -62,6 +66,7 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
       parts_(refine.parts),
       rays_of_part_(static_cast<std::size_t>(parts_.judged_count()), options.rays),
       has_noise_goal_(!refine.efforts.empty() && refine.efforts.front().noise > 0.0),
+      few_rays_suffice_(has_noise_goal_ || elements.base().vertex_count() > many_vertices),
       efforts_(refine.efforts),
       inset_(std::ldexp(finest_inset, -refine.max_level)),
       fineness_(vertex_fineness(elements.base(), parts_)),
@@ -84,7 +89,7 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
 void VertexGathers::share_pilot_rays() {
   const PatchMesh& mesh = elements_.base();
   std::vector<int> rays;
-  for (const int of_part : rays_of_part_) rays.push_back(pilot_rays(of_part, has_noise_goal_));
+  for (const int of_part : rays_of_part_) rays.push_back(pilot_rays(of_part, few_rays_suffice_));
   rays_ = share_rays(mesh, {}, parts_, rays);
   const std::vector<int> patch = vertex_patches(mesh);
   std::vector<char> shares(static_cast<std::size_t>(mesh.vertex_count()), 0);
@@ -118,7 +123,7 @@ NoiseGoal VertexGathers::sky_noise_at(int vertex) const {
   if (efforts_.empty()) return {};
   const int patch = elements_.base().patch[elements_.inside(vertex, 0.0).element];
   const auto part = static_cast<std::size_t>(parts_.judged_with(patch));
-  const double typical = pilot_rays(rays_of_part_[part], has_noise_goal_);
+  const double typical = pilot_rays(rays_of_part_[part], few_rays_suffice_);
   const auto v = static_cast<std::size_t>(vertex);
   const double few = std::max(typical / rays_[v], static_cast<double>(fineness_[v]));
   const float importance = std::max(parts_.importance_of(patch), least_importance);
@@ -224,7 +229,7 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
     point.rays = rays_[static_cast<std::size_t>(v)];
   }
   GatherOptions options = options_;
-  options.rays = pilot_rays(options_.rays, has_noise_goal_);
+  options.rays = pilot_rays(options_.rays, few_rays_suffice_);
   options.replica = options_.replica + first_pilot_replica + replica;
   GatheredIrradiance found =
       gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);

@@ -20,7 +20,8 @@ struct ChannelLight;
 ///
 /// - Direct light is gathered as for the final solution.
 /// - Indirect light is gathered twice, independently. Each gather casts an eighth of the final
-///   gather's rays (a sixteenth if the noise of that has a goal), rounded up to a power of two, and
+///   gather's rays (a sixteenth if the noise of that has a goal, or if there are more than 32 768
+///   vertices at the start), rounded up to a power of two, and
 ///   down to a quarter of that at the smallest elements of the start (an eighth at vertices of
 ///   SharedGathers::read). The rays take the same
 ///   directions all over a side of a surface, so that most of the noise is alike at neighbours and
@@ -109,7 +110,7 @@ class VertexGathers {
   GatherOptions options_;
   SceneParts parts_;
   std::vector<int> rays_of_part_;
-  bool has_noise_goal_;
+  bool has_noise_goal_, few_rays_suffice_;
   std::vector<PartEffort> efforts_;  // of each part, or empty
   double inset_;
   // Per vertex.

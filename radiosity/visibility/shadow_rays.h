@@ -1,10 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/visibility/clear_panes.h"
@@ -64,17 +64,21 @@ class ShadowBatch {
   void flush();
 
  private:
-  void add_through_panes(std::size_t ray, ShadowTally& tally) const;
+  // The rest of a waiting ray's sample.
+  struct Waiting {
+    double weight = 0.0;
+    const Eigen::Array3f* exitance = nullptr;
+    int tally = 0;
+  };
+  void add_through_panes(const Ray& ray, const Waiting& of_ray, ShadowTally& tally) const;
 
-  static constexpr std::size_t size = 256;
+  static constexpr std::size_t most = 256;
   const ElementCaster& caster_;
   std::span<ShadowTally> tallies_;
   const ClearPanes* panes_;
-  std::size_t count_ = 0;
-  std::array<Ray, size> rays_;
-  std::array<double, size> weights_;
-  std::array<const Eigen::Array3f*, size> exitances_;
-  std::array<int, size> tally_of_;
+  // Grow as rays come: many points need a single one.
+  std::vector<Ray> rays_{};
+  std::vector<Waiting> waiting_{};
 };
 
 }  // namespace lightwell

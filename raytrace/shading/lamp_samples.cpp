@@ -19,18 +19,6 @@ double cone_height(const Sphere& sphere, double distance) {
   return sine * sine / (1.0 + std::sqrt(std::max(0.0, 1.0 - sine * sine)));
 }
 
-Eigen::Vector3d center_of(const Emitter& emitter) {
-  if (emitter.is_sphere) return emitter.sphere.center;
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  double before = 0.0;
-  for (std::size_t t = 0; t < emitter.triangles.size(); ++t) {
-    const auto& [a, b, c] = emitter.triangles[t];
-    sum += (emitter.area_cdf[t] - before) / 3.0 * (a + b + c);
-    before = emitter.area_cdf[t];
-  }
-  return sum;
-}
-
 }  // namespace
 
 LampSamples::LampSamples(const DirectLight& direct_light) : emitters_(direct_light.emitters()) {
@@ -38,7 +26,6 @@ LampSamples::LampSamples(const DirectLight& direct_light) : emitters_(direct_lig
   for (std::size_t e = 0; e < emitters_.size(); ++e) {
     share_.push_back(static_cast<double>(emitters_[e].exitance.sum()) * emitters_[e].area);
     cdf_.push_back(sum += share_.back());
-    center_.push_back(center_of(emitters_[e]));
     const auto facet = static_cast<std::size_t>(emitters_[e].facet);
     of_facet_.resize(std::max(of_facet_.size(), facet + 1), -1);
     of_facet_[facet] = static_cast<int>(e);
@@ -47,22 +34,8 @@ LampSamples::LampSamples(const DirectLight& direct_light) : emitters_(direct_lig
   for (double& share : cdf_) share = sum > 0.0 ? share / sum : 0.0;
 }
 
-// Approximate irradiance at a point by emitter e, from its middle; 0 only if the emitter sends
-// nothing.
 double LampSamples::weight(std::size_t e, const Eigen::Vector3d& from) const {
-  const Emitter& emitter = emitters_[e];
-  const Eigen::Vector3d to = from - center_[e];
-  const double distance2 = to.squaredNorm();
-  if (emitter.is_sphere) {
-    const double radius = emitter.sphere.radius;
-    return share_[e] / std::max(distance2, radius * radius);
-  }
-  const double height = to.dot(emitter.normal);
-  if (!emitter.emits_both_sides && !(height > 0.0)) return 0.0;
-  // Beside a large emitter, parts of it are nearer than its middle and seen less edge on.
-  const double size2 = emitter.area / std::numbers::pi;
-  return share_[e] * (std::abs(height) + 0.1 * std::sqrt(size2)) /
-         (std::sqrt(distance2 + size2) * (distance2 + size2));
+  return share_[e] * approximate_kernel(emitters_[e], from);
 }
 
 double LampSamples::chance(std::size_t emitter, const Eigen::Vector3d& from) const {

@@ -47,7 +47,6 @@ class LampSamples {
 
   const std::vector<Emitter>& emitters_;
   std::vector<double> share_{};  // per emitter: share of the total power
-  std::vector<Eigen::Vector3d> center_{};
   std::vector<double> cdf_{};    // running sum of share_
   std::vector<int> of_facet_{};  // emitter per facet; -1: none
 };

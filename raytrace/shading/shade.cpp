@@ -335,6 +335,8 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .sky_lobe_density = off_lobe ? sample.density : parent.sky_lobe_density,
                 .behind_coat = parent.behind_coat + (parent.behind_coat > 0 || what.coat ? 1 : 0),
                 .cone = {.start = cone_width(parent, at), .spread = parent.cone.spread},
+                .blur = {.start = width_of(parent.blur, parent, at),
+                         .spread = off_lobe ? spread_of_lobe(sample.density) : parent.blur.spread},
                 .media = parent.media,
                 .polarisation = sample.polarisation};
   if (!survives(branch, state)) return;

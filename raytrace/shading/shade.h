@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -113,6 +114,8 @@ struct SpecularSegment {
 ///
 /// Behind a coat that mirrors less than a quarter of the light, or blurs it, diffuse surfaces show
 /// the solution's irradiance: shadow rays there would cost more than those of the coated surface.
+/// So do surfaces behind a rough surface whose lobe spreads their light over an element of the mesh
+/// or more, since nothing is seen of what the mesh lacks there.
 ///
 /// Textures are filtered over the PixelCone of a ray, which grows with the length of the path as if
 /// all surfaces on the way were flat.
@@ -207,6 +210,9 @@ class RayTree {
     double sky_lobe_density = 0.0;  ///< lobe_density of that surface's direction
     int behind_coat = 0;  ///< surfaces on the way from the first coat on, that one included
     PixelCone cone{};     ///< of the ray, from its origin on
+    /// Width over which rough surfaces on the way spread the ray's light, from its origin on: about
+    /// the square root of a lobe's solid angle for each metre behind it.
+    PixelCone blur{};
     Media media{};
     Polarisation polarisation{};
   };
@@ -317,9 +323,15 @@ class RayTree {
   Arriving arriving_from_mesh(const ElementHit& hit, const ShadingPoint& at, bool is_dim,
                               const Eigen::Vector3d& normal,
                               const std::optional<ReliefSlope>& relief) const;
-  double cone_width(const Branch& branch, const ShadingPoint& at) const {
-    return branch.cone.start + branch.cone.spread * (at.position - branch.ray.origin).norm();
+  static double width_of(const PixelCone& cone, const Branch& branch, const ShadingPoint& at) {
+    return cone.start + cone.spread * (at.position - branch.ray.origin).norm();
   }
+  /// Width of a lobe of this density, 1/sr, for each metre.
+  static double spread_of_lobe(double density) { return 1.0 / std::sqrt(density); }
+  static double cone_width(const Branch& branch, const ShadingPoint& at) {
+    return width_of(branch.cone, branch, at);
+  }
+  bool is_blurred(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   float indirect_gain(const ElementHit& hit, const ShadingPoint& at,
                       const std::optional<ReliefSlope>& relief) const;
   Spectrum indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,

@@ -305,6 +305,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
                           static_cast<std::uint64_t>(aim.element));
   aimed.is_sharp = false;
   aimed.cone.start = cone_width(branch, at);
+  aimed.blur = {.start = width_of(branch.blur, branch, at), .spread = spread_of_lobe(density)};
   aimed.lobe_density = 0.0;
   aimed.bright = nullptr;
   aimed.is_aimed = true;

@@ -172,6 +172,17 @@ RayTree::Arriving RayTree::arriving_from_mesh(const ElementHit& hit, const Shadi
   return E;
 }
 
+// Returns whether rough surfaces on the way, or a coat that blurs, spread the light of a hit over
+// an element of the mesh or more.
+bool RayTree::is_blurred(const Branch& branch, const ElementHit& hit,
+                         const ShadingPoint& at) const {
+  if (branch.is_sharp) return false;
+  if (branch.behind_coat > 0) return true;
+  const double width = width_of(branch.blur, branch, at);
+  const double cosine = std::abs(branch.ray.direction.normalized().dot(at.normal));
+  return width * width > cosine * caster_.mesh().element_area[hit.element];
+}
+
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,
                                     const Branch& branch, const TreeState& state) const {
   const PatchMesh& mesh = caster_.mesh();
@@ -179,8 +190,8 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   const CoatedBase* base = base_at(hit);
   const std::optional<ReliefSlope> relief = relief_at(branch, hit, at, normal, state);
   constexpr float weak = 0.25f;
-  const bool is_dim =
-      branch.behind_coat > 0 && (!branch.is_sharp || branch.weight.maxCoeff() < weak);
+  const bool is_weak = branch.behind_coat > 0 && branch.weight.maxCoeff() < weak;
+  const bool is_dim = is_weak || is_blurred(branch, hit, at);
   if (options_.pass == Pass::interpolate || is_dim) {
     return arriving_from_mesh(hit, at, is_dim, normal, relief);
   }

@@ -104,6 +104,31 @@ TEST(Gloss, ScattersAlikeInBothPasses) {
   }
 }
 
+// A rough mirror above a floor of few elements shows the floor as the solution has it, whose light
+// is set apart here from what shadow rays find; a smooth one shows what shadow rays find.
+TEST(Gloss, ShowsTheSolutionWhereItsLobeCoversElements) {
+  constexpr float rho = 0.5f, E_of_solution = 7.0f;
+  for (const float roughness : {0.0f, 0.5f}) {
+    TracedScene lit(SceneBuilder()
+                        .square({.reflectance = rho}, {0, 0, -1}, up, 40.0)
+                        .square({.specular = 1.0f, .roughness = roughness}, {0, 0, 1}, -up, 0.5)
+                        .square({.exitance = pi_f}, {0, 0, 30}, -up, 1.0)
+                        .build());
+    lit.solution.direct_irradiance.setConstant(E_of_solution);
+    lit.solution.indirect_irradiance.setZero();
+    const Ray ray{.origin = {0.0, 0.1, 0.0}, .direction = up};
+    const float L = radiance(lit, ray), of_solution = rho * E_of_solution / pi_f;
+    if (roughness > 0.0f) {
+      // Every ray of the lobe ends on the floor or, almost along it, beyond.
+      EXPECT_NEAR(L, of_solution, 1e-5f * of_solution);
+    } else {
+      // The lamp of 4 m^2 is 31 m above the floor: E < 4 / 31^2.
+      EXPECT_LT(L, rho * 4.0f / (31.0f * 31.0f) / pi_f);
+      EXPECT_GT(L, 0.0f);
+    }
+  }
+}
+
 // Every wall emits M and reflects rho: B = M / (1 - rho) with any rough bodies between the walls.
 TEST(Gloss, NeitherTakesNorGivesLightInTheFirstPass) {
   for (const Paint& paint : {Paint{.specular = 1.0f, .roughness = 0.4f},

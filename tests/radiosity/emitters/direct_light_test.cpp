@@ -166,5 +166,52 @@ TEST(DirectLight, SphereLampObeysTheClosedForm) {
   }
 }
 
+// A point that drawn lights are compared with all lights at: a large emitter through whose plane
+// the point's horizon runs, with its middle below the horizon; small emitters of other brightness,
+// one behind the point; a sphere; a lamp. Nothing stands between.
+TEST(DirectLight, OneLightStandsForAllInTheMean) {
+  Scene scene;
+  const auto shines = [&](float M) {
+    return test::add_material(scene, test::diffuse(scene.bands, 0.0f, M));
+  };
+  test::add_polygon(scene, "wall", shines(1.0f), {{3, 2, -4}, {3, -2, -4}, {3, -2, 1}, {3, 2, 1}});
+  test::add_polygon(scene, "panel", shines(40.0f), {{0, 0, 3}, {0, 1, 3}, {1, 1, 3}, {1, 0, 3}});
+  test::add_polygon(scene, "dim", shines(2.0f), {{-2, 0, 2}, {-2, 1, 2}, {-1, 1, 2}, {-1, 0, 2}});
+  test::add_polygon(scene, "behind", shines(90.0f),
+                    {{0, 0, -1}, {1, 0, -1}, {1, 1, -1}, {0, 1, -1}});
+  scene.surfaces.push_back({.name = "ball",
+                            .material = shines(5.0f),
+                            .shape = Sphere{.center = {-2, -2, 1.5}, .radius = 0.5}});
+  Lamp lamp{.name = "lamp", .position = {0.5, -2.0, 2.0}};
+  lamp.intensity = constant_spectrum(scene.bands, 3.0f);
+  scene.lamps.push_back(lamp);
+  const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+  test::add_polygon(scene, "far", black, {{-9, -9, -9}, {9, -9, -9}, {9, 9, -9}, {-9, 9, -9}});
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 2.0});
+  const ElementCaster caster(mesh);
+  const DirectLight light(scene, mesh);
+  ASSERT_EQ(light.light_count(), 6);
+  const SurfacePoint at{
+      .position = Eigen::Vector3d::Zero(), .normal = Eigen::Vector3d::UnitZ(), .facet = -1};
+  const double all = light.irradiance(caster, {.at = at})[0];
+
+  constexpr int count = 20000;
+  double sum = 0.0, squares = 0.0;
+  for (int key = 0; key < count; ++key) {
+    const double E = light.irradiance(caster, {.at = at,
+                                               .key = static_cast<std::uint64_t>(key),
+                                               .shadows = {.min_rays = 1, .max_rays = 1},
+                                               .one_stands_for_all = true})[0];
+    sum += E;
+    squares += E * E;
+  }
+  const double mean = sum / count, variance = squares / count - mean * mean;
+  // Four standard errors, which independent numbers exceed once in 16 000 times.
+  EXPECT_NEAR(mean, all, 4.0 * std::sqrt(variance / count));
+  // Draws in proportion to the light would have no variance at all; even ones over six lights, of
+  // which one gives most, would have five times the square of the mean.
+  EXPECT_LT(variance, all * all);
+}
+
 }  // namespace
 }  // namespace lightwell::direct_light_test
