@@ -34,8 +34,10 @@ struct SolveOptions {
   /// elements, the limit is a million or four times the elements at the start, whichever is more.
   /// An accuracy that is out of reach gives Outcome::accuracy_missed.
   std::optional<Accuracy> accuracy{};
-  int caustic_rays = 1 << 19;  ///< of each emitter, cast if the scene has mirrors or glass
-  int free_rays = 1 << 20;     ///< of all lamps together to the patches, see cast_free_light
+  /// Of a light that is alone in its channel, cast if the scene has mirrors or glass; others cast
+  /// that times the root of their share of the channel's power.
+  int caustic_rays = 1 << 19;
+  int free_rays = 1 << 20;  ///< of all lamps together to the patches, see cast_free_light
   /// Channels of emitters whose light is kept apart, so that relight() can dim each.
   EmitterChannels channels{};
   /// A solution with the same patches, whose radiosities the solver begins with; reflectances and

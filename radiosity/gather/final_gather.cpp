@@ -505,6 +505,7 @@ class CausticPower {
       emitter_of_facet_.resize(std::max<std::size_t>(emitter_of_facet_.size(), facet + 1), -1);
       emitter_of_facet_[facet] = e;
     }
+    find_rays();
   }
 
   BandArray& power() { return power_; }
@@ -516,8 +517,9 @@ class CausticPower {
     if (!lit_.direct_light.owns(facet, mesh.is_back[p] != 0) ||
         !(mesh.emission.row(p) > 0.0f).any())
       return;
-    const double share = mesh.area[p] / lit_.direct_light.emitters()[emitter_of_facet_[facet]].area;
-    const int count = std::clamp(static_cast<int>(std::lround(rays_ * share)), 1, rays_);
+    const int light = emitter_of_facet_[facet], of_light = rays_of_light_[light];
+    const double share = mesh.area[p] / lit_.direct_light.emitters()[light].area;
+    const int count = std::clamp(static_cast<int>(std::lround(of_light * share)), 1, of_light);
     const Spectrum power_per_ray =
         mesh.emission.row(p).transpose() * static_cast<float>(mesh.area[p] / count);
     const std::uint64_t key =
@@ -534,13 +536,40 @@ class CausticPower {
     if (!source.is_on() || source.is_dome()) return;
     const std::uint64_t key =
         random_key(static_cast<std::uint64_t>(source.number), RandomPurpose::caustic_source_rays);
-    send(rays_, key, source.channel * bands_, [&](int r) {
+    const int count = rays_of_light_[lit_.direct_light.emitters().size() + source.number];
+    send(count, key, source.channel * bands_, [&](int r) {
       const SourceRay sent = source_ray(source, sobol_.point(r, key));
-      return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / rays_)));
+      return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / count)));
     });
   }
 
  private:
+  // Rays of each light: `rays_` times the root of the light's share of its channel's power. In
+  // proportion to the power, all light together would have the least noise, but caustics of single
+  // lamps, which lie apart, would be left with a few rays each.
+  void find_rays() {
+    const DirectLight& direct = lit_.direct_light;
+    std::vector<double> power;
+    std::vector<int> channel;
+    for (const Emitter& emitter : direct.emitters()) {
+      power.push_back(double{emitter.exitance.mean()} * emitter.area);
+      channel.push_back(direct.first_column(emitter.facet) / static_cast<int>(bands_));
+    }
+    for (const FreeSource& source : direct.free_sources()) {
+      power.push_back(double{source.light.mean()} * total_weight(source));
+      channel.push_back(source.channel);
+    }
+    std::vector<double> of_channel(static_cast<std::size_t>(direct.channel_count()), 0.0);
+    for (std::size_t i = 0; i < power.size(); ++i) of_channel[channel[i]] += power[i];
+    const int fewest = std::min(rays_, 1 << 12);
+    for (std::size_t i = 0; i < power.size(); ++i) {
+      const double all = of_channel[channel[i]];
+      const double share = all > 0.0 ? power[i] / all : 1.0;
+      rays_of_light_.push_back(
+          std::clamp(static_cast<int>(std::lround(rays_ * std::sqrt(share))), fewest, rays_));
+    }
+  }
+
   struct Deposit {
     int element;
     Spectrum power;
@@ -580,6 +609,7 @@ class CausticPower {
   int rays_, bands_;
   SobolPoints sobol_;
   std::vector<int> emitter_of_facet_{};  // -1: none
+  std::vector<int> rays_of_light_{};     // emitters, then free sources
   BandArray power_;
 };
 

@@ -111,8 +111,10 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
                                const RadiositySolution& solution);
 
 /// Irradiance at every vertex (vertices x columns, W/m^2) from the lights of DirectLight through
-/// mirrors and glass. `rays` rays of each light leave their power on the elements where they end
+/// mirrors and glass. The rays of each light leave their power on the elements where they end
 /// (after Heckbert 1990), and a vertex takes the power of the elements around it over their area.
+/// A light casts `rays` times the root of its share of its channel's power, at least 4096 if `rays`
+/// are more.
 /// Light straight through ClearPanes is left out, since it is direct light, and so is that of the
 /// sky's dome. Empty if the scene has no mirrors or glass. Throws Interrupted when progress says
 /// stop.
