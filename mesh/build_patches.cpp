@@ -220,7 +220,10 @@ double area_to_mesh(const Scene& scene) {
     const Material& material = scene.materials[surface.material];
     const double area = side_count(material) * surface_area(surface);
     all += area;
-    if (!material.is_specular() || material.coat || material.passes_straight()) diffuse += area;
+    if (!material.is_specular() || material.mirrors_by_coat() || material.passes_straight() ||
+        material.pattern) {
+      diffuse += area;
+    }
   }
   constexpr double most_of_all = 16.0;
   return std::max(diffuse, all / most_of_all);

@@ -350,7 +350,9 @@ enum class Sampled { none, with_gloss, all };
 Sampled sampled_pixels(const Scene& scene, const CameraRays& rays, bool is_exposure,
                        const RenderOptions& options) {
   if (options.sampling.most > 0 || is_exposure || rays.has_lens()) return Sampled::all;
-  const auto is_rough = [](const Material& m) { return m.gloss_roughness() > 0.0f; };
+  const auto is_rough = [](const Material& m) {
+    return m.gloss_roughness() > 0.0f || (m.pattern && m.pattern->roughness);
+  };
   return std::ranges::any_of(scene.materials, is_rough) ? Sampled::with_gloss : Sampled::none;
 }
 

@@ -43,7 +43,7 @@ Material lone_coat(const Material& material) {
   coat.reflectance = coat.emission = Spectrum::Zero(1);
   coat.specular = Spectrum::Ones(1);
   coat.specular_roughness = material.specular_roughness;
-  coat.coat = material.coat;
+  coat.coat = Coat{.index_of_refraction = material.coat->index_of_refraction};
   return coat;
 }
 
@@ -80,8 +80,14 @@ CoatedBase::CoatedBase(const Material& material) {
   if (!std::isfinite(key.first) || !std::isfinite(key.second)) {
     throw std::invalid_argument("a coat needs a finite index and roughness");
   }
+  if (material.pattern && material.pattern->coat_levels) {
+    *this = material.pattern->coat_levels->at(material.specular_roughness)
+                .covering(material.coat->cover);
+    return;
+  }
+  cover_ = double{material.coat->cover};
   if (const auto known = known_bases().find(key)) {
-    *this = *known;
+    *this = known->covering(material.coat->cover);
     return;
   }
   index_ = double{material.coat->index_of_refraction};
@@ -101,6 +107,23 @@ CoatedBase::CoatedBase(const Material& material) {
   known_bases().keep(key, *this);
 }
 
+CoatedBase::CoatedBase(const CoatedBase& low, const CoatedBase& high, double part)
+    : index_(low.index_), mean_((1.0 - part) * low.mean_ + part * high.mean_) {
+  std::array<float, steps_> rough{};
+  for (std::size_t i = 0; i < steps_; ++i) {
+    const double cosine = (static_cast<double>(i) + 0.5) / steps_;
+    rough[i] =
+        static_cast<float>((1.0 - part) * low.mirrored(cosine) + part * high.mirrored(cosine));
+  }
+  rough_ = rough;
+}
+
+CoatedBase CoatedBase::covering(float cover) const {
+  CoatedBase base = *this;
+  base.cover_ = double{cover};
+  return base;
+}
+
 double CoatedBase::mirrored(double cosine) const {
   if (!rough_) return fresnel_reflectance(cosine, index_);
   const double place = std::clamp(cosine * steps_ - 0.5, 0.0, steps_ - 1.0);
@@ -110,7 +133,43 @@ double CoatedBase::mirrored(double cosine) const {
 }
 
 double CoatedBase::factor(double cosine) const {
-  return (1.0 - mirrored(std::clamp(cosine, 0.0, 1.0))) / (1.0 - mean_);
+  return (1.0 - cover_ * mirrored(std::clamp(cosine, 0.0, 1.0))) / (1.0 - cover_ * mean_);
+}
+
+namespace {
+
+// Steps of CoatLevels from alpha 0 to 1.
+constexpr int level_steps = 16;
+
+double step_of(float alpha) {
+  return level_steps * std::sqrt(double{std::clamp(alpha, 0.0f, 1.0f)});
+}
+
+}  // namespace
+
+CoatLevels::CoatLevels(const Material& material, float least, float most) {
+  if (!material.coat) throw std::invalid_argument("levels of a coat need a coat");
+  Material coat = lone_coat(material);
+  const auto add = [&](float alpha) {
+    coat.specular_roughness = alpha;
+    levels_.emplace_back(coat);
+  };
+  if (least >= most) {
+    add(least);
+    return;
+  }
+  first_ = static_cast<int>(std::floor(step_of(least)));
+  const int last = static_cast<int>(std::ceil(step_of(most)));
+  for (int i = first_; i <= last; ++i) {
+    add(static_cast<float>(i * i) / static_cast<float>(level_steps * level_steps));
+  }
+}
+
+CoatedBase CoatLevels::at(float alpha) const {
+  const double place = std::clamp(step_of(alpha) - first_, 0.0, double(levels_.size() - 1));
+  const auto low = static_cast<std::size_t>(place);
+  const double part = place - static_cast<double>(low);
+  return part > 0.0 ? CoatedBase(levels_[low], levels_[low + 1], part) : levels_[low];
 }
 
 CoatedBases::CoatedBases(const std::vector<Material>& materials) : bases_(materials.size()) {
@@ -124,7 +183,9 @@ CoatedBases::CoatedBases(const std::vector<Material>& materials) : bases_(materi
 Spectrum mean_mirrored(const Material& material) {
   if (material.metal) return mean_reflectance(*material.metal) * material.specular;
   if (!material.coat) return material.specular;
-  return static_cast<float>(CoatedBase(material).mean_mirrored()) * material.specular;
+  Spectrum share = static_cast<float>(CoatedBase(material).mean_mirrored()) * material.specular;
+  if (material.coat->bare.size() > 0) share += material.coat->bare;
+  return share;
 }
 
 std::vector<Spectrum> mean_mirrored(const std::vector<Material>& materials) {

@@ -4,19 +4,24 @@
 #include <bit>
 #include <cmath>
 
+#include "scene/material_at.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 
-FacetTextures::FacetTextures(const Scene& scene) {
+FacetTextures::FacetTextures(const Scene& scene) : basis_(scene.bands) {
   std::vector<int> pictures_of_material;
   for (const Material& material : scene.materials) {
-    const bool varies = material.texture || material.emission_texture || material.mask;
+    const bool varies =
+        material.texture || material.emission_texture || material.mask || material.pattern;
     pictures_of_material.push_back(varies ? static_cast<int>(pictures_.size()) : -1);
     if (varies) {
       pictures_.push_back({.texture = material.texture,
                            .emission = material.emission_texture,
                            .mask = material.mask});
+      if (material.pattern) {
+        pictures_.back().patterned = std::make_shared<const Material>(material);
+      }
     }
   }
   if (pictures_.empty()) return;
@@ -37,6 +42,7 @@ FacetTextures::FacetTextures(const Scene& scene) {
       const Pictures& shown = pictures_[static_cast<std::size_t>(pictures)];
       has_holes_ = has_holes_ || (has_uv && shown.mask.has_value());
       has_emission_ = has_emission_ || (has_uv && shown.emission.has_value());
+      has_patterns_ = has_patterns_ || (has_uv && shown.patterned);
     }
   }
   if (!any) entry_of_.clear();
@@ -62,16 +68,36 @@ void FacetTextures::add_to_hash(int facet) {
   add_numbers(entry(facet).uv.offset);
 }
 
+Material FacetTextures::material(int facet, const Eigen::Vector3d& point) const {
+  const Material& patterned = *materials_of(facet).patterned;
+  return material_at(patterned, values_at(patterned, entry(facet).uv.at(point), basis_));
+}
+
+Material FacetTextures::material(int facet, const Eigen::Vector3d& point,
+                                 const Eigen::Matrix<double, 3, 2>& footprint) const {
+  const Material& patterned = *materials_of(facet).patterned;
+  const UvMap& uv = entry(facet).uv;
+  return material_at(patterned,
+                     values_over(patterned, uv.at(point), uv.gradient * footprint, basis_));
+}
+
+float FacetTextures::roughness(int facet, const Eigen::Vector3d& point) const {
+  return roughness_at(*materials_of(facet).patterned, entry(facet).uv.at(point));
+}
+
 Spectrum FacetTextures::reflectance(int facet, const Eigen::Vector3d& point) const {
+  if (has_pattern(facet)) return material(facet, point).reflectance;
   const ReflectanceTexture& texture = *materials_of(facet).texture;
-  return texture.factor * texture.image.at(entry(facet).uv.at(point));
+  return texture.factor * basis_.reflectance(texture.image.at(entry(facet).uv.at(point)));
 }
 
 Spectrum FacetTextures::reflectance(int facet, const Eigen::Vector3d& point,
                                     const Eigen::Matrix<double, 3, 2>& footprint) const {
+  if (has_pattern(facet)) return material(facet, point, footprint).reflectance;
   const ReflectanceTexture& texture = *materials_of(facet).texture;
   const UvMap& uv = entry(facet).uv;
-  return texture.factor * texture.image.over(uv.at(point), uv.gradient * footprint);
+  return texture.factor *
+         basis_.reflectance(texture.image.over(uv.at(point), uv.gradient * footprint));
 }
 
 Spectrum FacetTextures::emission(int facet, const Eigen::Vector3d& point) const {
@@ -90,13 +116,15 @@ double FacetTextures::texels_along(int facet, const Eigen::Vector3d& vector) con
   const Pictures& shown = materials_of(facet);
   const Eigen::Vector2d in_uv = uv_map(facet).gradient * vector;
   double texels = 0.0;
-  for (const SurfaceTexture* image : {shown.texture ? &shown.texture->image : nullptr,
-                                      shown.emission ? &shown.emission->image : nullptr}) {
-    if (!image) continue;
-    const Eigen::Vector2d along = image->placement.leftCols<2>() * in_uv;
-    texels = std::max(texels, std::hypot(along.x() * image->picture->width(),
-                                         along.y() * image->picture->height()));
-  }
+  const auto count = [&](const SurfaceTexture& image) {
+    const Eigen::Vector2d along = image.placement.leftCols<2>() * in_uv;
+    texels = std::max(texels, std::hypot(along.x() * image.picture->width(),
+                                         along.y() * image.picture->height()));
+  };
+  if (shown.texture) count(shown.texture->image);
+  if (shown.emission) count(shown.emission->image);
+  if (!shown.patterned) return texels;
+  for (const auto& share : pictures_of(*shown.patterned->pattern)) count(share->image);
   return texels;
 }
 

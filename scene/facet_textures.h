@@ -2,9 +2,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "scene/rgb_basis.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -21,7 +23,13 @@ class FacetTextures {
   bool has_holes() const { return has_holes_; }
   /// Hash of all that decides where the holes are; 0 without holes.
   std::uint64_t hash_of_holes() const { return hash_of_holes_; }
-  bool is_textured(int facet) const { return varying(facet) && materials_of(facet).texture; }
+  /// True if rho varies over the facet, by a texture or a pattern.
+  bool is_textured(int facet) const {
+    return varying(facet) && (materials_of(facet).texture || materials_of(facet).patterned);
+  }
+  /// True if some facet has a pattern.
+  bool has_patterns() const { return has_patterns_; }
+  bool has_pattern(int facet) const { return varying(facet) && materials_of(facet).patterned; }
   bool has_holes(int facet) const { return varying(facet) && materials_of(facet).mask; }
   /// True if some facet shines by a picture.
   bool has_emission() const { return has_emission_; }
@@ -37,11 +45,18 @@ class FacetTextures {
   Spectrum emission(int facet, const Eigen::Vector3d& point) const;
   Spectrum emission(int facet, const Eigen::Vector3d& point,
                     const Eigen::Matrix<double, 3, 2>& footprint) const;
+  /// The numbers of the material at `point` of a facet that has a pattern, unfiltered, and about
+  /// `point` (see material_at()).
+  Material material(int facet, const Eigen::Vector3d& point) const;
+  Material material(int facet, const Eigen::Vector3d& point,
+                    const Eigen::Matrix<double, 3, 2>& footprint) const;
+  /// GGX alpha at `point` (metres) of a facet that has a pattern, unfiltered.
+  float roughness(int facet, const Eigen::Vector3d& point) const;
   /// The picture by which a facet shines, and its coordinates.
   const EmissionTexture& emission_texture(int facet) const { return *materials_of(facet).emission; }
   const UvMap& uv_map(int facet) const { return entry(facet).uv; }
-  /// Largest number of texels of a facet's texture or picture of emission along `vector` (metres)
-  /// in the facet's plane.
+  /// Largest number of texels of a facet's texture, pattern or picture of emission along `vector`
+  /// (metres) in the facet's plane.
   double texels_along(int facet, const Eigen::Vector3d& vector) const;
   /// True if light passes at `point` (metres) of a facet that has holes.
   bool is_hole(int facet, const Eigen::Vector3d& point) const;
@@ -51,6 +66,7 @@ class FacetTextures {
     std::optional<ReflectanceTexture> texture{};
     std::optional<EmissionTexture> emission{};
     std::optional<Mask> mask{};
+    std::shared_ptr<const Material> patterned{};  // null: no pattern
   };
   struct Entry {
     int pictures = 0;
@@ -68,7 +84,8 @@ class FacetTextures {
   std::vector<Pictures> pictures_{};
   std::vector<Entry> entries_{};  // one for each UvMap of a surface that has pictures
   std::vector<int> entry_of_{};   // by facet; -1: no picture; empty: no facet has one
-  bool has_holes_ = false, has_emission_ = false;
+  RgbBasis basis_{};
+  bool has_holes_ = false, has_emission_ = false, has_patterns_ = false;
   std::uint64_t hash_of_holes_ = 0;
 };
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -16,6 +17,7 @@
 #include "scene/normal_map.h"
 #include "scene/relief.h"
 #include "scene/sky.h"
+#include "scene/surface_pattern.h"
 #include "scene/texture.h"
 
 namespace lightwell {
@@ -46,6 +48,10 @@ inline constexpr float highest_absorption = 1e6f;
 struct Coat {
   float index_of_refraction = 1.5f;  ///< over that of the air before, in [lowest_coat_index,
                                      ///< highest_index]
+  /// Share, [0,1], of the diffuse base that the coat covers.
+  float cover = 1.0f;
+  /// Share, per band, that bare metal beside the coat mirrors at all angles alike. Empty: none.
+  Spectrum bare{};
 };
 
 /// Least index of a coat that validate() accepts. A coat of the air's own index mirrors nothing.
@@ -104,13 +110,17 @@ struct Material {
   std::optional<Mask> mask{};  ///< holes in facets with UV; of materials that emit nothing
   /// Bends the normals of facets with UV in pictures. Solutions do not depend on it.
   std::optional<Relief> relief{};
+  /// Shares and roughness that vary over facets with UV; null: none (see material_at()).
+  std::shared_ptr<const SurfacePattern> pattern{};
 
   /// True if a picture is laid over facets with UV.
-  bool shows_picture() const { return texture || emission_texture || mask || relief; }
+  bool shows_picture() const { return texture || emission_texture || mask || relief || pattern; }
+  /// True if a share of light is mirrored by a mirror, a metal or a coat.
+  bool mirrors() const { return (specular > 0.0f).any() || (coat && (coat->bare > 0.0f).any()); }
+  /// True if a coat alone mirrors, which is a small share of most light.
+  bool mirrors_by_coat() const { return coat && !(coat->bare > 0.0f).any(); }
   /// True if light is mirrored, refracted or passes straight on, sharply or spread by roughness.
-  bool is_specular() const {
-    return dielectric.has_value() || (specular > 0.0f).any() || passes_straight();
-  }
+  bool is_specular() const { return dielectric.has_value() || mirrors() || passes_straight(); }
   /// True if light from one side leaves the other side diffusely.
   bool is_translucent() const { return (transmittance > 0.0f).any(); }
   /// True for a thin sheet that lets a share of the light pass straight on.
@@ -120,7 +130,7 @@ struct Material {
   /// GGX alpha of the dielectric or the mirror; 0: smooth, or neither.
   float gloss_roughness() const {
     if (dielectric) return dielectric->roughness;
-    return (specular > 0.0f).any() ? specular_roughness : 0.0f;
+    return mirrors() ? specular_roughness : 0.0f;
   }
   bool is_emitter() const { return (emission > 0.0f).any(); }
 };

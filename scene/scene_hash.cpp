@@ -39,13 +39,15 @@ void add_gloss(const Material& m, Hash& hash) {
   constexpr std::uint64_t rough_mirror = 0x6d17707e, glass_body = 0x61a55b0d,
                           body_of_pane = 0x9a4eb0d1, coat = 0xc0a7ba5e, translucent = 0x7a0d1ff5,
                           straight = 0x57a1647, metal = 0x3e7a1;
-  if (m.specular_roughness > 0.0f && (m.specular > 0.0f).any()) {
+  if (m.specular_roughness > 0.0f && m.mirrors()) {
     hash.add(rough_mirror);
     hash.add(static_cast<double>(m.specular_roughness));
   }
   if (m.coat) {
     hash.add(coat);
     hash.add(static_cast<double>(m.coat->index_of_refraction));
+    if (m.coat->cover < 1.0f) hash.add(static_cast<double>(m.coat->cover));
+    if (m.coat->bare.size() > 0) hash.add(m.coat->bare);
   }
   if (m.metal) {
     hash.add(metal);
@@ -81,6 +83,23 @@ void add_image(const SurfaceTexture& image, Hash& hash) {
   for (const double x : image.placement.reshaped()) hash.add(x);
 }
 
+void add_pattern(const SurfacePattern& pattern, Hash& hash) {
+  constexpr std::uint64_t word = 0x9a77e26u;
+  hash.add(word);
+  for (const auto* share : {&pattern.roughness, &pattern.metal, &pattern.coat, &pattern.opacity,
+                            &pattern.translucency}) {
+    hash.add(static_cast<std::uint64_t>(share->has_value()));
+    if (!share->has_value()) continue;
+    add_image((*share)->image, hash);
+    hash.add(static_cast<double>((*share)->factor));
+  }
+  for (const Spectrum* of : {&pattern.base, &pattern.behind_base, &pattern.passed,
+                             &pattern.mirrored, &pattern.metal_color, &pattern.straight}) {
+    hash.add(*of);
+  }
+  hash.add(static_cast<std::uint64_t>(pattern.metal_shows_texture));
+}
+
 void add_pictures(const Material& m, Hash& hash) {
   constexpr std::uint64_t texture = 0x7e87u, emission = 0xe3155u, mask = 0x3a5cu;
   if (m.texture) {
@@ -98,6 +117,7 @@ void add_pictures(const Material& m, Hash& hash) {
     add_image(m.mask->image, hash);
     hash.add(static_cast<double>(m.mask->cutoff));
   }
+  if (m.pattern) add_pattern(*m.pattern, hash);
 }
 
 void add_material(const Material& m, Hash& hash) {
@@ -116,7 +136,9 @@ void add_material(const Material& m, Hash& hash) {
 
 // Texture coordinates matter only where the material shows a picture.
 void add_uv(const PolygonMesh& mesh, const Material& material, Hash& hash) {
-  if (!material.texture && !material.emission_texture && !material.mask) return;
+  if (!material.texture && !material.emission_texture && !material.mask && !material.pattern) {
+    return;
+  }
   for (const UvMap& uv : mesh.uv_maps) {
     for (const double x : uv.gradient.reshaped()) hash.add(x);
     for (const double x : uv.offset) hash.add(x);

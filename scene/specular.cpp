@@ -241,7 +241,14 @@ Spectrum straight_share(const SurfaceInteraction& interaction) {
   const Material& material = interaction.material;
   const Spectrum& all = material.regular_transmittance;
   if (!material.coat) return all;
-  const Spectrum holes = all.min(1.0f - material.specular);
+  const auto holes_beside = [&]() -> Spectrum {
+    const Coat& coat = *material.coat;
+    const Spectrum covered = coat.cover > 0.0f ? Spectrum(material.specular / coat.cover)
+                                               : Spectrum(Spectrum::Zero(all.size()));
+    const Spectrum taken = coat.bare.size() > 0 ? Spectrum(covered + coat.bare) : covered;
+    return all.min((1.0f - taken).max(0.0f));
+  };
+  const Spectrum holes = holes_beside();
   if (!(all > holes).any()) return all;
   const double cosine = -interaction.direction.dot(interaction.normal);
   return holes + static_cast<float>(CoatedBase(material).factor(cosine)) * (all - holes);
@@ -255,7 +262,9 @@ Spectrum scattering_weight(const SurfaceInteraction& interaction, const Scatteri
   if (const auto& coat = interaction.material.coat) {
     const double cosine = std::min(1.0, cosine_at_facet(interaction, sample));
     const double F = fresnel_reflectance(cosine, double{coat->index_of_refraction});
-    return static_cast<float>(F) * interaction.material.specular;
+    Spectrum share = static_cast<float>(F) * interaction.material.specular;
+    if (coat->bare.size() > 0) share += coat->bare;
+    return share;
   }
   if (const auto& metal = interaction.material.metal) {
     const double cosine = std::min(1.0, cosine_at_facet(interaction, sample));
@@ -312,7 +321,10 @@ ScatteringSample sample_scattering(const SurfaceInteraction& interaction,
   // Chances in proportion to the greatest share of either kind: no weight exceeds their sum, at
   // most 2.
   const double straight = static_cast<double>(material.regular_transmittance.maxCoeff());
-  const double mirrored = static_cast<double>(material.specular.maxCoeff());
+  const double bare = material.coat && material.coat->bare.size() > 0
+                          ? static_cast<double>(material.coat->bare.maxCoeff())
+                          : 0.0;
+  const double mirrored = static_cast<double>(material.specular.maxCoeff()) + bare;
   const double chance = straight / (straight + mirrored);
   if (first.component < chance) {
     ScatteringSample sample = straight_sample(interaction);
@@ -351,8 +363,25 @@ int deepest_path(int most, bool met_glass_or_rough) {
 }
 
 RoughLobe::RoughLobe(const Material& material, bool from_back) {
+  if (!material.pattern || !material.pattern->roughness) {
+    kept_.push_back(kept_shares(material, from_back));
+    return;
+  }
+  Material at_level = material;
+  for (int i = 0; i <= level_steps_; ++i) {
+    const float alpha = static_cast<float>(i * i) / static_cast<float>(level_steps_ * level_steps_);
+    at_level.specular_roughness = alpha;
+    if (at_level.dielectric) at_level.dielectric->roughness = alpha;
+    Shares all{};
+    all.fill(1.0);  // nothing masks the facets of a smooth surface
+    kept_.push_back(i > 0 ? kept_shares(at_level, from_back) : all);
+  }
+}
+
+RoughLobe::Shares RoughLobe::kept_shares(const Material& material, bool from_back) {
   constexpr int count = 256;
   const SobolPoints points(count);
+  Shares shares{};
   for (int i = 0; i < steps_; ++i) {
     const double cosine = (i + 0.5) / steps_;
     const SurfaceInteraction interaction{
@@ -372,8 +401,23 @@ RoughLobe::RoughLobe(const Material& material, bool from_back) {
         kept += (1.0 - F) * unmasked(interaction, alpha, *outgoing, true);
       }
     }
-    kept_[static_cast<std::size_t>(i)] = kept / count;
+    shares[static_cast<std::size_t>(i)] = kept / count;
   }
+  return shares;
+}
+
+double RoughLobe::kept(double cosine, double alpha) const {
+  const double place = std::clamp(cosine * steps_ - 0.5, 0.0, steps_ - 1.0);
+  const auto low = std::min(static_cast<std::size_t>(place), std::size_t{steps_} - 2);
+  const double part = place - static_cast<double>(low);
+  const auto of = [&](const Shares& level) {
+    return (1.0 - part) * level[low] + part * level[low + 1];
+  };
+  if (kept_.size() == 1) return of(kept_[0]);
+  const double step = level_steps_ * std::sqrt(std::clamp(alpha, 0.0, 1.0));
+  const auto level = std::min(static_cast<std::size_t>(step), kept_.size() - 2);
+  const double rest = step - static_cast<double>(level);
+  return (1.0 - rest) * of(kept_[level]) + rest * of(kept_[level + 1]);
 }
 
 double RoughLobe::density(const SurfaceInteraction& interaction,
@@ -406,12 +450,8 @@ double RoughLobe::density(const SurfaceInteraction& interaction,
   const double F = microfacet_reflectance(interaction, m);
   const double visible =
       ggx_normals(cos_m, alpha) * in_m / (cos_in * (1.0 + ggx_lambda(cos_in, alpha)));
-  const double place = std::clamp(cos_in * steps_ - 0.5, 0.0, steps_ - 1.0);
-  const auto low = std::min(static_cast<std::size_t>(place), kept_.size() - 2);
-  const double part = place - static_cast<double>(low);
-  const double kept = (1.0 - part) * kept_[low] + part * kept_[low + 1];
   return (crosses ? 1.0 - F : F) * visible * stretch *
-         unmasked(interaction, alpha, outgoing, crosses) / kept;
+         unmasked(interaction, alpha, outgoing, crosses) / kept(cos_in, alpha);
 }
 
 void Media::cross(int material, const Material& what, const ScatteringSample& sample,

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "scene/polarisation.h"
 #include "scene/scene.h"
@@ -98,14 +99,20 @@ int deepest_path(int most, bool met_glass_or_rough);
 /// single scattering over the share that single scattering keeps, which is tabulated.
 class RoughLobe {
  public:
-  /// `material` has gloss_roughness() > 0.
+  /// `material` has gloss_roughness() > 0. If its roughness varies by place, interactions of any
+  /// roughness are right.
   RoughLobe(const Material& material, bool from_back);
   /// Density of the unit direction `outgoing`; 0 in directions without light.
   double density(const SurfaceInteraction& interaction, const Eigen::Vector3d& outgoing) const;
 
  private:
   static constexpr int steps_ = 64;
-  std::array<double, steps_> kept_{};  // share at cosines (i + 0.5) / steps_
+  using Shares = std::array<double, steps_>;  // at cosines (i + 0.5) / steps_
+  static Shares kept_shares(const Material& material, bool from_back);
+  double kept(double cosine, double alpha) const;
+
+  static constexpr int level_steps_ = 16;
+  std::vector<Shares> kept_{};  // one, or one at each alpha (i / level_steps_)^2
 };
 
 /// Clear bodies that the light of a path is within, by the surfaces crossed. Light enters a body by

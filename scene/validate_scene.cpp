@@ -9,6 +9,7 @@
 #include "scene/coat.h"
 #include "scene/errors.h"
 #include "scene/limits.h"
+#include "scene/material_at.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
 
@@ -120,9 +121,10 @@ void check_sheet(const Scene& scene, const Material& m) {
 
 void check_pictures(const Scene& scene, const Material& m) {
   if (m.texture) {
-    if (scene.bands.count() != 3 || !scene.bands.wavelengths_nm.empty()) {
+    if (scene.bands.wavelengths_nm.empty() && scene.bands.count() != 3) {
       fail(scene, fmt::format("material '{}' has a texture, whose colours are r, g and b, but the "
-                              "scene has other bands; give it a reflectance alone",
+                              "scene has other bands without wavelengths; give it a reflectance "
+                              "alone",
                               m.name));
     }
     if (!m.texture->image.picture) {
@@ -130,9 +132,16 @@ void check_pictures(const Scene& scene, const Material& m) {
     }
     check_share(scene, m, "texture factor", m.texture->factor);
     constexpr float rounding = 1e-5f;
-    const Spectrum brightest = m.texture->factor * m.texture->image.picture->largest();
+    // In bands of wavelengths no colour reflects more than its largest share.
+    const Eigen::Array3f largest = m.texture->image.picture->largest();
+    const Spectrum brightest =
+        m.texture->factor * (scene.bands.wavelengths_nm.empty()
+                                 ? Spectrum(largest)
+                                 : constant_spectrum(scene.bands, largest.maxCoeff()));
     const Spectrum others = mean_sent_on(m) - m.reflectance;
-    if (!((brightest + others) <= 1.0f + rounding).all()) {
+    // The shares of a pattern are bounded each, since the brightest paint may lie where there is no
+    // metal.
+    if (!m.pattern && !((brightest + others) <= 1.0f + rounding).all()) {
       fail(scene, fmt::format("material '{}': where its texture is brightest, reflectance {} + "
                               "specular and transmitted {} exceed 1; lower one",
                               m.name, brightest.maxCoeff(), others.maxCoeff()));
@@ -185,8 +194,51 @@ void check_pictures(const Scene& scene, const Material& m) {
   }
 }
 
+void check_pattern(const Scene& scene, const Material& m) {
+  if (!m.pattern) return;
+  const SurfacePattern& pattern = *m.pattern;
+  for (const ShareTexture* share : pictures_of(pattern)) {
+    if (!share->image.picture || !(share->factor >= 0.0f && share->factor <= 1.0f)) {
+      fail(scene, fmt::format("material '{}': a picture of a share or roughness needs a picture, "
+                              "and a factor between 0 and 1",
+                              m.name));
+    }
+  }
+  if (m.dielectric) {
+    if (pictures_of(pattern).size() == (pattern.roughness ? 1u : 0u)) return;
+    fail(scene, fmt::format("material '{}' is a dielectric, of which only the roughness may vary "
+                            "by a picture; remove the other pictures",
+                            m.name));
+  }
+  check_share(scene, m, "base of the pattern", pattern.base);
+  check_share(scene, m, "base of the pattern", pattern.behind_base);
+  check_share(scene, m, "mirror of the pattern", pattern.mirrored);
+  for (const Spectrum* share : {&pattern.passed, &pattern.metal_color, &pattern.straight}) {
+    if (share->size() > 0) check_share(scene, m, "share of the pattern", *share);
+  }
+  constexpr float rounding = 1e-5f;
+  Spectrum front = pattern.base, behind = pattern.behind_base;
+  if (pattern.straight.size() > 0) front += pattern.straight;
+  if (pattern.straight.size() > 0) behind += pattern.straight;
+  if (pattern.passed.size() > 0) behind += pattern.passed;
+  const bool adds_up = (front.max(behind) <= 1.0f + rounding).all();
+  if (!adds_up || pattern.metal.has_value() != (pattern.metal_color.size() > 0) ||
+      m.coat.has_value() != (pattern.coat_levels != nullptr)) {
+    fail(scene, fmt::format("material '{}' has a pattern whose shares exceed 1, or whose metal or "
+                            "coat is incomplete; make it by set_pattern()",
+                            m.name));
+  }
+}
+
 void check_coat(const Scene& scene, const Material& m) {
   if (!m.coat) return;
+  const Spectrum& bare = m.coat->bare;
+  if (bare.size() > 0) check_share(scene, m, "bare metal beside a coat", bare);
+  if (!(m.coat->cover >= 0.0f && m.coat->cover <= 1.0f)) {
+    fail(scene, fmt::format("material '{}' has a coat that covers {} of its base; it must lie "
+                            "between 0 and 1",
+                            m.name, m.coat->cover));
+  }
   const float index = m.coat->index_of_refraction;
   if (!(index >= lowest_coat_index && index <= highest_index)) {
     fail(scene, fmt::format("material '{}' has a coat of the index of refraction {}; it must lie "
@@ -258,6 +310,7 @@ void check_material(const Scene& scene, const Material& m) {
   }
   check_light(scene, fmt::format("material '{}'", m.name), "emission", "W/m^2", m.emission);
   check_pictures(scene, m);
+  check_pattern(scene, m);
 }
 
 void check_loop(const Scene& scene, const Surface& surface, const PolygonMesh& mesh, int facet,

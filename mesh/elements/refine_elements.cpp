@@ -60,6 +60,7 @@ void copy_patches(const PatchMesh& base, const std::vector<int>& first, PatchMes
     for (int& e : grid.element) e = first[e];
   }
   out.textures = base.textures;
+  out.patterns = base.patterns;
   out.notes = base.notes;
 }
 

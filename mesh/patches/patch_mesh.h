@@ -12,6 +12,7 @@
 namespace lightwell {
 
 class FacetTextures;
+class PatchPatterns;
 
 struct ElementMeshTraits : OpenMesh::DefaultTraits {
   using Point = OpenMesh::Vec3d;
@@ -109,6 +110,8 @@ struct PatchMesh {
   std::vector<SphereGrid> sphere_grids{};
   /// The textures of the scene; rays pass through their holes. Null: nothing varies over facets.
   std::shared_ptr<const FacetTextures> textures{};
+  /// What the patterns of patches mirror. Null: no facet has a pattern.
+  std::shared_ptr<const PatchPatterns> patterns{};
   std::vector<std::string> notes{};  ///< what meshing had to leave out, a sentence each
 
   int patch_count() const { return static_cast<int>(area.size()); }

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mesh/patches/patch_patterns.h"
+#include "mesh/patches/texture_cells.h"
 #include "scene/facet_textures.h"
 #include "scene/parallel.h"
 #include "scene/picture_cells.h"
@@ -13,51 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int fewest_points = 4, most_points = 16;  // per direction of an element
 constexpr double least_cover = 1e-3;
-
-// A piece of an element under the bilinear map of the unit square; a triangle repeats its last
-// corner.
-struct TextureCell {
-  Vector3d middle;
-  Eigen::Matrix<double, 3, 2> sides;
-  double area = 0.0;
-};
-
-TextureCell texture_cell(const std::array<Vector3d, 4>& corner, int points, int i, int j) {
-  const double s = (i + 0.5) / points, t = (j + 0.5) / points;
-  const Vector3d along = (1.0 - t) * (corner[1] - corner[0]) + t * (corner[2] - corner[3]);
-  const Vector3d across = (1.0 - s) * (corner[3] - corner[0]) + s * (corner[2] - corner[1]);
-  TextureCell cell{.middle = (1.0 - t) * ((1.0 - s) * corner[0] + s * corner[1]) +
-                             t * ((1.0 - s) * corner[3] + s * corner[2])};
-  cell.sides << along / points, across / points;
-  cell.area = cell.sides.col(0).cross(cell.sides.col(1)).norm();
-  return cell;
-}
-
-std::array<Vector3d, 4> corners_of(const PatchMesh& mesh, int element) {
-  const auto& c = mesh.corners[element];
-  const Vector3d last = mesh.position(c[2]);
-  if (c[3] < 0) return {mesh.position(c[0]), mesh.position(c[1]), last, last};
-  return {mesh.position(c[0]), mesh.position(c[1]), last, mesh.position(c[3])};
-}
-
-// Points per direction of an element, as fine as the texels.
-int points_across(const FacetTextures& textures, int facet, const std::array<Vector3d, 4>& corner) {
-  double longest = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    const Vector3d edge = corner[(i + 1) % 4] - corner[i];
-    longest = std::max(longest, textures.texels_along(facet, edge));
-  }
-  return static_cast<int>(std::clamp<double>(std::ceil(longest), fewest_points, most_points));
-}
-
-// Sides of the parallelogram over which the picture is filtered about the middle of a cell. The
-// filter itself reaches half a cell farther, so that texels beside the element stay out.
-Eigen::Matrix<double, 3, 2> filter_of(const TextureCell& cell) {
-  constexpr double reach = 0.5;
-  return reach * cell.sides;
-}
 
 // Sums over the part of an element that is no hole.
 struct Covered {
@@ -70,7 +28,7 @@ Covered covered_light(const PatchMesh& mesh, const FacetTextures& textures, int 
   const int facet = mesh.facet[element];
   const auto corner = corners_of(mesh, element);
   const bool has_holes = textures.has_holes(facet), is_textured = textures.is_textured(facet);
-  const int points = has_holes ? most_points : points_across(textures, facet, corner);
+  const int points = has_holes ? most_texture_points : points_across(textures, facet, corner);
   Covered sum{.reflected = Eigen::ArrayXd::Zero(bands)};
   for (int i = 0; i < points; ++i) {
     for (int j = 0; j < points; ++j) {
@@ -197,6 +155,7 @@ Spectrum mean_emission(const PatchMesh& mesh, const FacetTextures& textures, int
 void lay_on_textures(const Scene& scene, PatchMesh& mesh) {
   attach_textures(scene, mesh);
   if (!mesh.textures) return;
+  if (mesh.patterns) mesh.patterns->set_transmittance(mesh);
   const auto varies = [&](int patch) {
     for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
       const int facet = mesh.facet[e];
@@ -219,6 +178,9 @@ void lay_on_textures(const Scene& scene, PatchMesh& mesh) {
 void attach_textures(const Scene& scene, PatchMesh& mesh) {
   auto textures = std::make_shared<const FacetTextures>(scene);
   mesh.textures = textures->is_empty() ? nullptr : std::move(textures);
+  mesh.patterns = mesh.textures && mesh.textures->has_patterns()
+                      ? std::make_shared<const PatchPatterns>(scene, mesh)
+                      : nullptr;
 }
 
 BandArray vertex_reflectance(const PatchMesh& mesh) {

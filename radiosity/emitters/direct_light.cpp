@@ -400,7 +400,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
   // Rays over the hemisphere find a large emitter in mirrors with less noise than rays of its own
   // that meet the mirrors. Coats mirror little.
   const bool has_mirrors = std::ranges::any_of(scene.materials, [](const Material& material) {
-    return material.is_specular() && !material.coat;
+    return material.is_specular() && !material.mirrors_by_coat();
   });
   double taken = 0.0;
   std::size_t large = 0;

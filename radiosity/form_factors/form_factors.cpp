@@ -51,6 +51,7 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
     print.add(material.specular);
     print.add(material.specular_roughness);
     print.add(material.coat ? material.coat->index_of_refraction : 0.0f);
+    if (material.pattern) print.add(material_hash(material));
     if (material.metal) print.add(material.metal->eta);
     if (material.metal) print.add(material.metal->k);
     print.add(material.dielectric.has_value());

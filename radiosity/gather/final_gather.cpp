@@ -5,7 +5,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 
+#include "mesh/patches/patch_patterns.h"
 #include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/patch_textures.h"
 #include "mesh/patches/pictured_emission.h"
@@ -440,6 +442,10 @@ BandArray direct_gains(const PatchMesh& mesh, const DirectLight& direct_light,
     for (int v = begin; v < end; ++v) {
       const CoatedBase* base = direct_light.base_of(mesh.material[patch[v]]);
       if (!base) continue;
+      const bool has_pattern = mesh.patterns && mesh.patterns->is_given(patch[v]);
+      std::optional<CoatedBase> own;
+      if (has_pattern) own = mesh.patterns->base_of(patch[v]);
+      if (own) base = &*own;
       const GatherPoint point = points[v];
       const SurfacePoint at{point.position, point.normal, point.facet};
       if (channels == direct_light.channel_count()) {

@@ -276,7 +276,7 @@ CausticPhotons shoot_photons(const LitScene& lit, int count, int max_specular_de
         fmt::format("{} photons; there must be between 1 and {}", count, most_photons));
   }
   const int bands = lit.scene.bands.count();
-  const LightPaths paths(lit.scene, lit.caster, max_specular_depth, PathNormals::smooth);
+  const LightPaths paths(lit.scene, lit.caster, max_specular_depth, PathDetail::points);
   const SpecularTargets targets(lit.scene);
   std::vector<Beam> beams = make_beams(lit.direct_light, targets);
   if (beams.empty()) return {.power = BandArray(0, bands)};

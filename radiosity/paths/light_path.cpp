@@ -3,6 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "mesh/patches/patch_patterns.h"
+#include "scene/facet_textures.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -10,9 +12,15 @@
 namespace lightwell {
 
 LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
-                       PathNormals normals)
-    : scene_(scene), caster_(caster), max_depth_(max_depth), bases_(scene.materials) {
-  if (normals == PathNormals::smooth) smooth_.emplace(scene);
+                       PathDetail detail)
+    : scene_(scene),
+      caster_(caster),
+      max_depth_(max_depth),
+      detail_(detail),
+      patterns_(caster.mesh().patterns),
+      bases_(scene.materials) {
+  if (patterns_) textures_ = caster.mesh().textures;
+  if (detail == PathDetail::points) smooth_.emplace(scene);
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
     const Material& material = scene.materials[surface.material];
@@ -29,7 +37,23 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
 }
 
 bool LightPaths::is_mostly_diffuse(int facet) const {
-  return !is_specular(facet) || scene_.materials[material_[facet]].coat.has_value();
+  return !is_specular(facet) || scene_.materials[material_[facet]].mirrors_by_coat();
+}
+
+const Material& LightPaths::material_at(const ElementCaster& caster, const ElementHit& hit,
+                                        const Eigen::Vector3d& point,
+                                        std::optional<Material>& own) const {
+  const Material& even = scene_.materials[material_[hit.facet]];
+  if (!textures_ || !textures_->has_pattern(hit.facet)) return even;
+  const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
+  const Eigen::Vector3d rest = pose ? Eigen::Vector3d(pose->inverse() * point) : point;
+  if (detail_ == PathDetail::points || even.dielectric) {
+    own = textures_->material(hit.facet, rest);
+    return *own;
+  }
+  own = patterns_->mirror_of(even, caster.mesh().patch[hit.element]);
+  own->specular_roughness = textures_->roughness(hit.facet, rest);
+  return *own;
 }
 
 // The normal, unit, on the side that the light comes from.
@@ -51,19 +75,26 @@ double LightPaths::base_factor(const ElementCaster& caster, const Ray& ray,
   if (bases_.empty()) return 1.0;
   const CoatedBase* base = bases_.of(material_[hit.facet]);
   if (!base) return 1.0;
+  std::optional<CoatedBase> own;
+  if (patterns_ && hit.element >= 0) {
+    const int patch = caster.mesh().patch[hit.element];
+    if (patterns_->is_given(patch)) own = patterns_->base_of(patch);
+    if (own) base = &*own;
+  }
   const Eigen::Vector3d normal = normal_at(caster, hit, ray.origin + hit.t * ray.direction);
   return base->factor(-normal.dot(ray.direction.normalized()));
 }
 
 bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit,
                              std::uint64_t key, PathLight& light, PathLosses& losses) const {
-  const Material& material = scene_.materials[material_[hit.facet]];
   // The back of a one-sided mirror is black; glass is clear from both sides.
-  if (!material.dielectric && hit.element < 0) {
+  if (!scene_.materials[material_[hit.facet]].dielectric && hit.element < 0) {
     losses.escaped += light.throughput;
     return false;
   }
   const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
+  std::optional<Material> own;
+  const Material& material = material_at(caster, hit, point, own);
   const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
   const Eigen::Vector3d normal = normal_at(caster, hit, point);
   const Eigen::Vector3d direction = ray.direction.normalized();
@@ -156,7 +187,7 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
     // add up to all light for every ray; paths by way of two coats end by chance.
     constexpr float weak = 0.125f, weak_behind_coats = 0.03125f;
     const bool is_deep = depth >= max_depth_;
-    if ((is_deep || met.coat) &&
+    if ((is_deep || met.mirrors_by_coat()) &&
         !survives(key_here, is_deep ? weak : weak_behind_coats, light, losses)) {
       return losses;
     }

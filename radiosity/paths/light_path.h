@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -32,10 +33,13 @@ struct LightArrival {
   bool through_panes_only;   ///< the path went straight on, through smooth thin panes alone
 };
 
-/// Normals that mirror and refract.
-enum class PathNormals {
-  facets,  ///< of the polygons, so that reflected light adds up facet by facet
-  smooth,  ///< of the curved surfaces that facets stand for, where given (see FacetNormals)
+/// Detail of the surfaces that mirror and refract.
+enum class PathDetail {
+  patches,  ///< normals of the polygons, so that reflected light adds up facet by facet; shares of
+            ///< patterns as they are in the mean over a patch, so that they add up with its
+            ///< reflectance; roughness at the point met
+  points,   ///< normals of the curved surfaces that facets stand for, where given (see
+            ///< FacetNormals); patterns as they are at the point met
 };
 
 /// Follows rays through mirrors and clear glass to diffuse surfaces (extended form factors, Sillion
@@ -50,7 +54,7 @@ enum class PathNormals {
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
-             PathNormals normals = PathNormals::facets);
+             PathDetail detail = PathDetail::patches);
 
   /// True if the scene has a mirror or glass.
   bool has_specular() const { return has_specular_; }
@@ -88,6 +92,9 @@ class LightPaths {
     Polarisation polarisation{};
     bool through_panes_only = true;
   };
+  // The material of a hit at `point`; `own` holds the numbers of a pattern.
+  const Material& material_at(const ElementCaster& caster, const ElementHit& hit,
+                              const Eigen::Vector3d& point, std::optional<Material>& own) const;
   Eigen::Vector3d normal_at(const ElementCaster& caster, const ElementHit& hit,
                             const Eigen::Vector3d& point) const;
   bool continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit, std::uint64_t key,
@@ -98,6 +105,9 @@ class LightPaths {
   const Scene& scene_;
   const ElementCaster& caster_;
   int max_depth_ = 8;
+  PathDetail detail_ = PathDetail::patches;
+  std::shared_ptr<const FacetTextures> textures_{};  // null: no facet has a pattern
+  std::shared_ptr<const PatchPatterns> patterns_{};  // null with textures_
   bool has_specular_ = false, absorbs_ = false;
   std::vector<char> specular_, diffuse_;
   CoatedBases bases_;

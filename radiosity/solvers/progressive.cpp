@@ -107,18 +107,17 @@ ProgressiveRadiosity::ProgressiveRadiosity(const Scene& scene, const PatchMesh& 
 
 void ProgressiveRadiosity::take_in(const FreeLight& free_light) {
   const Eigen::Index bands = mesh_.emission.cols();
-  MirroredShares mirrored(scene_, unshot_.cols());
+  MirroredShares mirrored(scene_, mesh_, unshot_.cols());
   for (int i = 0; mirrored.has_coats() && i < mesh_.patch_count(); ++i) {
-    mirrored.arrive(mesh_.area[i] * free_light.irradiance.row(i).transpose().cast<double>(),
-                    mesh_.material[i]);
+    mirrored.arrive(mesh_.area[i] * free_light.irradiance.row(i).transpose().cast<double>(), i);
   }
   mirrored.lose(free_light.absorbed + free_light.escaped - free_light.emitted);
   mirrored.settle();
   for (int i = 0; i < mesh_.patch_count(); ++i) {
     for (Eigen::Index k = 0; k < unshot_.cols(); ++k) {
       const float E = free_light.irradiance(i, k);
-      energy_(absorbed_row, k) += mesh_.area[i] * double{E} *
-                                  mirrored.kept(mesh_.material[i], k, scatter(i, k, k % bands, E));
+      energy_(absorbed_row, k) +=
+          mesh_.area[i] * double{E} * mirrored.kept(i, k, scatter(i, k, k % bands, E));
     }
   }
   free_energy_ = free_energy(free_light);
@@ -235,15 +234,15 @@ int ProgressiveRadiosity::rays_of(int patch) const {
 
 // Shares that surfaces mirror of the light of a row.
 MirroredShares ProgressiveRadiosity::mirrored_of(const EstimatedRow& row) const {
-  MirroredShares mirrored(scene_, mesh_.emission.cols());
+  MirroredShares mirrored(scene_, mesh_, mesh_.emission.cols());
   if (!mirrored.has_coats()) return mirrored;
   const Eigen::Index bands = mesh_.emission.cols();
   for (const auto& [j, share] : row.shares) {
-    mirrored.arrive(Eigen::ArrayXd::Constant(bands, double{share}), mesh_.material[j]);
+    mirrored.arrive(Eigen::ArrayXd::Constant(bands, double{share}), j);
   }
   for (std::size_t s = 0; s < row.specular_patch.size(); ++s) {
     mirrored.arrive(row.specular_share.row(static_cast<Eigen::Index>(s)).transpose().cast<double>(),
-                    mesh_.material[row.specular_patch[s]]);
+                    row.specular_patch[s]);
   }
   mirrored.lose((row.specular_escaped + row.absorbed + row.cut).cast<double>() + row.escaped +
                 row.specular - 1.0);
@@ -274,7 +273,7 @@ void ProgressiveRadiosity::receive(const Shot& shot, const EstimatedRow& row) {
       const Eigen::Index band = k % bands;
       const double arriving = watts[k] * static_cast<double>(share_of(band));
       const float scattered = scatter(j, k, band, static_cast<float>(arriving / mesh_.area[j]));
-      energy_(absorbed_row, k) += arriving * mirrored.kept(mesh_.material[j], band, scattered);
+      energy_(absorbed_row, k) += arriving * mirrored.kept(j, band, scattered);
     }
   };
   for (const auto& [j, share] : row.shares) {

@@ -120,12 +120,12 @@ BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFact
   BandArray E = gather(form_factors, B);
   if (!free_light.empty()) E += free_light.irradiance;
   const BandArray scattered = scattered_by_patches(mesh, E);
-  MirroredShares mirrored(scene, B.cols());
+  MirroredShares mirrored(scene, mesh, B.cols());
   for (int i = 0; i < mesh.patch_count(); ++i) {
     const Spectrum lost = (form_factors.absorbed_by_specular(i) + form_factors.escaped(i) - 1.0f) *
                           B.row(i).transpose();
     mirrored.lose(mesh.area[i] * lost.cast<double>());
-    mirrored.arrive(mesh.area[i] * E.row(i).transpose().cast<double>(), mesh.material[i]);
+    mirrored.arrive(mesh.area[i] * E.row(i).transpose().cast<double>(), i);
   }
   if (!free_light.empty()) {
     mirrored.lose(free_light.absorbed + free_light.escaped - free_light.emitted);
@@ -138,7 +138,7 @@ BandEnergy band_energy(const Scene& scene, const PatchMesh& mesh, const FormFact
     const Spectrum M_i = mesh.emission.row(i).transpose(), share = scattered_share(mesh, i);
     Spectrum kept(B.cols());
     for (Eigen::Index k = 0; k < kept.size(); ++k) {
-      kept[k] = static_cast<float>(mirrored.kept(mesh.material[i], k, share[k]));
+      kept[k] = static_cast<float>(mirrored.kept(i, k, share[k]));
     }
     const auto add = [&](int row, const Spectrum& per_area) {
       energy.row(row) += A * per_area.cast<double>().transpose();

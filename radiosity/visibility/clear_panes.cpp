@@ -1,7 +1,9 @@
 #include "radiosity/visibility/clear_panes.h"
 
 #include <Eigen/Geometry>
+#include <optional>
 
+#include "scene/facet_textures.h"
 #include "scene/specular.h"
 
 namespace lightwell {
@@ -46,7 +48,12 @@ Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const
       normal = pose->linear() * normal;
     }
     if (normal.dot(direction) > 0.0) normal = -normal;
-    const SmoothScattering lobes = smooth_scattering({.material = pane.material,
+    const FacetTextures* textures = caster.mesh().textures.get();
+    std::optional<Material> here;
+    if (textures && textures->has_pattern(hit.facet)) {
+      here = textures->material(hit.facet, pose ? Eigen::Vector3d(pose->inverse() * point) : point);
+    }
+    const SmoothScattering lobes = smooth_scattering({.material = here ? *here : pane.material,
                                                       .direction = direction,
                                                       .normal = normal,
                                                       .from_back = hit.from_back,

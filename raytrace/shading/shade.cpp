@@ -42,6 +42,11 @@ std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
   return parent;
 }
 
+// True if a material is rough somewhere. One of varying roughness may be smooth in the mean.
+bool is_rough(const Material& material) {
+  return material.gloss_roughness() > 0.0f || (material.pattern && material.pattern->roughness);
+}
+
 // Returns the part of SpecularSegment::chain that stands for a facet. Facets of one plane have the
 // same; so have all facets of a curved surface.
 std::uint64_t chain_key(bool is_curved, int surface, const Eigen::Vector3d& normal,
@@ -97,11 +102,11 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
     absorbs_ = absorbs_ || (glass && (glass->absorption > 0.0f).any());
     auto& of_sides = lobes_.emplace_back();
     for (const bool is_back : {false, true}) {
-      if (material.gloss_roughness() > 0.0f) of_sides[is_back].emplace(material, is_back);
+      if (is_rough(material)) of_sides[is_back].emplace(material, is_back);
     }
   }
   const auto is_rough_mirror = [](const Material& material) {
-    return material.gloss_roughness() > 0.0f && !material.dielectric;
+    return is_rough(material) && !material.dielectric;
   };
   if (std::any_of(scene.materials.begin(), scene.materials.end(), is_rough_mirror)) {
     bright_ =
@@ -283,9 +288,12 @@ static std::uint64_t child_node(std::uint64_t node, std::uint64_t lobe) {
 
 void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                     TreeState& state) const {
-  const Material& material = scene_.materials[facets_[hit.facet].material];
+  const Material& even = scene_.materials[facets_[hit.facet].material];
   // The back of a one-sided mirror is black.
-  if (!material.is_specular() || (!material.dielectric && hit.element < 0)) return;
+  if (!even.is_specular() || (!even.dielectric && hit.element < 0)) return;
+  const std::optional<Material> own = pattern_at(branch, hit, at);
+  const Material& material = own ? *own : even;
+  if (!material.is_specular()) return;
   SurfaceInteraction interaction{.material = material,
                                  .direction = branch.ray.direction,
                                  .normal = at.normal,
@@ -301,7 +309,8 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
   if (material.gloss_roughness() > 0.0f) {
     if (material.passes_straight() && !(state.turns && branch.depth >= state.turns->count)) {
       constexpr std::uint64_t straight = 1;
-      grow(here, child_node(here.node, straight), straight_sample(interaction), hit, at, state);
+      grow(here, child_node(here.node, straight), straight_sample(interaction), material, hit, at,
+           state);
     }
     return scatter(here, interaction, hit, at, state);
   }
@@ -312,14 +321,14 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
   }
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
     if (state.turns && !state.turns->follows(here.depth, lobes.sample[i].crosses)) continue;
-    grow(here, child_node(here.node, i), lobes.sample[i], hit, at, state);
+    grow(here, child_node(here.node, i), lobes.sample[i], material, hit, at, state);
   }
 }
 
 void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
-                   const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
+                   const Material& what, const ElementHit& hit, const ShadingPoint& at,
+                   TreeState& state) const {
   const int material = facets_[hit.facet].material;
-  const Material& what = scene_.materials[material];
   const bool off_lobe = sample.density > 0.0;
   Branch branch{.weight = parent.weight * sample.weight,
                 .depth = parent.depth + 1,
@@ -333,7 +342,8 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
                 .sky = off_lobe || (sample.crosses && is_clear_pane(what)) ? parent.sky : nullptr,
                 .sky_lobe_density = off_lobe ? sample.density : parent.sky_lobe_density,
-                .behind_coat = parent.behind_coat + (parent.behind_coat > 0 || what.coat ? 1 : 0),
+                .behind_coat =
+                    parent.behind_coat + (parent.behind_coat > 0 || what.mirrors_by_coat() ? 1 : 0),
                 .cone = {.start = cone_width(parent, at), .spread = parent.cone.spread},
                 .blur = {.start = width_of(parent.blur, parent, at),
                          .spread = off_lobe ? spread_of_lobe(sample.density) : parent.blur.spread},
@@ -371,7 +381,8 @@ float RayTree::mirrored_share(const SurfaceInteraction& interaction) {
 // of those that meet the second coat steeply, with a quarter of the first coat's weight.
 bool RayTree::goes_on_at_coat(const SurfaceInteraction& interaction, Branch& branch,
                               const TreeState& state) const {
-  if (!interaction.material.coat || branch.behind_coat == 0 || !state.shades) return true;
+  if (!interaction.material.mirrors_by_coat() || branch.behind_coat == 0 || !state.shades)
+    return true;
   constexpr float left_weight = 0.25f;
   const float chance = mirrored_share(interaction) / left_weight;
   if (chance >= 1.0f) return true;

@@ -117,8 +117,11 @@ struct SpecularSegment {
 /// So do surfaces behind a rough surface whose lobe spreads their light over an element of the mesh
 /// or more, since nothing is seen of what the mesh lacks there.
 ///
-/// Textures are filtered over the PixelCone of a ray, which grows with the length of the path as if
-/// all surfaces on the way were flat.
+/// A surface whose shares vary by a pattern has at each hit the numbers of the place (see
+/// material_at()).
+///
+/// Textures and patterns are filtered over the PixelCone of a ray, which grows with the length of
+/// the path as if all surfaces on the way were flat.
 class RayTree {
  public:
   RayTree(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
@@ -285,7 +288,8 @@ class RayTree {
   void add_found_by_chance(const std::vector<Spectrum>& found, const Spectrum& other,
                            TreeState& state) const;
   void grow(const Branch& parent, std::uint64_t node, const ScatteringSample& sample,
-            const ElementHit& hit, const ShadingPoint& at, TreeState& state) const;
+            const Material& what, const ElementHit& hit, const ShadingPoint& at,
+            TreeState& state) const;
   static double roulette(const Branch& branch, int purpose, const TreeState& state);
   void choose_one(const Branch& branch, SmoothScattering& lobes, const TreeState& state) const;
   bool survives(Branch& branch, const TreeState& state) const;
@@ -306,13 +310,16 @@ class RayTree {
              TreeState& state) const;
   void shade_lamp(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                   TreeState& state) const;
+  /// Numbers of a pattern about a point; empty: the facet has none.
+  std::optional<Material> pattern_at(const Branch& branch, const ElementHit& hit,
+                                     const ShadingPoint& at) const;
   const CoatedBase* base_at(const ElementHit& hit) const {
     return bases_.empty() ? nullptr : bases_.of(facets_[hit.facet].material);
   }
   Arriving arriving(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
-                    const TreeState& state) const;
+                    const CoatedBase* base, const TreeState& state) const;
   Arriving arriving_behind(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
-                           const TreeState& state) const;
+                           const CoatedBase* base, const TreeState& state) const;
   Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   Eigen::Matrix<double, 3, 2> footprint(const Branch& branch, const ShadingPoint& at) const;
   std::optional<ReliefSlope> relief_at(const Branch& branch, const ElementHit& hit,
@@ -321,7 +328,7 @@ class RayTree {
   Eigen::Vector3d bent_normal(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                               const Eigen::Vector3d& normal, const TreeState& state) const;
   Arriving arriving_from_mesh(const ElementHit& hit, const ShadingPoint& at, bool is_dim,
-                              const Eigen::Vector3d& normal,
+                              const Eigen::Vector3d& normal, const CoatedBase* base,
                               const std::optional<ReliefSlope>& relief) const;
   static double width_of(const PixelCone& cone, const Branch& branch, const ShadingPoint& at) {
     return cone.start + cone.spread * (at.position - branch.ray.origin).norm();

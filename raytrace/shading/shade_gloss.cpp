@@ -31,7 +31,7 @@ int RayTree::lobe_samples(const SurfaceInteraction& interaction, const Branch& b
                           const TreeState& state) const {
   const double of_mirrors = double{state.effort} * options_.glossy_rays;
   double wanted = of_mirrors;
-  if (interaction.material.coat) {
+  if (interaction.material.mirrors_by_coat()) {
     constexpr double fewest = 4.0, most = 4.0, whole_share = 1.0 / 8.0;
     const double share = double{branch.weight.maxCoeff()} * double{mirrored_share(interaction)};
     wanted =
@@ -43,7 +43,7 @@ int RayTree::lobe_samples(const SurfaceInteraction& interaction, const Branch& b
 // Adds the mean over sampled directions of a rough surface's lobe.
 void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interaction,
                       const ElementHit& hit, const ShadingPoint& at, TreeState& state) const {
-  const bool is_coat = interaction.material.coat.has_value();
+  const bool is_coat = interaction.material.mirrors_by_coat();
   state.result.sees_gloss = state.result.sees_gloss || (branch.is_sharp && !is_coat);
   if (!state.shades) return;
   const bool is_first = branch.is_sharp && !state.number && !state.lamps_alone;
@@ -99,7 +99,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
     if (collects) {
       state.by_chance = &found.emplace_back(Spectrum::Zero(scene_.bands.count()));
     }
-    grow(spread, node, sample, hit, at, state);
+    grow(spread, node, sample, interaction.material, hit, at, state);
     if (collects) state.by_chance = nullptr;
   }
   if (collects) add_found_by_chance(found, state.result.radiance - before, state);
@@ -232,7 +232,7 @@ const SkySites::Site* RayTree::sky_site(const Branch& branch, const SurfaceInter
                                         const ElementHit& hit, const ShadingPoint& at,
                                         const TreeState& state) const {
   const Material& material = interaction.material;
-  const bool is_weak = material.coat.has_value() && branch.behind_coat > 0;
+  const bool is_weak = material.mirrors_by_coat() && branch.behind_coat > 0;
   if (state.lamps_alone || material.dielectric || is_weak || !direct_light_.sky()) return nullptr;
   const SkySites::Site* site =
       direct_light_.sky()->site({at.position, interaction.normal, hit.facet});

@@ -66,6 +66,18 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
   return textures_->reflectance(hit.facet, at.rest, footprint(branch, at));
 }
 
+std::optional<Material> RayTree::pattern_at(const Branch& branch, const ElementHit& hit,
+                                            const ShadingPoint& at) const {
+  if (!textures_ || !textures_->has_pattern(hit.facet)) return std::nullopt;
+  // The back of a one-sided surface is black.
+  const PatchMesh& mesh = caster_.mesh();
+  const Material& material = scene_.materials[facets_[hit.facet].material];
+  if (material.one_sided && hit.element >= 0 && mesh.is_back[mesh.patch[hit.element]] != 0) {
+    return std::nullopt;
+  }
+  return textures_->material(hit.facet, at.rest, footprint(branch, at));
+}
+
 // Sides of the pixel's footprint on the surface, in the rest pose.
 Eigen::Matrix<double, 3, 2> RayTree::footprint(const Branch& branch, const ShadingPoint& at) const {
   const double width = cone_width(branch, at);
@@ -104,11 +116,12 @@ Eigen::Vector3d RayTree::bent_normal(const Branch& branch, const ElementHit& hit
 
 // Irradiance behind a translucent sheet.
 RayTree::Arriving RayTree::arriving_behind(const ElementHit& hit, const ShadingPoint& at,
-                                           const Branch& branch, const TreeState& state) const {
+                                           const Branch& branch, const CoatedBase* base,
+                                           const TreeState& state) const {
   ShadingPoint other = at;
   other.normal = -at.normal;
   other.rest_normal = -at.rest_normal;
-  return arriving(hit_behind(caster_.mesh(), hit), other, branch, state);
+  return arriving(hit_behind(caster_.mesh(), hit), other, branch, base, state);
 }
 
 // Adds L = (M + rho E + tau E_behind) / pi, weighted by share_of_bright().
@@ -117,12 +130,17 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   const float share = share_of_bright(branch, hit, at);
   Spectrum M = emission(branch, hit, at);
   if (!direct_light_.owns(hit.facet, hit.from_back)) M *= share;
-  Spectrum rho = share * reflectance(branch, hit, at);
+  const std::optional<Material> own = pattern_at(branch, hit, at);
+  Spectrum rho = share * (own ? own->reflectance : reflectance(branch, hit, at));
   const int patch = caster_.mesh().patch[hit.element];
   const bool is_translucent = caster_.mesh().patch_behind(patch) >= 0;
   Spectrum tau;
   if (is_translucent) tau = share * caster_.mesh().transmittance.row(patch).transpose();
-  if (const CoatedBase* base = base_at(hit)) {
+  if (is_translucent && own) tau = share * own->transmittance;
+  std::optional<CoatedBase> own_base;
+  if (own && own->coat) own_base.emplace(*own);
+  const CoatedBase* const base = own_base ? &*own_base : base_at(hit);
+  if (base) {
     const Eigen::Vector3d direction = branch.ray.direction.normalized();
     const Eigen::Vector3d normal = visible_normal(
         direction, at.normal, bent_normal(branch, hit, at, smooth_normal(hit, at), state));
@@ -131,10 +149,10 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
     tau *= static_cast<float>(base->factor(cosine));
   }
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
-  if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, state);
+  if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, base, state);
   Scattered scattered{.direct = rho * E.direct, .indirect = rho * E.indirect};
   if (is_translucent) {
-    const Arriving behind = arriving_behind(hit, at, branch, state);
+    const Arriving behind = arriving_behind(hit, at, branch, base, state);
     scattered.direct += tau * behind.direct;
     scattered.indirect += tau * behind.indirect;
   }
@@ -158,12 +176,12 @@ void RayTree::shade_lamp(const Branch& branch, const ElementHit& hit, const Shad
 // direct light as even.
 RayTree::Arriving RayTree::arriving_from_mesh(const ElementHit& hit, const ShadingPoint& at,
                                               bool is_dim, const Eigen::Vector3d& normal,
+                                              const CoatedBase* base,
                                               const std::optional<ReliefSlope>& relief) const {
   const PatchMesh& mesh = caster_.mesh();
   Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
              .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
   if (!is_dim) E.indirect *= indirect_gain(hit, at, relief);
-  const CoatedBase* base = base_at(hit);
   if (is_dim || !(base || relief)) return E;
   E.direct_on_facet = E.direct;
   const SurfacePoint point{at.position, normal, hit.facet};
@@ -184,16 +202,16 @@ bool RayTree::is_blurred(const Branch& branch, const ElementHit& hit,
 }
 
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,
-                                    const Branch& branch, const TreeState& state) const {
+                                    const Branch& branch, const CoatedBase* base,
+                                    const TreeState& state) const {
   const PatchMesh& mesh = caster_.mesh();
   const Eigen::Vector3d normal = smooth_normal(hit, at);
-  const CoatedBase* base = base_at(hit);
   const std::optional<ReliefSlope> relief = relief_at(branch, hit, at, normal, state);
   constexpr float weak = 0.25f;
   const bool is_weak = branch.behind_coat > 0 && branch.weight.maxCoeff() < weak;
   const bool is_dim = is_weak || is_blurred(branch, hit, at);
   if (options_.pass == Pass::interpolate || is_dim) {
-    return arriving_from_mesh(hit, at, is_dim, normal, relief);
+    return arriving_from_mesh(hit, at, is_dim, normal, base, relief);
   }
   const float share = state.effort * branch.weight.maxCoeff();
   ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? 4 : 8);

@@ -1,0 +1,175 @@
+// Light between surfaces whose shares vary by place.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "mesh/build_patches.h"
+#include "mesh/patches/patch_patterns.h"
+#include "radiosity/paths/light_path.h"
+#include "radiosity/solve.h"
+#include "scene/coat.h"
+#include "scene/material_at.h"
+#include "scene/specular.h"
+#include "tests/pictures.h"
+#include "tests/radiosity/test_scenes.h"
+
+namespace lightwell::patterns_test {
+namespace {
+
+std::vector<float> squares(int across, float dark, float bright) {
+  std::vector<float> texels;
+  for (int i = 0; i < across * across; ++i) {
+    texels.push_back((i % across + i / across) % 2 == 0 ? dark : bright);
+  }
+  return texels;
+}
+
+ShareTexture checker(int across, float dark, float bright) {
+  return {.image = picture_of(across, across, squares(across, dark, bright))};
+}
+
+// A diffuse paint of reflectance rho under a coat, worn down to metal of the share that a picture
+// gives.
+Material worn(const Bands& bands, float base, float metal_color, const ShareTexture& metal) {
+  Material material = test::diffuse(bands, 0.0f);
+  material.specular = constant_spectrum(bands, 1.0f);
+  material.coat = Coat{};
+  SurfacePattern pattern = pattern_of(material);
+  pattern.base = pattern.behind_base = constant_spectrum(bands, base);
+  pattern.metal_color = constant_spectrum(bands, metal_color);
+  pattern.metal = metal;
+  set_pattern(material, pattern);
+  return material;
+}
+
+// A closed room with a lamp below the ceiling; its floor has the material.
+Scene room(const Material& floor) {
+  Scene scene;
+  const int white = test::add_material(scene, test::diffuse(scene.bands, 0.6f));
+  const int below = test::add_material(scene, floor);
+  Material shining = test::diffuse(scene.bands, 0.0f, 20.0f);
+  shining.one_sided = false;
+  const int lamp = test::add_material(scene, shining);
+  test::add_box(scene, {0, 0, 0}, {2, 2, 2}, {white, white, white, white, below, white}, true);
+  test::add_polygon(scene, "lamp", lamp,
+                    {{0.8, 0.8, 1.9}, {0.8, 1.2, 1.9}, {1.2, 1.2, 1.9}, {1.2, 0.8, 1.9}});
+  return scene;
+}
+
+SolveOptions quick() {
+  SolveOptions options;
+  options.mesh.max_patch_size = 0.25;
+  options.form_factors.rays_per_patch = 512;
+  options.gather.rays = 256;
+  options.error_points = 64;
+  return options;
+}
+
+// A checkerboard finer than the patches gives the same light as a floor that is everywhere the mean
+// of both kinds of squares. Shares of patches are means over the same points and differ by the
+// rounding of texels; rays are the same.
+TEST(Patterns, FineOnesLightARoomAsTheirMean) {
+  const Bands bands = rgb_bands();
+  Scene pictured = room(worn(bands, 0.5f, 0.9f, checker(64, 0.0f, 1.0f)));
+  Scene even = room(worn(bands, 0.5f, 0.9f, checker(1, 0.5f, 0.5f)));
+  lay_uv(pictured.surfaces[4]);
+  lay_uv(even.surfaces[4]);
+  const SolvedScene a = solve_scene(pictured, quick()), b = solve_scene(even, quick());
+  ASSERT_EQ(a.mesh.patch_count(), b.mesh.patch_count());
+  constexpr double of_texels = 1e-4;
+  const auto compare = [](const BandArray& x, const BandArray& y) {
+    return ((x - y).abs() / y.abs().maxCoeff()).maxCoeff();
+  };
+  EXPECT_LT(compare(a.solution.patch_radiosity, b.solution.patch_radiosity), of_texels);
+  EXPECT_LT(compare(a.solution.indirect_irradiance, b.solution.indirect_irradiance), of_texels);
+  const auto& energy = a.solution.energy;
+  EXPECT_NEAR((energy.absorbed + energy.unshot) / energy.emitted, 1.0, 1e-4);
+}
+
+// What each patch reflects and what paths that meet it carry on are all the light of a white
+// surface. Means of 256 points of floats.
+TEST(Patterns, RowsAndPathsOfAPatchAddUpToAllLight) {
+  Scene scene = room(worn(rgb_bands(), 1.0f, 1.0f, checker(3, 0.1f, 0.8f)));
+  lay_uv(scene.surfaces[4]);
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.25});
+  ASSERT_TRUE(mesh.patterns);
+  int count = 0;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (mesh.surface[p] != 4) continue;
+    ++count;
+    const Material mirror = mesh.patterns->mirror_of(scene.materials[1], p);
+    EXPECT_NEAR(mesh.reflectance(p, 0) + mean_specular(mirror)[0], 1.0f, 3e-6f);
+  }
+  EXPECT_GT(count, 16);
+}
+
+// A world of B = 2 in which the floor, a white pattern of metal, coat and roughness, neither
+// absorbs nor emits. Every surface then gets E = 2. Closed forms give the diffuse share of the
+// floor and rays its mirrored share: 512 rays from a patch beside it know the half of its view that
+// the floor takes to 0.5 / sqrt(512) = 2e-2, of which half is mirrored. Vertices interpolate the
+// diffuse shares of patches, 0.4 apart, and mirrored shares are those of each patch: a vertex at
+// the edge of the floor may see the half of one patch, whose diffuse share is then off by a quarter
+// of 0.4. The mean over all vertices has no such error, and that of the rays of many patches.
+TEST(Patterns, AWhiteFloorIsInvisibleInAFurnace) {
+  Material white = worn(rgb_bands(), 1.0f, 1.0f, checker(5, 0.2f, 0.6f));
+  SurfacePattern pattern = *white.pattern;
+  pattern.coat = checker(3, 0.0f, 1.0f);
+  pattern.roughness = checker(2, 0.05f, 0.4f);
+  set_pattern(white, pattern);
+  Scene scene = test::furnace(0.5f, 1.0f, false);
+  scene.surfaces[4].material = test::add_material(scene, white);
+  lay_uv(scene.surfaces[4]);
+  SolveOptions options = quick();
+  const SolvedScene solved = solve_scene(scene, options);
+  double on_patches = 0.0;
+  for (int p = 0; p < solved.mesh.patch_count(); ++p) {
+    const double B = static_cast<double>(solved.solution.patch_radiosity(p, 0));
+    const double wanted = solved.mesh.surface[p] == 4
+                              ? 2.0 * static_cast<double>(solved.mesh.reflectance(p, 0))
+                              : 2.0;
+    on_patches = std::max(on_patches, std::abs(B - wanted) / 2.0);
+  }
+  const BandArray E = solved.solution.irradiance();
+  const double at_vertices = (E.cast<double>() / 2.0 - 1.0).abs().maxCoeff();
+  std::printf("white pattern in a furnace: patches %.1e, vertices %.1e\n", on_patches, at_vertices);
+  EXPECT_LT(on_patches, 2e-2);
+  EXPECT_LT(at_vertices, 1e-1);
+  EXPECT_NEAR(E.cast<double>().mean() / 2.0, 1.0, 2e-3);
+  EXPECT_NEAR(solved.solution.energy.absorbed / solved.solution.energy.emitted, 1.0, 1e-3);
+}
+
+// A sheet whose picture of opacity is an even grey lets the sun's or a lamp's light straight
+// through as one of that regular transmittance does.
+TEST(Patterns, OpacityLetsLightThrough) {
+  const auto floor_light = [](const Material& sheet) {
+    Scene scene = room(test::diffuse(rgb_bands(), 0.3f));
+    const int m = test::add_material(scene, sheet);
+    test::add_polygon(scene, "sheet", m,
+                      {{0.2, 0.2, 1.0}, {1.8, 0.2, 1.0}, {1.8, 1.8, 1.0}, {0.2, 1.8, 1.0}});
+    lay_uv(scene.surfaces.back());
+    const SolvedScene solved = solve_scene(scene, quick());
+    double power = 0.0;
+    for (int p = 0; p < solved.mesh.patch_count(); ++p) {
+      if (solved.mesh.surface[p] == 4) {
+        power += solved.mesh.area[p] * static_cast<double>(solved.solution.patch_radiosity(p, 0));
+      }
+    }
+    return power;
+  };
+  Material plain = test::diffuse(rgb_bands(), 0.5f);
+  plain.one_sided = false;
+  Material pictured = plain;
+  SurfacePattern pattern = pattern_of(pictured);
+  pattern.opacity = checker(32, 0.3f, 0.5f);
+  set_pattern(pictured, pattern);
+  plain.reflectance = constant_spectrum(rgb_bands(), 0.2f);
+  plain.regular_transmittance = constant_spectrum(rgb_bands(), 0.6f);
+  // Rays are the same, and those that pass find 0.5 or 0.7 in squares of 5 cm: 64 shadow rays to
+  // each of some thousand vertices, and as many paths, leave 0.1 / sqrt(64e3) = 4e-4 of 0.6.
+  const double even = floor_light(plain);
+  EXPECT_NEAR(floor_light(pictured), even, 3e-3 * even);
+}
+
+}  // namespace
+}  // namespace lightwell::patterns_test
