@@ -4,16 +4,28 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "scene/coat.h"
+#include "scene/io/sheets.h"
+#include "scene/material_at.h"
 
 namespace lightwell {
 namespace {
 
 // Replaces the base's reflectance, and that of its picture, by `coated` of it.
 void replace_base(Material& material, const std::function<Spectrum(const Spectrum&)>& coated) {
-  material.reflectance = coated(material.reflectance);
+  const Spectrum before = material.reflectance;
+  material.reflectance = coated(before);
   if (!material.texture) return;
+  if (before.size() != 3) {
+    // Colours of a picture are no reflectances of other bands: all of them change as the mean does,
+    // which is less than brighter ones would.
+    material.texture->factor *=
+        (before > 0.0f).select(material.reflectance / before, 0.0f).min(1.0f);
+    return;
+  }
   const Spectrum factor = material.texture->factor;
   std::shared_ptr<const Texture>& picture = material.texture->image.picture;
   picture = std::make_shared<const Texture>(
@@ -82,6 +94,61 @@ void add_highlight(Material& material, const Spectrum& share, double alpha) {
   }
   material.specular += share;
   material.specular_roughness = roughness_of(alpha);
+}
+
+bool is_glossy_in_parts(const ShareTexture& alpha) {
+  const Texture& picture = *alpha.image.picture;
+  int glossy = 0;
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      const float here = alpha.factor * picture.texel(0, x, y)[0];
+      if (here <= static_cast<float>(glossy_alpha)) ++glossy;
+    }
+  }
+  constexpr double least = 0.05;
+  return glossy >= least * picture.width() * picture.height();
+}
+
+ShareTexture squared(const ShareTexture& share) {
+  const Texture& picture = *share.image.picture;
+  std::vector<Texture::Code> texels;
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      const float texel = picture.texel(0, x, y)[0];
+      texels.push_back(Texture::encode(texel * texel));
+    }
+  }
+  ShareTexture result = share;
+  result.factor *= share.factor;
+  result.image.picture =
+      std::make_shared<const Texture>(picture.width(), picture.height(), 1, std::move(texels));
+  return result;
+}
+
+bool set_metal_and_paint(Material& material, const MetalAndPaint& given) {
+  const auto& [color, index, alpha, metallic, alpha_picture, metallic_picture] = given;
+  if (!alpha_picture && !metallic_picture) return false;
+  if (!(alpha_picture ? is_glossy_in_parts(*alpha_picture) : alpha <= glossy_alpha)) return false;
+  const auto mean = [](const std::optional<ShareTexture>& picture, double even) {
+    return picture ? static_cast<double>(picture->factor * picture->image.picture->mean()[0])
+                   : even;
+  };
+  SurfacePattern pattern{.roughness = alpha_picture, .base = color, .behind_base = color};
+  pattern.mirrored = Spectrum::Zero(color.size());
+  material.specular_roughness = roughness_of(mean(alpha_picture, alpha));
+  material.coat.reset();
+  const double of_metal = mean(metallic_picture, metallic);
+  if (of_metal < 1.0 - least_metallic) {
+    material.coat = Coat{.index_of_refraction = static_cast<float>(index)};
+    pattern.mirrored.setOnes();
+  }
+  if (of_metal >= least_metallic) {
+    pattern.metal = metallic_picture ? *metallic_picture : even_share(static_cast<float>(of_metal));
+    pattern.metal_color = color;
+    pattern.metal_shows_texture = material.texture.has_value();
+  }
+  set_pattern(material, std::move(pattern));
+  return true;
 }
 
 void set_metallic(Material& material, const Spectrum& color, double metallic, double alpha) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "scene/bands.h"
 #include "scene/scene.h"
 
@@ -47,6 +49,26 @@ void add_highlight(Material& material, const Spectrum& share, double alpha);
 
 /// Roughness of a surface of GGX width `alpha`: 0 up to smooth_alpha, at most 1.
 float roughness_of(double alpha);
+
+/// True if a twentieth or more of a picture of alpha is at most glossy_alpha. Other surfaces are
+/// read as diffuse throughout.
+bool is_glossy_in_parts(const ShareTexture& alpha);
+
+/// The square of a picture of shares, such as a roughness whose square is alpha.
+ShareTexture squared(const ShareTexture& share);
+
+/// Metal beside a dielectric under a coat, of one base colour; pictures stand in place of numbers.
+struct MetalAndPaint {
+  Spectrum color{};       ///< [0,1], times the colour of Material::texture
+  double index = 1.5;     ///< of the coat
+  double alpha = 0.0;     ///< GGX width
+  double metallic = 0.0;  ///< [0,1]
+  std::optional<ShareTexture> alpha_picture{}, metallic_picture{};
+};
+
+/// Gives a material, whose texture is set, the pattern of such a surface; false, without a change,
+/// if there is no picture or the surface is not glossy anywhere.
+bool set_metal_and_paint(Material& material, const MetalAndPaint& given);
 
 /// Sets a material of one color that is part metal and part diffuse: diffuse reflectance (1 -
 /// metallic) color, highlight metallic color. `metallic` in [0,1].

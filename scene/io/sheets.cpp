@@ -1,5 +1,10 @@
 #include "scene/io/sheets.h"
 
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "scene/material_at.h"
 #include "scene/specular.h"
 
 namespace lightwell {
@@ -54,8 +59,22 @@ void limit_shares(Material& material) {
 
 void let_through(Material& material, const Spectrum& opacity) {
   if ((opacity >= 1.0f).all()) return;
+  if (material.pattern) return let_through(material, even_share(opacity.mean()));
   scale_shares(opacity, material);
   add_regular_transmittance(material, 1.0f - opacity);
+}
+
+void let_through(Material& material, const ShareTexture& opacity) {
+  SurfacePattern pattern = material.pattern ? *material.pattern : pattern_of(material);
+  pattern.opacity = opacity;
+  material.one_sided = false;
+  set_pattern(material, std::move(pattern));
+}
+
+ShareTexture even_share(float share) {
+  const SurfaceTexture image{
+      .picture = std::make_shared<const Texture>(1, 1, 1, std::vector{Texture::encode(1.0f)})};
+  return {.image = image, .factor = share};
 }
 
 std::optional<float> even_opacity(const Texture& opacity) {

@@ -40,6 +40,12 @@ void limit_shares(Material& material);
 /// holes. The rest of the light passes straight on. Emission stays as it is.
 void let_through(Material& material, const Spectrum& opacity);
 
+/// The same where a picture gives the share.
+void let_through(Material& material, const ShareTexture& opacity);
+
+/// A picture of one texel, for a share that does not vary.
+ShareTexture even_share(float share);
+
 /// The mean of a picture of opacity (its first channel) whose texels are, for the most part,
 /// neither clear nor opaque: gauze, smoke. Empty for a picture that cuts holes.
 std::optional<float> even_opacity(const Texture& opacity);

@@ -115,6 +115,16 @@ std::string coordinates_of(const GltfObject& info) {
   return fmt::format("TEXCOORD_{}", transform ? transform->index_or("texCoord", set) : set);
 }
 
+// Factor of the share of metal. A metal transmits no light: a file with transmission and no factor
+// means glass or paper.
+double metallic_factor(const GltfObject& from) {
+  const auto pbr = from.object("pbrMetallicRoughness");
+  const bool transmits = from.extension("KHR_materials_transmission") ||
+                         from.extension("KHR_materials_diffuse_transmission");
+  const double otherwise = transmits && !(pbr && pbr->has("metallicFactor")) ? 0.0 : 1.0;
+  return share_or(pbr, "metallicFactor", otherwise);
+}
+
 bool is_cut_by_alpha(const GltfObject& from) {
   const std::string mode = from.string_or("alphaMode", "OPAQUE");
   return mode == "MASK" || mode == "BLEND";
@@ -202,11 +212,34 @@ void GltfMaterials::set_relief(const GltfObject& from, Material& material) {
 std::string GltfMaterials::texture_coordinates(const GltfObject& primitive) const {
   const auto index = primitive.index("material");
   if (!index || *index >= file_.count("materials")) return {};
-  const GltfObject material = file_.at("materials", *index, primitive);
+  return coordinates_of_material(file_.at("materials", *index, primitive));
+}
+
+std::string GltfMaterials::coordinates_of_material(const GltfObject& material) const {
   const auto base = BaseColor(material).info();
   auto info = base ? base : material.object("emissiveTexture");
   if (!info) info = material.object("normalTexture");
+  const auto try_picture = [&](const std::optional<GltfObject>& owner, const char* key) {
+    if (!info && owner) info = owner->object(key);
+  };
+  try_picture(material.object("pbrMetallicRoughness"), "metallicRoughnessTexture");
+  const auto clear_coat = material.extension("KHR_materials_clearcoat");
+  try_picture(clear_coat, "clearcoatTexture");
+  try_picture(clear_coat, "clearcoatRoughnessTexture");
+  try_picture(material.extension("KHR_materials_specular"), "specularTexture");
+  try_picture(material.extension("KHR_materials_diffuse_transmission"),
+              "diffuseTransmissionTexture");
   return info ? coordinates_of(*info) : std::string();
+}
+
+// True if the picture under `key` is laid over surfaces rather than read as its mean.
+bool GltfMaterials::follows(const GltfObject& info, std::string_view key,
+                            const GltfObject& from) const {
+  constexpr std::array<std::string_view, 5> followed = {
+      "metallicRoughnessTexture", "specularTexture", "clearcoatTexture",
+      "clearcoatRoughnessTexture", "diffuseTransmissionTexture"};
+  return std::ranges::find(followed, key) != followed.end() &&
+         coordinates_of(info) == coordinates_of_material(from);
 }
 
 std::optional<Picture> GltfMaterials::base_picture(const GltfObject& from) {
@@ -242,6 +275,20 @@ SurfaceTexture GltfMaterials::laid_on(const GltfObject& info,
     image.is_smooth = sampler.index_or("magFilter", linear) != nearest;
   }
   return image;
+}
+
+float GltfMaterials::metal_factor_of(const GltfObject& from) {
+  return static_cast<float>(metallic_factor(from));
+}
+
+// The base colour's picture and its factor.
+std::optional<ReflectanceTexture> GltfMaterials::base_texture(const GltfObject& from) {
+  const auto picture = base_picture(from);
+  if (!picture) return std::nullopt;
+  const BaseColor color_from(from);
+  return ReflectanceTexture{
+      .image = laid_on(*color_from.info(), picture->color),
+      .factor = color(color_from.owner, color_from.factor, 4).max(0.0f).min(1.0f)};
 }
 
 // `material` is the conversion for the uniform colour `base`.
@@ -280,6 +327,11 @@ void GltfMaterials::cut_by_alpha(const GltfObject& from, Material& material) {
     opacity = is_seen ? 1.0 : 0.0;
   } else if (has_picture) {
     const auto even = even_opacity(*picture->alpha);
+    if (even && !material.dielectric && !material.is_emitter()) {
+      return let_through(material,
+                         ShareTexture{.image = laid_on(*color_from.info(), picture->alpha),
+                                      .factor = static_cast<float>(opacity)});
+    }
     if (even) opacity *= static_cast<double>(*even);
     if (!even) cut(0.5);
   }
@@ -310,7 +362,9 @@ PictureMean GltfMaterials::texture_mean(const std::optional<GltfObject>& owner, 
     known = textures_.emplace(std::pair(*texture, code), mean).first;
   }
   if (known->second) {
-    remarks_.add("Textures were read as their mean colour", from.name());
+    if (!follows(*info, key, from)) {
+      remarks_.add("Textures were read as their mean colour", from.name());
+    }
     return *known->second;
   }
   white.color.setConstant(0.5);
@@ -337,7 +391,8 @@ Spectrum GltfMaterials::base_color(const GltfObject& from) {
 void GltfMaterials::set_surface(const GltfObject& from, bool is_closed, Material& material) {
   const Spectrum base = base_color(from);
   set_shaded(from, base, is_closed, material);
-  lay_on_picture(from, base, material);
+  set_pattern_of(from, base, is_closed, material);
+  if (!material.pattern) lay_on_picture(from, base, material);
 }
 
 void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, bool is_closed,
@@ -349,19 +404,11 @@ void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, boo
     return set_metallic(material, base, 0.0, 1.0);
   }
   const auto pbr = from.object("pbrMetallicRoughness");
-  const auto transmission = from.extension("KHR_materials_transmission");
-  // A metal transmits no light. A file with transmission and the default metallic factor of 1 means
-  // glass or paper.
-  const bool transmits = transmission || from.extension("KHR_materials_diffuse_transmission");
-  const double otherwise = transmits && !(pbr && pbr->has("metallicFactor")) ? 0.0 : 1.0;
   const auto mean = texture_mean(pbr, "metallicRoughnessTexture", PictureCode::linear, from).color;
   const double roughness = share_or(pbr, "roughnessFactor", 1.0) * mean[1];
-  const double metallic = share_or(pbr, "metallicFactor", otherwise) * mean[2];
+  const double metallic = metallic_factor(from) * mean[2];
   const double alpha = roughness * roughness;
-  double clear = share_or(transmission, "transmissionFactor", 0.0);
-  if (clear > 0.0) {
-    clear *= texture_mean(transmission, "transmissionTexture", PictureCode::linear, from).color[0];
-  }
+  const double clear = clear_share(from);
   const double passed = (1.0 - metallic) * clear;
   const bool is_sheet = !is_closed && !(number_or(from.extension("KHR_materials_volume"),
                                                   "thicknessFactor", 0.0) > 0.0);
@@ -390,6 +437,18 @@ void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, boo
 // its own.
 void GltfMaterials::pass_light(const GltfObject& from, const Spectrum& base, float dielectric,
                                double clear, double alpha, Material& material) {
+  const auto [scattered, hue] = diffusely_passed(from);
+  const float straight = dielectric * static_cast<float>(clear);
+  const float behind = dielectric * static_cast<float>(1.0 - clear) * scattered;
+  material.reflectance = (material.reflectance - (straight + behind) * base).max(0.0f);
+  add_diffuse_transmittance(material, behind * hue);
+  if (clear > 0.0 && BaseColor(from).info()) {
+    remarks_.add("What passes sheets with a picture has its mean colour", material.name);
+  }
+  add_transmittance(material, straight * base, alpha);
+}
+
+GltfMaterials::PassedLight GltfMaterials::diffusely_passed(const GltfObject& from) {
   const auto diffuse = from.extension("KHR_materials_diffuse_transmission");
   double scattered = share_or(diffuse, "diffuseTransmissionFactor", 0.0);
   Spectrum hue = color(diffuse, "diffuseTransmissionColorFactor", 3).max(0.0f).min(1.0f);
@@ -399,14 +458,15 @@ void GltfMaterials::pass_light(const GltfObject& from, const Spectrum& base, flo
     hue *= texture_mean(diffuse, "diffuseTransmissionColorTexture", PictureCode::srgb, from)
                .color.cast<float>();
   }
-  const float straight = dielectric * static_cast<float>(clear);
-  const float behind = dielectric * static_cast<float>((1.0 - clear) * scattered);
-  material.reflectance = (material.reflectance - (straight + behind) * base).max(0.0f);
-  add_diffuse_transmittance(material, behind * hue);
-  if (clear > 0.0 && BaseColor(from).info()) {
-    remarks_.add("What passes sheets with a picture has its mean colour", material.name);
-  }
-  add_transmittance(material, straight * base, alpha);
+  return {.scattered = static_cast<float>(scattered), .hue = hue};
+}
+
+double GltfMaterials::clear_share(const GltfObject& from) {
+  const auto transmission = from.extension("KHR_materials_transmission");
+  const double clear = share_or(transmission, "transmissionFactor", 0.0);
+  if (!(clear > 0.0)) return 0.0;
+  return clear *
+         texture_mean(transmission, "transmissionTexture", PictureCode::linear, from).color[0];
 }
 
 // Lays on the coat that a dielectric is, or its clear coat. Highlights of a roughness above 0.7 are
@@ -420,12 +480,20 @@ void GltfMaterials::set_coat(const GltfObject& from, double alpha, Material& mat
     return lay_simple_coat(material, of_clear_coats, roughness * roughness,
                            Spectrum::Constant(3, static_cast<float>(clear_share)));
   }
+  const auto layer = coat_layer(from);
+  if (layer && alpha <= glossy_alpha) {
+    lay_simple_coat(material, double{layer->index}, alpha, layer->share);
+  }
+}
+
+std::optional<GltfMaterials::CoatLayer> GltfMaterials::coat_layer(const GltfObject& from) {
   const auto specular = from.extension("KHR_materials_specular");
   const double index = number_or(from.extension("KHR_materials_ior"), "ior", 1.5);
   const Spectrum share = static_cast<float>(share_or(specular, "specularFactor", 1.0)) *
                          color(specular, "specularColorFactor", 3).max(0.0f).min(1.0f);
   const bool mirrors = index > 1.0 && index <= highest_index && (share > 0.0f).any();
-  if (mirrors && alpha <= glossy_alpha) lay_simple_coat(material, index, alpha, share);
+  if (!mirrors) return std::nullopt;
+  return CoatLayer{.index = static_cast<float>(index), .share = share};
 }
 
 void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, double alpha,

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "scene/io/gltf/gltf_file.h"
@@ -39,6 +40,42 @@ class GltfMaterials {
   void set_clear(const GltfObject& from, const Spectrum& base, double alpha, bool is_closed,
                  Material& material);
   void set_emission(const GltfObject& from, Material& material);
+  // Coat of a dielectric: its own or its clear coat; empty: none.
+  struct CoatLayer {
+    float index = 1.5f;
+    Spectrum share{};
+  };
+  static std::optional<CoatLayer> coat_layer(const GltfObject& from);
+  // Light that leaves a sheet diffusely on the other side: its share, [0,1], and colour.
+  struct PassedLight {
+    float scattered = 0.0f;
+    Spectrum hue{};
+  };
+  PassedLight diffusely_passed(const GltfObject& from);
+  // Share of a dielectric's light, [0,1], that passes without being scattered.
+  double clear_share(const GltfObject& from);
+  // Pictures of shares and roughness, and the numbers that stand where there is none.
+  struct SharePictures {
+    float even_alpha = 1.0f;   // factor of the picture, or the roughness without one
+    float even_metal = 0.0f;   // mean
+    float clear_share = 1.0f;  // of a clear coat, where no picture has it
+    bool is_clear_coat = false;
+    std::optional<ShareTexture> roughness{}, metal{}, coat{}, translucency{};
+  };
+  SharePictures share_pictures(const GltfObject& from, float metal_factor);
+  void set_gloss(const GltfObject& from, const SharePictures& pictures, const Spectrum& color,
+                 bool has_metal, Material& material, SurfacePattern& pattern);
+  static float metal_factor_of(const GltfObject& from);
+  std::optional<ReflectanceTexture> base_texture(const GltfObject& from);
+  void set_pattern_of(const GltfObject& from, const Spectrum& base, bool is_closed,
+                      Material& material);
+  bool follows(const GltfObject& info, std::string_view key, const GltfObject& from) const;
+  std::string coordinates_of_material(const GltfObject& material) const;
+  // Channel `number` (3: alpha) of a picture of shares; empty without a picture that is laid over
+  // the surface as others are.
+  std::optional<ShareTexture> share_picture(const std::optional<GltfObject>& owner, const char* key,
+                                            int number, float factor, const GltfObject& from);
+  std::optional<Picture> linear_picture(const GltfObject& info, const GltfObject& from);
   // Picture of baseColorTexture or diffuseTexture; empty if absent or of an unsupported format.
   std::optional<Picture> base_picture(const GltfObject& from);
   std::optional<Picture> color_picture(const GltfObject& info, const GltfObject& from);
@@ -54,7 +91,8 @@ class GltfMaterials {
   Remarks& remarks_;
   std::map<std::pair<std::optional<std::size_t>, bool>, int> index_of_;
   std::map<std::pair<std::size_t, PictureCode>, std::optional<PictureMean>> textures_;
-  std::map<std::size_t, std::optional<Picture>> color_pictures_;  // by texture
+  std::map<std::size_t, std::optional<Picture>> color_pictures_;   // by texture
+  std::map<std::size_t, std::optional<Picture>> linear_pictures_;  // by texture
 };
 
 }  // namespace lightwell

@@ -205,6 +205,7 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
     material.metal = metal;
     material.specular = share;
   }
+  vary_gloss(bsdf, material);
   return material;
 }
 
@@ -213,7 +214,7 @@ Material MitsubaMaterials::conductor(const MitsubaNode& bsdf, Pixels pixels) {
 double MitsubaMaterials::roughness(const MitsubaNode& bsdf) {
   const double alpha =
       std::max(colors_.number_or(bsdf, "alpha_u", 0.0), colors_.number_or(bsdf, "alpha_v", 0.0));
-  return colors_.number_or(bsdf, "alpha", alpha > 0.0 ? alpha : 0.1);
+  return mean_or(bsdf, "alpha", alpha > 0.0 ? alpha : 0.1);
 }
 
 // Refractive index given as a number or as the name of a material.
@@ -245,7 +246,10 @@ Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf, Pixels pixels) {
     return pane(ratio, tint, 0.0);
   }
   Material glass = clear_bsdf(ratio, tint);
-  if (bsdf.type == "roughdielectric") glass.dielectric->roughness = roughness_of(roughness(bsdf));
+  if (bsdf.type == "roughdielectric") {
+    glass.dielectric->roughness = roughness_of(roughness(bsdf));
+    vary_gloss(bsdf, glass);
+  }
   return glass;
 }
 
@@ -256,6 +260,7 @@ Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
   const double index = std::max(index_ratio(bsdf, polypropylene), double{lowest_coat_index});
   // Without `nonlinear`, Mitsuba's base reflects as if it were white below the coat.
   lay_coat(material, index, alpha, specular, bsdf.boolean_or("nonlinear", false));
+  vary_gloss(bsdf, material);
   return material;
 }
 
@@ -275,6 +280,7 @@ Material MitsubaMaterials::coated(const MitsubaNode& bsdf, Material material, Pi
   const double alpha = bsdf.type == "roughcoating" ? roughness(bsdf) : 0.0;
   const double index = std::max(index_ratio(bsdf, bk7), double{lowest_coat_index});
   lay_coat(material, index, alpha, colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels));
+  vary_gloss(bsdf, material);
   return material;
 }
 
@@ -298,7 +304,7 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
   const Spectrum color =
       picture ? picture->mean : colors_.share_or(bsdf, "base_color", 0.5f, pixels);
   const auto share = [&](const char* property, double otherwise) {
-    return std::clamp(colors_.number_or(bsdf, property, otherwise), 0.0, 1.0);
+    return std::clamp(mean_or(bsdf, property, otherwise), 0.0, 1.0);
   };
   const double alpha = share("roughness", 0.5) * share("roughness", 0.5);
   const bool is_thin = bsdf.type == "principledthin";
@@ -315,14 +321,15 @@ Material MitsubaMaterials::principled(const MitsubaNode& bsdf, Pixels pixels) {
     material.texture->factor *= (color > 0.0f).select(material.reflectance / color, 0.0f);
   }
   if (is_thin) pass_thin(bsdf, color, alpha, material);
+  // The reflectance 0.08 specular at normal incidence, as an index of refraction.
+  const double root = std::sqrt(0.08 * share("specular", 0.5));
+  const double given =
+      bsdf.property("eta") ? this->index(bsdf, "eta", 1.5) : (1.0 + root) / (1.0 - root);
+  const double index = std::clamp(given, double{lowest_coat_index}, double{highest_index});
   if (metallic < least_metallic && alpha <= glossy_alpha) {
-    // The reflectance 0.08 specular at normal incidence, as an index of refraction.
-    const double root = std::sqrt(0.08 * share("specular", 0.5));
-    const double index =
-        bsdf.property("eta") ? this->index(bsdf, "eta", 1.5) : (1.0 + root) / (1.0 - root);
-    lay_simple_coat(material, std::clamp(index, double{lowest_coat_index}, double{highest_index}),
-                    alpha, Spectrum::Ones(3));
+    lay_simple_coat(material, index, alpha, Spectrum::Ones(3));
   }
+  if (!is_thin) vary_principled(bsdf, picture ? picture->texture.factor : color, index, material);
   return material;
 }
 
@@ -364,6 +371,10 @@ Material MitsubaMaterials::masked(const MitsubaNode& bsdf, const MitsubaNode& in
   if (is_picture) {
     const auto mask = colors_.mask(bsdf, "opacity");
     const auto even = mask ? even_opacity(*mask->image.picture) : std::nullopt;
+    if (even && !material.dielectric) {
+      let_through(material, ShareTexture{.image = mask->image});
+      return material;
+    }
     if (even) opacity.setConstant(*even);
     if (mask && !even) material.mask = mask;
   } else {

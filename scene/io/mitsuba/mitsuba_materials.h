@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -44,6 +45,13 @@ class MitsubaMaterials {
   Material two_sided(const MitsubaNode& bsdf, Pixels pixels);
   Material blend(const MitsubaNode& bsdf, Pixels pixels);
   double roughness(const MitsubaNode& bsdf);
+  // The first channel of a bitmap or checkerboard, times its factor; empty for other properties.
+  std::optional<ShareTexture> share_picture(const MitsubaNode& bsdf, std::string_view property);
+  // A number, or the mean of share_picture().
+  double mean_or(const MitsubaNode& bsdf, std::string_view property, double otherwise);
+  void vary_gloss(const MitsubaNode& bsdf, Material& material);
+  void vary_principled(const MitsubaNode& bsdf, const Spectrum& color, double index,
+                       Material& material);
   static double index(const MitsubaNode& bsdf, std::string_view property, double otherwise);
   static double index_ratio(const MitsubaNode& bsdf, double inside);
   void add_emission(const MitsubaNode& emitter, const std::string& name, Material& material);

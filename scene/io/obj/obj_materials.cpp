@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "scene/errors.h"
+#include "scene/io/glossy.h"
 #include "scene/io/pictures/picture_mean.h"
 #include "scene/io/sheets.h"
 #include "scene/io/text_file.h"
@@ -26,7 +27,8 @@ struct MtlBlock {
   std::optional<float> index{}, dissolve{}, transparency{};
   int illumination = -1;
   std::string diffuse_map{}, dissolve_map{}, radiance_map{};  ///< options and file
-  std::string normal_map{}, bump_map{};
+  std::string normal_map{}, bump_map{}, roughness_map{}, metal_map{};
+  std::optional<float> roughness{}, metal{};  ///< Pr, Pm
   bool has_other_map = false;
 };
 
@@ -86,6 +88,8 @@ class MtlParser {
       if (word == "-halo") word = next_word(rest);
       block.dissolve = number(key, word, 1.0f);
     }
+    if (key == "Pr") block.roughness = number(key, next_word(rest), 1.0f);
+    if (key == "Pm") block.metal = number(key, next_word(rest), 1.0f);
     if (key == "Tr") block.transparency = number(key, next_word(rest), 1.0f);
     if (key == "illum") block.illumination = static_cast<int>(number(key, next_word(rest), 10.0f));
     if (key == "map_Kd") {
@@ -94,6 +98,10 @@ class MtlParser {
       block.radiance_map = trimmed(rest);
     } else if (key == "map_d") {
       block.dissolve_map = trimmed(rest);
+    } else if (key == "map_Pr") {
+      block.roughness_map = trimmed(rest);
+    } else if (key == "map_Pm") {
+      block.metal_map = trimmed(rest);
     } else if (key == "norm" || key == "map_Kn") {
       block.normal_map = trimmed(rest);
     } else if (key == "bump" || key == "map_bump" || key == "map_Bump") {
@@ -261,6 +269,7 @@ class MapReader {
 
   void add_maps(const MtlBlock& b, Material& material) {
     if (!b.diffuse_map.empty()) lay_on_diffuse_map(b, material);
+    if (!b.roughness_map.empty() || !b.metal_map.empty()) vary_gloss(b, material);
     if (!b.radiance_map.empty()) lay_on_radiance_map(b, material);
     if (!b.normal_map.empty() || !b.bump_map.empty()) set_relief(b, material);
     if (b.dissolve_map.empty()) return;
@@ -270,12 +279,39 @@ class MapReader {
     } else if (const auto picture = open(map.file, b, PictureCode::linear)) {
       map.image.picture = picture->alpha ? picture->alpha : picture->color;
       const auto even = material.dielectric ? std::nullopt : even_opacity(*map.image.picture);
-      if (even) return let_through(material, Spectrum::Constant(3, *even));
+      map.image.picture = first_channel(*map.image.picture);
+      if (even) return let_through(material, ShareTexture{.image = map.image});
       material.mask = Mask{.image = map.image};
     }
   }
 
  private:
+  // Pictures of roughness and metal, of surfaces that are neither mirror nor glass: glTF's model in
+  // MTL files. Pr and Pm are factors of the pictures.
+  void vary_gloss(const MtlBlock& b, Material& material) {
+    if (material.dielectric || material.mirrors()) return remarks_.add(textures_left_out, b.name);
+    const auto share = [&](const std::string& map_text, std::optional<float> factor) {
+      std::optional<ShareTexture> result;
+      if (map_text.empty()) return result;
+      MapStatement map = read_map_statement(map_text);
+      const auto picture = open(map.file, b, PictureCode::linear);
+      if (!picture) return result;
+      map.image.picture = first_channel(*picture->color);
+      result = ShareTexture{.image = map.image, .factor = factor.value_or(1.0f)};
+      return result;
+    };
+    const auto roughness = share(b.roughness_map, b.roughness);
+    const float even = b.roughness.value_or(1.0f);
+    MetalAndPaint given{
+        .color = material.texture ? material.texture->factor : material.reflectance,
+        .index = b.index && *b.index > 1.0f && *b.index <= highest_index ? double{*b.index} : 1.5,
+        .alpha = double{even * even},
+        .metallic = double{b.metal.value_or(0.0f)},
+        .metallic_picture = share(b.metal_map, b.metal)};
+    if (roughness) given.alpha_picture = squared(*roughness);
+    set_metal_and_paint(material, given);
+  }
+
   void lay_on_diffuse_map(const MtlBlock& b, Material& material) {
     MapStatement map = read_map_statement(b.diffuse_map);
     if (material.dielectric) return remarks_.add(textures_left_out, b.name);

@@ -260,6 +260,18 @@ std::string name_of(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::shared_ptr<const Texture> channel_of(const Texture& picture, int channel) {
+  std::vector<Texture::Code> texels;
+  texels.reserve(static_cast<std::size_t>(picture.width()) *
+                 static_cast<std::size_t>(picture.height()));
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      texels.push_back(Texture::encode(picture.texel(0, x, y)[channel]));
+    }
+  }
+  return std::make_shared<const Texture>(picture.width(), picture.height(), 1, std::move(texels));
+}
+
 double linear_from_srgb(double value) {
   return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
 }

@@ -63,6 +63,12 @@ class PictureFiles {
   std::map<std::filesystem::path, LightPicture> lights_;
 };
 
+/// Texture of one channel, 0 to 2, of a picture.
+std::shared_ptr<const Texture> channel_of(const Texture& picture, int channel);
+inline std::shared_ptr<const Texture> first_channel(const Texture& picture) {
+  return channel_of(picture, 0);
+}
+
 /// Linear value of an sRGB value, both in [0,1] (IEC 61966-2-1).
 double linear_from_srgb(double value);
 

@@ -434,12 +434,33 @@ Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands) {
 
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures) {
-  const TomlTable table =
-      value.table({"reflectance", "specular",        "roughness", "glass",     "sides",
-                   "radiance",    "exitance",        "power",     "luminance", "luminous_exitance",
-                   "lumens",      "colour",          "watts",     "emits",     "texture",
-                   "mask",        "relief",          "metal",     "coat",      "translucent",
-                   "transparent", "emission_texture"});
+  const TomlTable table = value.table({"reflectance",
+                                       "specular",
+                                       "roughness",
+                                       "glass",
+                                       "sides",
+                                       "radiance",
+                                       "exitance",
+                                       "power",
+                                       "luminance",
+                                       "luminous_exitance",
+                                       "lumens",
+                                       "colour",
+                                       "watts",
+                                       "emits",
+                                       "texture",
+                                       "mask",
+                                       "relief",
+                                       "metal",
+                                       "coat",
+                                       "translucent",
+                                       "transparent",
+                                       "emission_texture",
+                                       "roughness_texture",
+                                       "metal_texture",
+                                       "coat_texture",
+                                       "opacity_texture",
+                                       "translucent_texture"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
   material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
@@ -469,6 +490,7 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
   read_toml_pictures(table, bands, pictures, has_reflectance, material);
   if (coat) lay_given_coat(table, *coat, material);
   read_sheet(table, bands, has_reflectance, material);
+  read_toml_pattern(table, bands, pictures, material);
   read_emission(table, bands, result);
   read_toml_emission_texture(table, bands, pictures, material);
   return result;

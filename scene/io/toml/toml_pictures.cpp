@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "scene/errors.h"
+#include "scene/material_at.h"
+#include "scene/rgb_basis.h"
 
 namespace lightwell {
 namespace {
@@ -105,15 +107,13 @@ void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureF
     if (material.dielectric) {
       texture->fail("contradicts 'glass': a clear surface has no colour of its own; remove one");
     }
-    if (!bands.bands.wavelengths_nm.empty()) {
-      texture->fail("is red, green and blue, but the scene's bands are wavelengths; remove it");
-    }
-    if (!has_reflectance) material.reflectance = Spectrum::Ones(3) - material.specular;
+    if (!has_reflectance) material.reflectance = 1.0f - material.specular;
     Laid laid = read_laid(*texture, table_of(*texture, {"file", "wrap", "filter"}),
                           PictureCode::srgb, pictures);
     laid.image.picture = laid.picture.color;
     material.texture = {.image = laid.image, .factor = material.reflectance};
-    material.reflectance *= laid.picture.mean.color.cast<float>();
+    material.reflectance *=
+        RgbBasis(bands.bands).reflectance(laid.picture.mean.color.cast<float>());
   }
   if (const auto mask = table.find("mask")) {
     for (const char* other :
@@ -130,6 +130,97 @@ void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureF
     }
   }
   if (const auto relief = table.find("relief")) material.relief = read_relief(*relief, pictures);
+}
+
+namespace {
+
+// A key of one share or roughness: a picture whose first channel counts, without sRGB's curve.
+struct GivenShare {
+  TomlValue value;
+  std::optional<TomlTable> table{};
+  ShareTexture share{};
+};
+
+std::optional<GivenShare> read_share(const TomlTable& table, const char* key,
+                                     PictureFiles& pictures,
+                                     std::initializer_list<const char*> keys = {"file", "wrap",
+                                                                                "filter"}) {
+  const auto value = table.find(key);
+  if (!value) return std::nullopt;
+  GivenShare given{.value = *value, .table = table_of(*value, keys)};
+  Laid laid = read_laid(*value, given.table, PictureCode::linear, pictures);
+  laid.image.picture = first_channel(*laid.picture.color);
+  given.share.image = laid.image;
+  return given;
+}
+
+std::optional<ShareTexture> share_of(const std::optional<GivenShare>& given) {
+  return given ? std::optional(given->share) : std::nullopt;
+}
+
+// Refuses pictures whose material lacks what they vary.
+void check_toml_pattern(const TomlTable& table, const Material& material) {
+  const auto refuse = [&](const char* key, bool is_wrong, const char* why) {
+    if (const auto value = table.find(key); value && is_wrong) value->fail(why);
+  };
+  refuse("roughness_texture",
+         !material.mirrors() && !material.dielectric && !table.has("metal_texture"),
+         "spreads what 'specular', 'coat', 'metal_texture' or 'glass' mirrors; give one, or remove "
+         "it");
+  refuse("metal_texture", !material.coat && material.mirrors(),
+         "says where the surface is bare metal, and 'specular' or 'metal' that all of it mirrors; "
+         "give the metal's colour as the key 'reflectance' of 'metal_texture', and remove the "
+         "other");
+  refuse("coat_texture", !material.coat, "says where a coat lies; give 'coat' too, or remove it");
+  refuse("translucent_texture", !material.is_translucent(),
+         "multiplies 'translucent'; give that too, or remove it");
+  refuse("opacity_texture", material.one_sided,
+         "lets light through to the other side, but sides is 'one'; remove one of the two keys");
+  for (const char* key : {"metal_texture", "coat_texture", "opacity_texture"}) {
+    refuse(key, material.dielectric.has_value(),
+           "contradicts 'glass', of which only the roughness varies by a picture; remove one");
+  }
+  for (const char* other :
+       {"radiance", "exitance", "power", "luminance", "luminous_exitance", "lumens"}) {
+    refuse("opacity_texture", table.has(other),
+           "does not go with an emission: lamps let no light straight through");
+  }
+}
+
+}  // namespace
+
+void read_toml_pattern(const TomlTable& table, const TomlBands& bands, PictureFiles& pictures,
+                       Material& material) {
+  if (table
+          .present({"roughness_texture", "metal_texture", "coat_texture", "opacity_texture",
+                    "translucent_texture"})
+          .empty()) {
+    return;
+  }
+  check_toml_pattern(table, material);
+  const auto roughness = read_share(table, "roughness_texture", pictures);
+  const auto metal =
+      read_share(table, "metal_texture", pictures, {"file", "wrap", "filter", "reflectance"});
+  ShareTexture alpha;
+  if (roughness) {
+    float& even =
+        material.dielectric ? material.dielectric->roughness : material.specular_roughness;
+    alpha = roughness->share;
+    alpha.factor = even > 0.0f ? even : 1.0f;
+    even = alpha.factor * alpha.image.picture->mean()[0];
+  }
+  SurfacePattern pattern = pattern_of(material);
+  if (roughness) pattern.roughness = alpha;
+  if (metal) {
+    pattern.metal = metal->share;
+    const auto color = metal->table ? metal->table->find("reflectance") : std::nullopt;
+    pattern.metal_color =
+        color ? read_toml_share(*color, bands) : constant_spectrum(bands.bands, 1.0f);
+  }
+  pattern.coat = share_of(read_share(table, "coat_texture", pictures));
+  pattern.opacity = share_of(read_share(table, "opacity_texture", pictures));
+  pattern.translucency = share_of(read_share(table, "translucent_texture", pictures));
+  set_pattern(material, pattern, RgbBasis(bands.bands));
 }
 
 void read_toml_emission_texture(const TomlTable& table, const TomlBands& bands,

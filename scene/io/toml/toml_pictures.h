@@ -13,6 +13,13 @@ namespace lightwell {
 void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureFiles& pictures,
                         bool has_reflectance, Material& material);
 
+/// Reads the keys `roughness_texture`, `metal_texture`, `coat_texture`, `opacity_texture` and
+/// `translucent_texture`: pictures by which the roughness and the shares of `material`, which is
+/// complete but for its emission, vary (see SurfacePattern). Throws InputError as
+/// read_toml_pictures().
+void read_toml_pattern(const TomlTable& table, const TomlBands& bands, PictureFiles& pictures,
+                       Material& material);
+
 /// Reads the key `emission_texture`: a picture that multiplies the material's emission, which
 /// becomes the mean of the picture. Throws InputError as read_toml_pictures().
 void read_toml_emission_texture(const TomlTable& table, const TomlBands& bands,
