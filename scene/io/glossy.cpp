@@ -138,7 +138,8 @@ bool set_metal_and_paint(Material& material, const MetalAndPaint& given) {
   material.specular_roughness = roughness_of(mean(alpha_picture, alpha));
   material.coat.reset();
   const double of_metal = mean(metallic_picture, metallic);
-  if (of_metal < 1.0 - least_metallic) {
+  // An even mixture of metal and paint has no coat, as one without pictures.
+  if (of_metal < (metallic_picture ? 1.0 - least_metallic : least_metallic)) {
     material.coat = Coat{.index_of_refraction = static_cast<float>(index)};
     pattern.mirrored.setOnes();
   }

@@ -66,7 +66,11 @@ void let_through(Material& material, const Spectrum& opacity) {
 
 void let_through(Material& material, const ShareTexture& opacity) {
   SurfacePattern pattern = material.pattern ? *material.pattern : pattern_of(material);
+  const float already = pattern.opacity && pattern.opacity->image.picture->level_count() == 1
+                            ? pattern.opacity->factor
+                            : 1.0f;
   pattern.opacity = opacity;
+  pattern.opacity->factor *= already;
   material.one_sided = false;
   set_pattern(material, std::move(pattern));
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -93,6 +94,7 @@ class GltfMaterials {
   std::map<std::pair<std::size_t, PictureCode>, std::optional<PictureMean>> textures_;
   std::map<std::size_t, std::optional<Picture>> color_pictures_;   // by texture
   std::map<std::size_t, std::optional<Picture>> linear_pictures_;  // by texture
+  std::map<std::pair<std::size_t, int>, std::shared_ptr<const Texture>> channels_;
 };
 
 }  // namespace lightwell

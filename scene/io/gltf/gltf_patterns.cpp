@@ -29,8 +29,10 @@ std::optional<ShareTexture> GltfMaterials::share_picture(const std::optional<Glt
   if (!picture) return std::nullopt;
   constexpr int alpha = 3;
   if (number == alpha && !picture->alpha) return std::nullopt;
-  auto shown = number == alpha ? picture->alpha : channel_of(*picture->color, number);
-  return ShareTexture{.image = laid_on(*info, std::move(shown)), .factor = factor};
+  // Several materials often share a picture.
+  std::shared_ptr<const Texture>& shown = channels_[{*info->index("index"), number}];
+  if (!shown) shown = number == alpha ? picture->alpha : channel_of(*picture->color, number);
+  return ShareTexture{.image = laid_on(*info, shown), .factor = factor};
 }
 
 std::optional<Picture> GltfMaterials::linear_picture(const GltfObject& info,
@@ -134,7 +136,10 @@ void GltfMaterials::set_gloss(const GltfObject& from, const SharePictures& pictu
   if (pictures.is_clear_coat) {
     layer = CoatLayer{.share = Spectrum::Constant(color.size(), pictures.clear_share)};
   }
-  if (layer && double{pictures.even_metal} < 1.0 - least_metallic) {
+  // An even mixture of metal and paint has no coat, as one without pictures.
+  const bool has_paint = pictures.metal ? double{pictures.even_metal} < 1.0 - least_metallic
+                                        : double{pictures.even_metal} < least_metallic;
+  if (layer && has_paint) {
     material.coat = Coat{.index_of_refraction = layer->index};
     pattern.mirrored = layer->share;
     pattern.coat = pictures.coat;

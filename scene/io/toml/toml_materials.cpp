@@ -476,7 +476,7 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
     }
   }
   if (table.has("roughness") && !table.has("specular") && !table.has("glass") &&
-      !table.has("metal")) {
+      !table.has("metal") && !table.has("metal_texture")) {
     table.require("roughness").fail("spreads what 'specular' mirrors; give that too, or remove it");
   }
   material.specular_roughness = read_roughness(table);
