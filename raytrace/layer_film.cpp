@@ -19,6 +19,20 @@ float coverage(const CameraRays& rays, int x, int y) {
   return static_cast<float>(seen) / (points * points);
 }
 
+// Replaces the hit of a ray by a luminaire before it: a hit on no element.
+void show_lamp(const VisibleLamps& lamps, const Ray& ray, ElementHit& hit) {
+  if (lamps.empty()) return;
+  const double length = ray.direction.norm();
+  Ray unit = ray;
+  unit.direction /= length;
+  const double end = hit.facet < 0 ? std::numeric_limits<double>::infinity() : hit.t * length;
+  const auto seen = lamps.first(unit, end);
+  if (!seen) return;
+  hit = {};
+  hit.facet = 0;
+  hit.t = static_cast<decltype(hit.t)>(seen->t / length);
+}
+
 }  // namespace
 
 LayerFilm::LayerFilm(const std::vector<Layer>& layers, Image& image) : image_(image) {
@@ -44,7 +58,7 @@ void LayerFilm::set_sampled(Eigen::Index pixel, const SampledLayers& mean) {
 }
 
 void LayerFilm::finish_row(int y, const Bands& bands, const CameraRays& rays,
-                           const ElementCaster& caster) {
+                           const ElementCaster& caster, const VisibleLamps& lamps) {
   bool has_centres = false;
   for (const auto& [layer, column, count] : placed_) {
     has_centres = has_centres || layer == Layer::depth || layer == Layer::patch;
@@ -60,10 +74,11 @@ void LayerFilm::finish_row(int y, const Bands& bands, const CameraRays& rays,
       image_.layers.values(pixel, column) = static_cast<float>(luminous(bands, L));
     }
   }
-  if (has_centres) trace_centres(y, rays, caster);
+  if (has_centres) trace_centres(y, rays, caster, lamps);
 }
 
-void LayerFilm::trace_centres(int y, const CameraRays& rays, const ElementCaster& caster) {
+void LayerFilm::trace_centres(int y, const CameraRays& rays, const ElementCaster& caster,
+                              const VisibleLamps& lamps) {
   std::vector<Ray> view_rays;
   std::vector<int> columns;  // of the rays: those that show something
   for (int x = 0; x < image_.width; ++x) {
@@ -74,6 +89,7 @@ void LayerFilm::trace_centres(int y, const CameraRays& rays, const ElementCaster
   }
   std::vector<ElementHit> hits(view_rays.size());
   caster.closest_elements(view_rays, hits);
+  for (std::size_t i = 0; i < hits.size(); ++i) show_lamp(lamps, view_rays[i], hits[i]);
   for (const auto& [layer, column, count] : placed_) {
     if (layer != Layer::depth && layer != Layer::patch) continue;
     const Eigen::Index first = Eigen::Index{y} * image_.width;

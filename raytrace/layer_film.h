@@ -6,6 +6,7 @@
 #include "raytrace/cameras/camera_ray.h"
 #include "raytrace/pictures/image.h"
 #include "raytrace/pictures/layers.h"
+#include "raytrace/shading/visible_lamps.h"
 
 namespace lightwell {
 
@@ -17,16 +18,19 @@ class LayerFilm {
 
   /// Sets the sampled layers of a pixel to the mean of its samples.
   void set_sampled(Eigen::Index pixel, const SampledLayers& mean);
-  /// Fills the remaining layers of row y: depth and patch at the pixels' centres, and luminance
+  /// Fills the remaining layers of row y: depth and patch at the pixels' centres (a
+  /// luminaire has a depth and no patch), and luminance
   /// from radiance.
-  void finish_row(int y, const Bands& bands, const CameraRays& rays, const ElementCaster& caster);
+  void finish_row(int y, const Bands& bands, const CameraRays& rays, const ElementCaster& caster,
+                  const VisibleLamps& lamps);
 
  private:
   struct Placed {
     Layer layer;
     int column, count;  // first of the layer's columns in LayerColumns, and their number
   };
-  void trace_centres(int y, const CameraRays& rays, const ElementCaster& caster);
+  void trace_centres(int y, const CameraRays& rays, const ElementCaster& caster,
+                     const VisibleLamps& lamps);
 
   Image& image_;
   std::vector<Placed> placed_{};

@@ -387,10 +387,11 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
                focus_distance, blades, shutter_open, shutter_close, motion, projection, view_width,
                near_distance, far_distance, shift, window, distortion, circle_degrees,
                eye_separation] = camera;
-  // Left out are `caustics` and `slant`, which follow from the rest; `layers`, whose names render()
-  // adds; `run` and `rows_done`, which change no bit.
+  // Left out are `caustics`, `slant` and `visible_lamps`, which follow from the rest; `layers`,
+  // whose names render() adds; `run` and `rows_done`, which change no bit.
   const auto& [pass, max_depth, min_contribution, shadows, gather_rays, photons, caustics, slant,
-               glossy_rays, sampling, max_subdivision, contrast, layers, run, rows_done] = options;
+               visible_lamps, glossy_rays, sampling, max_subdivision, contrast, layers, run,
+               rows_done] = options;
   const auto& [min_shadow_rays, max_shadow_rays, sky_rays] = shadows;
   const auto& [most_samples, least_samples, noise] = sampling;
   for (const Eigen::Vector3d* v : {&position, &direction, &up}) print.add(*v);
@@ -544,7 +545,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
       tiles.render(y, rows);
       parallel_for(rows, 1, [&](int begin, int end) {
         for (int i = begin; i < end; ++i) {
-          layers.finish_row(y + i, scene.bands, rays, caster);
+          layers.finish_row(y + i, scene.bands, rays, caster, tree.visible_lamps());
         }
       });
       phase.keep(tile, values);

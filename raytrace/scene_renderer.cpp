@@ -5,6 +5,7 @@
 
 #include "raytrace/caustics/caustic_map.h"
 #include "raytrace/shading/indirect_slant.h"
+#include "raytrace/shading/visible_lamps.h"
 
 namespace lightwell {
 
@@ -35,10 +36,20 @@ std::shared_ptr<const BandArray> SceneRenderer::slant(const RenderOptions& optio
   return slant_;
 }
 
+std::shared_ptr<const VisibleLamps> SceneRenderer::visible_lamps() {
+  const std::lock_guard lock(mutex_);
+  if (!visible_lamps_) {
+    visible_lamps_ =
+        std::make_shared<const VisibleLamps>(scene_, caster_, direct_light_, solution_);
+  }
+  return visible_lamps_;
+}
+
 Image SceneRenderer::render(const Camera& camera, RenderOptions options, RenderReport* report) {
   validate(options);
   options.caustics = caustics(options);
   options.slant = slant(options);
+  options.visible_lamps = visible_lamps();
   return lightwell::render(scene_, caster_, direct_light_, solution_, camera, options, report);
 }
 

@@ -13,15 +13,16 @@
 namespace lightwell {
 
 /// Renderer of several pictures of one solution. The caster, the data on lamps and sky, the
-/// photons of caustics, which take a second or two, and the slant of indirect light on relief are
-/// shared by all pictures. Each picture has
-/// the same bits as by render() alone. Keeps references to scene, mesh and solution.
+/// photons of caustics, which take a second or two, the slant of indirect light on relief and the
+/// luminaires are shared by all pictures. Each picture has the same bits as by render() alone.
+/// Keeps references to scene, mesh and solution.
 class SceneRenderer {
  public:
   SceneRenderer(const Scene& scene, const PatchMesh& mesh, const RadiositySolution& solution);
 
-  /// Renders a picture as render() does, with RenderOptions::caustics and slant set here. May be
-  /// called by any number of threads at once, of which one finds them while the others wait.
+  /// Renders a picture as render() does, with RenderOptions::caustics, slant and visible_lamps set
+  /// here. May be called by any number of threads at once, of which one finds them while the others
+  /// wait.
   Image render(const Camera& camera, RenderOptions options = {}, RenderReport* report = nullptr);
   /// The light that falls on what a camera sees, as meter_incident_light() returns it.
   std::optional<IncidentLight> incident_light(const Camera& camera) const;
@@ -29,6 +30,7 @@ class SceneRenderer {
  private:
   std::shared_ptr<const CausticMap> caustics(const RenderOptions& options);
   std::shared_ptr<const BandArray> slant(const RenderOptions& options);
+  std::shared_ptr<const VisibleLamps> visible_lamps();
 
   const Scene& scene_;
   const RadiositySolution& solution_;
@@ -39,6 +41,7 @@ class SceneRenderer {
   std::shared_ptr<const CausticMap> caustics_{};  // map of photons_ photons, followed to max_depth_
   int slant_depth_ = 0;
   std::shared_ptr<const BandArray> slant_{};  // for paths of slant_depth_
+  std::shared_ptr<const VisibleLamps> visible_lamps_{};
 };
 
 }  // namespace lightwell

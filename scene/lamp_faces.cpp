@@ -28,11 +28,6 @@ std::vector<Eigen::Vector3d> outline(const Lamp& lamp, double size_x, double siz
   return corners;
 }
 
-std::vector<Eigen::Vector3d> opening_at(const Lamp& lamp, double away) {
-  const LampOpening& opening = lamp.opening;
-  return outline(lamp, opening.along_c0, opening.along_c90, opening.is_round, away);
-}
-
 /// Share of a lamp's light that leaves to the side of gamma = 0.
 double share_ahead(const Lamp& lamp) {
   double ahead = 0.0, behind = 0.0;
@@ -75,8 +70,9 @@ void add_body(const Lamp& lamp, const BodyEnds& ends, std::vector<LampFace>& fac
 
 }  // namespace
 
-std::vector<Eigen::Vector3d> opening_outline(const Lamp& lamp) {
-  return opening_at(lamp, 0.0);
+std::vector<Eigen::Vector3d> opening_outline(const Lamp& lamp, double place) {
+  const LampOpening& opening = lamp.opening;
+  return outline(lamp, opening.along_c0, opening.along_c90, opening.is_round, place);
 }
 
 double luminous_area(const LampOpening& opening, double height, const Eigen::Vector3d& way) {
@@ -103,15 +99,17 @@ std::vector<LampFace> lamp_faces(const Lamp& lamp, const BodyEnds& ends) {
   const double ahead = share_ahead(lamp), flux = relative_flux(lamp);
   const double narrower = std::min(lamp.opening.along_c0, lamp.opening.along_c90);
   const double before = std::min(0.002, 0.01 * narrower);  // of the body, and of a ceiling
-  const auto add = [&](double share, double away, bool is_ahead) {
+  const auto add = [&](double share, double place, bool is_ahead) {
     if (share < least_share) return;
-    std::vector<Eigen::Vector3d> corners = opening_at(lamp, away);
+    std::vector<Eigen::Vector3d> corners =
+        opening_outline(lamp, is_ahead ? place - before : place + before);
     if (is_ahead) std::ranges::reverse(corners);
-    faces.push_back(
-        {.outline = std::move(corners), .shine = share * flux / (std::numbers::pi * area)});
+    faces.push_back({.outline = std::move(corners),
+                     .shine = share * flux / (std::numbers::pi * area),
+                     .place = place});
   };
-  add(ahead, ends.low - before, true);
-  add(1.0 - ahead, ends.high + before, false);
+  add(ahead, ends.low, true);
+  add(1.0 - ahead, ends.high, false);
   return faces;
 }
 

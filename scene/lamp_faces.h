@@ -14,10 +14,14 @@ struct LampFace {
   /// Mean radiance of an opening over Lamp::intensity, 1/m^2: its flux over pi times its area. 0:
   /// the face is of the body.
   double shine = 0.0;
+  /// Of an opening: its distance behind the lamp's position along the axis, m. The outline lies a
+  /// little before it, so that a depth buffer tells it from the body and from a ceiling.
+  double place = 0.0;
 };
 
-/// Corners of a lamp's opening in order around it, m: 4, or 48 of an ellipse.
-std::vector<Eigen::Vector3d> opening_outline(const Lamp& lamp);
+/// Corners of a lamp's opening in order around it, m: 4, or 48 of an ellipse, `place` behind the
+/// lamp's position (see LampFace).
+std::vector<Eigen::Vector3d> opening_outline(const Lamp& lamp, double place = 0.0);
 
 /// Ends of a lamp's body along its axis, m from the opening; negative where gamma = 0 points. The
 /// body stands behind the opening. Where at least a twentieth of the light leaves to either side,

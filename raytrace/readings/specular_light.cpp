@@ -530,7 +530,8 @@ SpecularIrradiance specular_irradiance(const LitScene& lit, const RadiositySolut
   // The mean over many directions needs few branches of each.
   const RenderOptions tree_options{.max_depth = options.max_depth,
                                    .min_contribution = 1e-2f,
-                                   .slant = std::make_shared<const BandArray>()};
+                                   .slant = std::make_shared<const BandArray>(),
+                                   .visible_lamps = std::make_shared<const VisibleLamps>()};
   const RayTree tree(lit.scene, lit.caster, lit.direct_light, solution, tree_options);
   std::atomic<int> done = 0;
   parallel_for(static_cast<int>(count), 1, [&](int begin, int end) {

@@ -13,6 +13,7 @@
 namespace lightwell {
 
 class CausticMap;
+class VisibleLamps;
 
 /// Source of irradiance at a diffuse hit.
 enum class Pass {
@@ -55,6 +56,8 @@ struct RenderOptions {
   /// Result of indirect_slant() for the same depth, shared as `caustics` is. Null: found for this
   /// picture.
   std::shared_ptr<const BandArray> slant{};
+  /// The luminaires as pictures show them, shared as `caustics` is. Null: found for this picture.
+  std::shared_ptr<const VisibleLamps> visible_lamps{};
   /// Rays from the first rough surface of a path, 1 to 256; one from each rough surface behind it.
   int glossy_rays = 8;
   SampleOptions sampling{};

@@ -78,7 +78,9 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       white_rgb_(linear_rgb(scene.bands, constant_spectrum(scene.bands, 1.0f))),
       gloss_points_(gloss_point_count),
       lamps_(direct_light),
-      openings_(scene, direct_light),
+      visible_lamps_(options.visible_lamps ? options.visible_lamps
+                                           : std::make_shared<const VisibleLamps>(
+                                                 scene, caster, direct_light, solution)),
       bases_(scene.materials) {
   if (textures_->is_empty()) textures_ = nullptr;
   constexpr double rounding = 1e-6;  // share of the scene's diagonal
@@ -200,7 +202,7 @@ void RayTree::follow(Branch branch, TreeState& state) const {
                     .chain = branch.chain,
                     .turns = branch.turns});
   }
-  if (!openings_.empty() && shows_lamp(branch, hit, state)) return;
+  if (!visible_lamps_->empty() && shows_lamp(branch, hit, state)) return;
   if (!state.lamps_alone && branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
     result.fingerprint = random_key(result.fingerprint, branch.node,
@@ -227,22 +229,68 @@ void RayTree::follow(Branch branch, TreeState& state) const {
   split(branch, hit, at, state);
 }
 
-// Adds the radiance of the opening of a luminaire where it hides the hit. Rough surfaces sample
-// lamps in add_free_source().
+// Adds the radiance of a luminaire where it hides the hit. Rough surfaces sample the light of
+// openings in add_free_source(), and see bodies alone.
 bool RayTree::shows_lamp(const Branch& branch, const ElementHit& hit, TreeState& state) const {
-  if (state.lamps_alone || !branch.is_sharp) return false;
-  const double end = hit.facet < 0 ? std::numeric_limits<double>::infinity() : hit.t;
+  if (state.lamps_alone) return false;
   Ray ray = branch.ray;
   ray.direction.normalize();
-  const auto seen = openings_.first(ray, end * branch.ray.direction.norm());
+  const double end =
+      hit.facet < 0 ? std::numeric_limits<double>::infinity() : hit.t * branch.ray.direction.norm();
+  const auto seen =
+      branch.is_sharp ? visible_lamps_->first(ray, end) : visible_lamps_->first_body(ray, end);
   if (!seen) return false;
-  if (branch.weight.maxCoeff() >= options_.contrast) {
+  if (branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
     constexpr std::uint64_t of_lamps = std::uint64_t{1} << 32;  // beyond all smooth surfaces
     state.result.fingerprint = random_key(state.result.fingerprint, branch.node,
-                                          of_lamps + static_cast<std::uint64_t>(seen->lamp), false);
+                                          of_lamps + static_cast<std::uint64_t>(seen->face), false);
   }
-  if (state.shades) add_seen(branch, seen->radiance, state);
+  if (!state.shades) return true;
+  if (with_layers_ && branch.node == 1) {
+    state.result.layers.segment<3>(first_sampled_column(Layer::normal)) =
+        seen->normal.cast<float>();
+  }
+  if (!seen->is_body) {
+    add_seen(branch, seen->radiance, state);
+    return true;
+  }
+  add_body(branch, *seen, state);
+  if (!branch.is_sharp) add_light_behind(branch, hit, state);
   return true;
+}
+
+// Adds the light that a luminaire's body reflects, in layers as that of a surface that gets
+// indirect light alone.
+void RayTree::add_body(const Branch& branch, const VisibleLamps::Seen& body,
+                       TreeState& state) const {
+  const Spectrum light = branch.weight * body.radiance;
+  state.result.radiance += light;
+  if (!with_layers_) return;
+  const Layer layer = branch.node == 1 ? Layer::indirect : Layer::specular;
+  state.result.layers.segment<3>(first_sampled_column(layer)) += linear_rgb(scene_.bands, light);
+  if (branch.node == 1) {
+    state.result.layers.segment<3>(first_sampled_column(Layer::albedo))
+        .setConstant(DrawnLamps::body_reflectance);
+  }
+}
+
+// Adds the share of a lobe's direction in the light of emitters and sky behind a luminaire's body:
+// rays aimed at them carry the rest, and no body blocks these.
+void RayTree::add_light_behind(const Branch& branch, const ElementHit& hit,
+                               TreeState& state) const {
+  if (hit.facet < 0) {
+    if (branch.sky) add_background(branch, state);
+    return;
+  }
+  if (hit.element < 0 || !(branch.lobe_density > 0.0)) return;
+  if (!direct_light_.owns(hit.facet, hit.from_back)) return;
+  const ShadingPoint at = shading_point(branch.ray, hit, *state.caster);
+  Spectrum L = branch.weight * std::numbers::inv_pi_v<float> * emission(branch, hit, at);
+  if (absorbs_) {
+    L *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
+                             (at.position - branch.ray.origin).norm());
+  }
+  add_reflected(branch, L, state);
 }
 
 // Adds radiance of the sky, and of the sun except off rough surfaces, which sample the sun in

@@ -112,6 +112,11 @@ struct SpecularSegment {
 /// a few bright pixels. The light of lamps in one sample of the coat's lobe is limited to four
 /// times the mean of the other samples, and twice what the lobe finds besides.
 ///
+/// Openings and bodies of luminaires are seen as VisibleLamps says, by the eye and by way of
+/// mirrors and glass; bodies also by way of rough surfaces, which sample the lamps themselves. A
+/// body blocks no light: a rough surface mirrors the emitters and the sky behind it, which it
+/// samples as well.
+///
 /// Behind a coat that mirrors less than a quarter of the light, or blurs it, diffuse surfaces show
 /// the solution's irradiance: shadow rays there would cost more than those of the coated surface.
 /// So do surfaces behind a rough surface whose lobe spreads their light over an element of the mesh
@@ -164,6 +169,8 @@ class RayTree {
   }
   /// Returns RaySample::sees_gloss of a ray, without shadow rays.
   bool sees_gloss(const Ray& ray) const { return outline(ray, {}).sees_gloss; }
+  /// The luminaires that rays of the tree meet beside the surfaces.
+  const VisibleLamps& visible_lamps() const { return *visible_lamps_; }
 
  private:
   /// Geometry and material of a facet.
@@ -250,6 +257,8 @@ class RayTree {
   RaySample outline(const Ray& ray, const PixelCone& cone) const;
   void follow(Branch branch, TreeState& state) const;
   bool shows_lamp(const Branch& branch, const ElementHit& hit, TreeState& state) const;
+  void add_body(const Branch& branch, const VisibleLamps::Seen& body, TreeState& state) const;
+  void add_light_behind(const Branch& branch, const ElementHit& hit, TreeState& state) const;
   void add_background(const Branch& branch, TreeState& state) const;
   void add_seen(const Branch& branch, const Spectrum& L, TreeState& state) const;
   void split(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
@@ -368,7 +377,7 @@ class RayTree {
   static constexpr int gloss_point_count = 1024;
   SobolPoints gloss_points_;  ///< samples of one key; further samples use a new scrambling
   LampSamples lamps_;
-  VisibleLamps openings_;
+  std::shared_ptr<const VisibleLamps> visible_lamps_{};
   BrightPatches bright_{};  ///< rough mirrors aim at these beside the lamps
   /// Lobes of the front and the back of each material; empty if the material is not rough.
   std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};

@@ -292,6 +292,8 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   if (met.element != aim.element) return;
   const ShadingPoint there = shading_point(aimed.ray, met, *state.caster);
   const double distance = (there.position - at.position).norm();
+  // A luminaire's body hides what surfaces reflect, for the lobe's directions as for this one.
+  if (visible_lamps_->first_body(aimed.ray, distance)) return;
   const double both = density + bright_.density(view, met.element, aim.direction, distance);
   aimed.weight *= scattering_weight(interaction, {.direction = aim.direction}) *
                   (share * static_cast<float>(density / both));

@@ -8,6 +8,7 @@
 #include "radiosity/solve.h"
 #include "raytrace/display/light_meter.h"
 #include "raytrace/pictures/image.h"
+#include "raytrace/shading/shown_radiance.h"
 #include "scene/sky.h"
 
 namespace lightwell {
@@ -30,16 +31,6 @@ std::vector<ElementKind> element_kinds(const SolvedScene& solved,
 /// a solution's.
 std::vector<ElementKind> element_kinds(const PatchMesh& mesh, const BandArray& E,
                                        const std::vector<Material>& materials);
-
-/// Radiance drawn at each vertex, W/(m^2 sr), vertices x bands: B / pi. Mirrors and glass are drawn
-/// as if they scattered the mirrored or the refracted light diffusely. A facet that shines by a
-/// picture has the picture's mean.
-BandArray shown_radiance(const SolvedScene& solved, const std::vector<Material>& materials);
-
-/// Reflectance of a patch per band as shown_radiance uses it: diffuse, plus specular or the glass's
-/// tint.
-Spectrum shown_reflectance(const PatchMesh& mesh, const std::vector<Material>& materials,
-                           int patch);
 
 /// First corner of the diagonal that splits a quad, 0 or 1; 0 for a triangle. The chosen diagonal's
 /// ends differ less in radiance, so that the crease follows the light.

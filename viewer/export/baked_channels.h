@@ -4,9 +4,9 @@
 #include <optional>
 #include <vector>
 
+#include "raytrace/shading/drawn_lamps.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_model.h"
-#include "viewer/export/drawn_lamps.h"
 
 namespace lightwell {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "viewer/export/drawn_lamps.h"
+#include "raytrace/shading/drawn_lamps.h"
 
 class vtkActor;
 class vtkPolyData;

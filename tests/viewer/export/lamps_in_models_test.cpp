@@ -1,6 +1,4 @@
 // Luminaires in models and pages.
-#include "viewer/export/drawn_lamps.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +12,7 @@
 #include "tests/viewer/lamp_box.h"
 #include "viewer/export/appearance.h"
 
-namespace lightwell::drawn_lamps_test {
+namespace lightwell::lamps_in_models_test {
 namespace {
 
 Scene with_lamp(const Eigen::Vector3d& position) {
@@ -27,53 +25,14 @@ Scene with_lamp(const Eigen::Vector3d& position) {
   return scene;
 }
 
-int count_shining(const DrawnLamps& lamps) {
-  return static_cast<int>(std::ranges::count(lamps.faces(), true, &DrawnLamps::Face::shines));
-}
-
-/// Walls of radiance 1 / pi all around make a body of half their radiance, to the rounding of 64
-/// sums. The opening has the mean radiance of its cone's flux, 2 pi (1 - cos 1) I / (pi A), to the
-/// 0.3 % that steps of 1 degree know the share of light ahead by.
-TEST(DrawnLamps, BodiesReflectWhatFallsOnThem) {
-  const SolvedScene room = even_room();
-  const ElementCaster caster(room.mesh);
-  const DrawnLamps lamps(with_lamp({1, 1, 1}), caster);
-  ASSERT_EQ(lamps.faces().size(), 7u);
-  const BandArray L = lamps.radiance(room.mesh, shown_radiance(room, {}), {});
-  for (std::size_t f = 0; f < lamps.faces().size(); ++f) {
-    const double wanted = lamps.faces()[f].shines ? 2.0 * (1.0 - std::cos(1.0)) * 10.0 / 0.25
-                                                  : 0.5 / std::numbers::pi;
-    EXPECT_NEAR(L(static_cast<Eigen::Index>(f), 1), wanted, 3e-3 * wanted) << f;
-  }
-  const BandArray off = BandArray::Zero(1, 3);
-  const BandArray dark = lamps.radiance(room.mesh, shown_radiance(room, {}), off);
-  EXPECT_EQ((L - dark).rowwise().maxCoeff().maxCoeff(), L.maxCoeff());
-}
-
-TEST(DrawnLamps, BodiesEndAtTheCeilingTheyAreLetInto) {
-  const SolvedScene room = even_room();
-  const ElementCaster caster(room.mesh);
-  const DrawnLamps flush(with_lamp({1, 2, 1}), caster);
-  EXPECT_EQ(flush.faces().size(), 1u) << "an opening alone";
-  EXPECT_EQ(count_shining(flush), 1);
-  const DrawnLamps low(with_lamp({1, 1.9, 1}), caster);
-  ASSERT_EQ(low.faces().size(), 7u);
-  double top = 0.0;
-  for (const DrawnLamps::Face& face : low.faces()) {
-    for (const Eigen::Vector3d& p : face.outline) top = std::max(top, p.y());
-  }
-  EXPECT_LT(top, 2.0);
-  EXPECT_GT(top, 1.99);
-}
-
-TEST(DrawnLamps, HiddenOnesAreInNoModel) {
+TEST(LampsInModels, HiddenOnesAreInNoModel) {
   Scene scene = with_lamp({1, 1, 1});
   EXPECT_EQ(bake_model(even_room(), scene).lamp_faces.size(), 7u);
   scene.lamps[0].visible = false;
   EXPECT_TRUE(bake_model(even_room(), scene).lamp_faces.empty());
 }
 
-TEST(DrawnLamps, ModelsHaveAMeshForEach) {
+TEST(LampsInModels, ModelsHaveAMeshForEach) {
   Scene scene = with_lamp({0.5, 1, 1});
   scene.lamps.push_back(pendant({1.5, 1, 1}));
   const BakedModel model = bake_model(even_room(), scene);
@@ -105,7 +64,7 @@ TEST(DrawnLamps, ModelsHaveAMeshForEach) {
 }
 
 /// A room in which each of two lamps is a channel.
-TEST(DrawnLamps, ChannelsAddUp) {
+TEST(LampsInModels, ChannelsAddUp) {
   SolvedScene room = even_room();
   Scene scene = with_lamp({0.5, 1, 1});
   scene.lamps.push_back(pendant({1.5, 1, 1}));
@@ -157,4 +116,4 @@ driver.run(async (page, found) => {
 }
 
 }  // namespace
-}  // namespace lightwell::drawn_lamps_test
+}  // namespace lightwell::lamps_in_models_test

@@ -1,10 +1,11 @@
-#include "viewer/export/drawn_lamps.h"
+#include "raytrace/shading/drawn_lamps.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
+#include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
@@ -12,7 +13,6 @@ namespace lightwell {
 namespace {
 
 constexpr int rays_per_face = 64;
-constexpr float body_reflectance = 0.5f;
 
 /// Free length, m, behind a lamp's opening along `way`, up to `length`.
 double free_way(const ElementCaster& caster, const Lamp& lamp, const Eigen::Vector3d& way,
@@ -68,16 +68,19 @@ DrawnLamps::DrawnLamps(const Scene& scene, const ElementCaster& caster) {
   for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
     const Lamp& lamp = scene.lamps[i];
     for (LampFace& face : lamp_faces(lamp, visible_ends(caster, lamp))) {
-      Face drawn{.lamp = static_cast<int>(i), .shines = face.shine > 0.0};
+      Face drawn{.lamp = static_cast<int>(i), .shines = face.shine > 0.0, .place = face.place};
       if (drawn.shines) {
         drawn.emitted = lamp.intensity * static_cast<float>(face.shine);
-      } else {
-        drawn.seen = hits_from(caster, face.outline, faces_.size());
       }
       drawn.outline = std::move(face.outline);
       faces_.push_back(std::move(drawn));
     }
   }
+  parallel_for(static_cast<int>(faces_.size()), 8, [&](int begin, int end) {
+    for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f) {
+      if (!faces_[f].shines) faces_[f].seen = hits_from(caster, faces_[f].outline, f);
+    }
+  });
 }
 
 BandArray DrawnLamps::radiance(const PatchMesh& mesh, const BandArray& vertex_radiance,
