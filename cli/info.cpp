@@ -36,7 +36,8 @@ double emitting_area(const Scene& scene, const Surface& surface) {
   return scene.materials[surface.material].emits_both_sides ? 2.0 * area : area;
 }
 
-// Every surface: its name, material, number of facets (1 for a sphere) and area of one side, m^2.
+// Every surface: its name, material, number of facets (1 for a round shape) and area of one side,
+// m^2.
 Json surfaces_json(const Scene& scene) {
   Json surfaces = Json::array();
   for (const Surface& surface : scene.surfaces) {
@@ -182,9 +183,10 @@ Json quality_json(const Scene& scene) {
 }
 
 Json scene_json(const Scene& scene) {
-  std::size_t spheres = 0;
+  std::size_t spheres = 0, frustums = 0;
   for (const Surface& surface : scene.surfaces) {
     spheres += std::holds_alternative<Sphere>(surface.shape) ? 1 : 0;
+    frustums += std::holds_alternative<Frustum>(surface.shape) ? 1 : 0;
   }
   const Bounds bounds = scene_bounds(scene);
   CleanUpReport clean_up;
@@ -210,6 +212,7 @@ Json scene_json(const Scene& scene) {
                 {"surfaces", scene.surfaces.size()},
                 {"facets", scene_facets(scene).size()},
                 {"spheres", spheres},
+                {"frustums", frustums},
                 {"quality", quality_json(scene)},
                 {"cleaned", clean_up_json(clean_up)},
                 {"materials", std::move(materials)},

@@ -1,6 +1,7 @@
 #include "cornell/sightlines.h"
 
 #include "scene/optics.h"
+#include "scene/round_shape.h"
 
 namespace lightwell {
 namespace {
@@ -38,8 +39,8 @@ void Sightlines::follow(const Ray& ray, double weight, int bounces, double least
     return;
   }
   Eigen::Vector3d normal;
-  if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-    normal = (position - sphere->center).normalized();
+  if (const auto shape = round_shape(surface)) {
+    normal = front_normal(*shape, position);
   } else {
     const auto& mesh = std::get<PolygonMesh>(surface.shape);
     normal = facet_normal(mesh, mesh.facets[at.facet]);

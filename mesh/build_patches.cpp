@@ -13,6 +13,7 @@
 #include "mesh/patch_builder.h"
 #include "mesh/patches/patch_textures.h"
 #include "scene/parallel.h"
+#include "scene/round_shape.h"
 
 namespace lightwell {
 namespace {
@@ -299,9 +300,9 @@ CutSize cut_size(const Scene& scene, const MeshOptions& options) {
 }
 
 PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Progress& progress) {
-  const CutSize sphere_cut = cut_size(scene, options);
-  const double size = sphere_cut.patch_size;
-  CutSize cut = sphere_cut;
+  const CutSize round_cut = cut_size(scene, options);
+  const double size = round_cut.patch_size;
+  CutSize cut = round_cut;
   if (options.to_be_refined) cut.elements_per_edge = (cut.elements_per_edge + 1) / 2;
   check_count(scene, cut);
   report(progress, "mesh", 0.0);
@@ -314,8 +315,8 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Pr
   int plane = 0;
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
     const Surface& surface = scene.surfaces[facets[f].surface];
-    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-      builder.add_sphere(f, facets[f].surface, *sphere, sphere_elements(*sphere, sphere_cut));
+    if (const auto shape = round_shape(surface)) {
+      builder.add_round(f, facets[f].surface, *shape, round_elements(*shape, round_cut));
       continue;
     }
     FacetMesh& mesh = facet_meshes.meshes[plane];

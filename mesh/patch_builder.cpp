@@ -48,19 +48,19 @@ void PatchBuilder::add_facet(int facet, int surface, const Vector3d& normal, Fac
                      .at_reflex_corner = std::move(at_reflex_corner)});
 }
 
-void PatchBuilder::add_sphere(int facet, int surface, const Sphere& sphere,
-                              SphereElements elements) {
+void PatchBuilder::add_round(int facet, int surface, const RoundShape& shape,
+                             RoundElements elements) {
   FacetMesh mesh{.position = std::move(elements.position),
                  .corners = std::move(elements.corners),
                  .first_element = std::move(elements.first_element)};
   add_facet(facet, surface, Vector3d::Zero(), std::move(mesh));
-  pieces_.back().sphere = static_cast<int>(grids_.size());
+  pieces_.back().round = static_cast<int>(grids_.size());
   grids_.push_back({.facet = facet,
-                    .sphere = sphere,
+                    .shape = shape,
                     .rings = elements.rings,
                     .sectors = elements.sectors,
                     .element = std::move(elements.element)});
-  sphere_area_.push_back(std::move(elements.area));
+  round_area_.push_back(std::move(elements.area));
 }
 
 int PatchBuilder::root(int vertex) {
@@ -139,7 +139,7 @@ FacetPatch PatchBuilder::facet_patch(const Part& part) const {
   // Patches of emitters stay within a facet, because the closed forms of their light are for one
   // facet.
   FacetPatch patch{.surface = piece.surface,
-                   .may_join = piece.sphere < 0 && !material.is_emitter(),
+                   .may_join = piece.round < 0 && !material.is_emitter(),
                    .facet = part.piece,
                    .normal = piece.normal};
   for (int e = piece.mesh.first_element[part.patch]; e < piece.mesh.first_element[part.patch + 1];
@@ -244,8 +244,8 @@ void PatchBuilder::emit_patch(const std::vector<Part>& parts, bool is_back,
       out.patch.push_back(patch);
       out.facet.push_back(piece.facet);
       out.corners.push_back(is_back ? turned_corners(c) : c);
-      element_area_.push_back(piece.sphere >= 0 ? sphere_area_[piece.sphere][e]
-                                                : polygon_area(piece.mesh, piece.mesh.corners[e]));
+      element_area_.push_back(piece.round >= 0 ? round_area_[piece.round][e]
+                                               : polygon_area(piece.mesh, piece.mesh.corners[e]));
       area += element_area_.back();
     }
   }
@@ -279,8 +279,8 @@ PatchMesh PatchBuilder::finish() {
         out.twin.push_back(two_sides ? first + e + (side == 0 ? count : 0) : -1);
       }
     }
-    if (piece.sphere >= 0) {
-      for (int& e : grids_[piece.sphere].element) e += first;
+    if (piece.round >= 0) {
+      for (int& e : grids_[piece.round].element) e += first;
     }
   }
   pieces_.clear();
@@ -302,7 +302,7 @@ PatchMesh PatchBuilder::finish() {
     if (!is_back || m.emits_both_sides) out.emission.row(p) = m.emission.transpose();
   }
   set_transmittance(scene_, out);
-  out.sphere_grids = std::move(grids_);
+  out.round_grids = std::move(grids_);
   build_parted_topology(out, positions);
   return out;
 }

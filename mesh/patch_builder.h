@@ -3,14 +3,14 @@
 #include "mesh/facets/facet_mesh.h"
 #include "mesh/facets/group_facets.h"
 #include "mesh/patches/patch_mesh.h"
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "scene/facet_normals.h"
 
 namespace lightwell {
 
-/// Joins the meshes of all facets and spheres into one PatchMesh, in the order in which these are
-/// added (ascending facet numbers): shares vertices across smooth edges, joins the patches of small
-/// facets, and adds the back sides. Keeps a reference to the scene.
+/// Joins the meshes of all facets and round shapes into one PatchMesh, in the order in which these
+/// are added (ascending facet numbers): shares vertices across smooth edges, joins the patches of
+/// small facets, and adds the back sides. Keeps a reference to the scene.
 class PatchBuilder {
  public:
   PatchBuilder(const Scene& scene, double smooth_angle_degrees, const FacetGroupOptions& groups)
@@ -21,8 +21,8 @@ class PatchBuilder {
 
   /// Adds the front of a facet; `normal` is its unit normal.
   void add_facet(int facet, int surface, const Eigen::Vector3d& normal, FacetMesh mesh);
-  /// Adds the outside of a sphere.
-  void add_sphere(int facet, int surface, const Sphere& sphere, SphereElements elements);
+  /// Adds the front of a round shape.
+  void add_round(int facet, int surface, const RoundShape& shape, RoundElements elements);
   /// Returns the mesh; the builder is empty afterwards.
   PatchMesh finish();
 
@@ -33,7 +33,7 @@ class PatchBuilder {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     FacetMesh mesh{};
     std::vector<char> at_reflex_corner{};  ///< per vertex; empty: none
-    int sphere = -1;                       ///< index into grids_ and sphere_area_; -1: a polygon
+    int round = -1;                        ///< index into grids_ and round_area_; -1: a polygon
   };
   /// One of a piece's patches, before they are joined.
   struct Part {
@@ -68,8 +68,8 @@ class PatchBuilder {
   double smooth_angle_degrees_;
   FacetGroupOptions groups_;
   std::vector<Piece> pieces_;
-  std::vector<SphereGrid> grids_;
-  std::vector<std::vector<double>> sphere_area_;
+  std::vector<RoundGrid> grids_;
+  std::vector<std::vector<double>> round_area_;
   std::vector<int> parent_;  ///< union-find over front vertices
   std::vector<double> element_area_, patch_area_;
 };

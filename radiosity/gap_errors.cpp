@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "mesh/patches/translucency.h"
 #include "radiosity/refine/error_reference.h"
 #include "scene/parallel.h"
@@ -78,14 +78,14 @@ bool lies_in_gap(const ElementCaster& caster, int element) {
       hits, [&](const ElementHit& hit) { return hit.facet >= 0 && hit.t > narrowest * size; });
 }
 
-// The reflecting elements that lie in gaps; spheres are left out.
+// The reflecting elements that lie in gaps; round shapes are left out.
 std::vector<int> elements_in_gaps(const ElementCaster& caster) {
   const PatchMesh& mesh = caster.mesh();
   std::vector<char> is_in_gap(static_cast<std::size_t>(mesh.element_count()), 0);
   parallel_for(mesh.element_count(), 1024, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
       const bool reflects = scatters(mesh, mesh.patch[e]);
-      if (!reflects || sphere_grid_of(mesh, mesh.facet[e])) continue;
+      if (!reflects || round_grid_of(mesh, mesh.facet[e])) continue;
       is_in_gap[static_cast<std::size_t>(e)] = lies_in_gap(caster, e) ? 1 : 0;
     }
   });

@@ -1,4 +1,5 @@
 #include "scene/place_at_rest.h"
+#include "scene/round_shape.h"
 
 namespace lightwell {
 namespace {
@@ -28,8 +29,7 @@ void place_at_rest(Scene& scene, double time) {
     if (auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
       place(*mesh, pose(surface.motion));
     } else {
-      auto& sphere = std::get<Sphere>(surface.shape);
-      sphere.center = pose(surface.motion) * sphere.center;
+      set_shape(surface, moved(*round_shape(surface), pose(surface.motion)));
     }
   }
   for (Camera& camera : scene.cameras) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <numbers>
 #include <stdexcept>
+#include "scene/round_shape.h"
 
 namespace lightwell {
 namespace {
@@ -70,9 +71,7 @@ double facet_area(const PolygonMesh& mesh, const Facet& facet) {
 }
 
 double surface_area(const Surface& surface) {
-  if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-    return 4.0 * std::numbers::pi * sphere->radius * sphere->radius;
-  }
+  if (const auto round = round_shape(surface)) return area(*round);
   const auto& mesh = std::get<PolygonMesh>(surface.shape);
   double area = 0.0;
   for (const Facet& facet : mesh.facets) area += facet_area(mesh, facet);
@@ -85,9 +84,7 @@ Bounds scene_bounds(const Scene& scene) {
     if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
       for (const auto& v : mesh->vertices) box.extend(v);
     } else {
-      const auto& sphere = std::get<Sphere>(surface.shape);
-      box.extend((sphere.center.array() - sphere.radius).matrix().eval());
-      box.extend((sphere.center.array() + sphere.radius).matrix().eval());
+      box.extend(bounds(*round_shape(surface)));
     }
   }
   if (box.isEmpty()) throw std::invalid_argument("the scene has no surfaces");

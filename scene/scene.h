@@ -162,11 +162,25 @@ struct Sphere {
   double radius = 1.0;
 };
 
+/// The lateral surface of a truncated cone (metres), exact: a cylinder where both radii are the
+/// same, a cone where one is 0, and where the height is 0 a ring, or a disc if one radius is 0. Its
+/// front faces away from the axis, that of a disc or ring along the axis if the radius of the base
+/// is the larger one; `inward` turns the front around.
+struct Frustum {
+  Eigen::Vector3d base = Eigen::Vector3d::Zero();   ///< centre of the base
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit, from the base to the top
+  double height = 1.0;                              ///< >= 0
+  double base_radius = 1.0, top_radius = 1.0;       ///< >= 0, one of them > 0
+  bool inward = false;
+};
+
+using SurfaceShape = std::variant<PolygonMesh, Sphere, Frustum>;
+
 /// One named object of the input.
 struct Surface {
   std::string name{};
   int material = 0;  ///< index into Scene::materials
-  std::variant<PolygonMesh, Sphere> shape{};
+  SurfaceShape shape{};
   int motion = -1;  ///< index into Scene::motions; -1: the surface stands still
 };
 
@@ -198,11 +212,11 @@ struct Scene {
   bool relative_units = false;
 };
 
-/// Position of a facet in the scene. Facets are numbered through all surfaces in order; a sphere is
-/// one facet.
+/// Position of a facet in the scene. Facets are numbered through all surfaces in order; a sphere or
+/// frustum is one facet.
 struct FacetRef {
   int surface = 0;
-  int facet = 0;  ///< within the surface's PolygonMesh; 0 for a sphere
+  int facet = 0;  ///< within the surface's PolygonMesh; 0 for a round shape
 };
 
 /// Every facet of the scene; the index into the result is the facet's scene-wide number.
@@ -214,7 +228,7 @@ Eigen::Vector3d facet_normal(const PolygonMesh& mesh, const Facet& facet);
 /// Area in m^2, holes taken out.
 double facet_area(const PolygonMesh& mesh, const Facet& facet);
 
-/// Area of a surface's polygons or exact sphere, m^2, one side.
+/// Area of a surface's polygons or round shape, m^2, one side.
 double surface_area(const Surface& surface);
 
 /// Number of free sources, the sources of light that are no surface. Their order: the lamps, the
@@ -236,7 +250,7 @@ struct Bounds {
 Bounds scene_bounds(const Scene& scene);
 
 /// Checks what every later stage relies on: finite coordinates, indices in range, facets with area,
-/// spheres with radius, bands of equal count, reflectances in [0,1] that do not create energy,
+/// round shapes with area, bands of equal count, reflectances in [0,1] that do not create energy,
 /// lamps whose axes are a rotation and whose intensity is a finite number >= 0, sound motions, a
 /// sound sky. Throws InputError naming surface, material, value and remedy.
 void validate(const Scene& scene);

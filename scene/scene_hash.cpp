@@ -193,6 +193,15 @@ std::uint64_t material_hash(const Material& material) {
   return hash.value();
 }
 
+static void add_frustum(const Frustum& frustum, Hash& hash) {
+  hash.add(frustum.base);
+  hash.add(frustum.axis);
+  for (const double size : {frustum.height, frustum.base_radius, frustum.top_radius}) {
+    hash.add(size);
+  }
+  hash.add(std::uint64_t{frustum.inward});
+}
+
 std::uint64_t scene_hash(const Scene& scene) {
   Hash hash;
   hash.add(scene.bands.lumens_per_watt);
@@ -208,10 +217,11 @@ std::uint64_t scene_hash(const Scene& scene) {
       }
       add_uv(*mesh, scene.materials[static_cast<std::size_t>(surface.material)], hash);
       add_normals(*mesh, hash);
+    } else if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
+      hash.add(sphere->center);
+      hash.add(sphere->radius);
     } else {
-      const auto& sphere = std::get<Sphere>(surface.shape);
-      hash.add(sphere.center);
-      hash.add(sphere.radius);
+      add_frustum(std::get<Frustum>(surface.shape), hash);
     }
   }
   add_lamps(scene, hash);

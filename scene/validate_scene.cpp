@@ -10,6 +10,7 @@
 #include "scene/errors.h"
 #include "scene/limits.h"
 #include "scene/material_at.h"
+#include "scene/round_shape.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
 
@@ -437,6 +438,28 @@ void check_motions(const Scene& scene) {
   }
 }
 
+void check_round(const Scene& scene, const Surface& surface, const RoundShape& shape) {
+  const auto* frustum = std::get_if<Frustum>(&shape);
+  const auto fault = [&](const std::string& what) {
+    fail(scene, fmt::format("{} '{}': {}", frustum ? "frustum" : "sphere", surface.name, what));
+  };
+  const Sphere ball = ball_around(shape);
+  for (const Eigen::Vector3d& p : {ball.center, Eigen::Vector3d::Constant(ball.radius).eval()}) {
+    if (const std::string what = place_fault(p); !what.empty()) fault(what);
+  }
+  if (!frustum) {
+    if (ball.radius > 0.0) return;
+    fault(fmt::format("its radius is {}; it must be positive", ball.radius));
+  }
+  for (const double size : {frustum->height, frustum->base_radius, frustum->top_radius}) {
+    if (!(size >= 0.0))
+      fault(fmt::format("a size is {}; height and radii must be at least 0", size));
+  }
+  constexpr double rounding = 1e-9;
+  if (!(std::abs(frustum->axis.norm() - 1.0) <= rounding)) fault("its axis must have length 1");
+  if (!(area(shape) > 0.0)) fault("it has no area; give it a height, or two different radii");
+}
+
 }  // namespace
 
 void validate(const Camera& camera) {
@@ -500,17 +523,7 @@ void validate(const Scene& scene) {
     if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
       check_mesh(scene, surface, *mesh);
     } else {
-      const auto& sphere = std::get<Sphere>(surface.shape);
-      const Eigen::Vector3d reach = Eigen::Vector3d::Constant(sphere.radius);
-      for (const Eigen::Vector3d& p : {sphere.center, reach}) {
-        if (const std::string what = place_fault(p); !what.empty()) {
-          fail(scene, fmt::format("sphere '{}': {}", surface.name, what));
-        }
-      }
-      if (!(sphere.radius > 0.0)) {
-        fail(scene, fmt::format("sphere '{}': its radius is {}; it must be positive", surface.name,
-                                sphere.radius));
-      }
+      check_round(scene, surface, *round_shape(surface));
     }
   }
   if (!scene.surfaces.empty()) {

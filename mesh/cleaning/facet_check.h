@@ -22,7 +22,7 @@ struct FacetCheck {
   std::vector<FacetPair> opposites{};   ///< the second lies on the first and faces the other way
 };
 
-/// Checks the polygons of a scene; spheres are closed and left out. Edges are compared whole: where
+/// Checks the polygons of a scene; round shapes are left out. Edges are compared whole: where
 /// facets meet along a part of an edge, the edge counts as open. A facet is the second of one pair
 /// of each kind at most. A facet that is the second of a duplicate is in no other pair, and its
 /// edges are not counted.

@@ -6,9 +6,9 @@
 
 namespace lightwell {
 
-/// Quality of a scene's polygons, spheres excluded. Edges are counted within each surface, with
-/// corners within 1e-7 of the scene's diagonal as one: surfaces that lie edge to edge both have a
-/// boundary there.
+/// Quality of a scene's polygons, round shapes excluded. Edges are counted within each surface,
+/// with corners within 1e-7 of the scene's diagonal as one: surfaces that lie edge to edge both
+/// have a boundary there.
 struct MeshQuality {
   std::int64_t triangles = 0;           ///< number of triangles that the polygons amount to
   std::int64_t slivers = 0;             ///< polygons of a width below sliver_share of their length

@@ -12,7 +12,8 @@ class JoinedSurfaces;
 
 /// The changes made by merge_planar_regions().
 struct CleanUpReport {
-  std::int64_t facets_before = 0, facets_after = 0;  ///< number of facets; a sphere counts as one
+  std::int64_t facets_before = 0,
+               facets_after = 0;     ///< number of facets; a round shape counts as one
   std::int64_t welded_vertices = 0;  ///< vertices joined with another one of their surface
   std::int64_t degenerate = 0;       ///< facets dropped for having no area
   std::int64_t duplicates = 0;       ///< facets dropped for lying on an equal one

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <variant>
 
 namespace lightwell {
 namespace {
@@ -85,10 +86,9 @@ std::vector<ContactSegment> shared_parts(std::vector<Vector3d> points, const Fac
   return segments;
 }
 
-// Appends the parts of edge i-j of `from` that lie on the facet `on` in the same plane.
-void clip_edge(const FacetPlane& from, int i, int j, const FacetPlane& on, double tolerance,
-               std::vector<ContactSegment>& segments) {
-  const Vector3d &start = from.corner[i], &end = from.corner[j];
+// Appends the parts of a segment in the plane of the facet `on` that lie on the facet.
+void clip_segment(const Vector3d& start, const Vector3d& end, const FacetPlane& on,
+                  double tolerance, std::vector<ContactSegment>& segments) {
   const Vector2d p = on.project(start), d = on.project(end) - p;
   const double length = d.norm();
   if (!(length > tolerance)) return;
@@ -138,35 +138,87 @@ bool are_flat_neighbours(const FacetPlane& a, const FacetPlane& b, double tolera
   return side(a.xy[ia]) > tolerance && side(a.project(b.corner[ib])) < -tolerance;
 }
 
-}  // namespace
+constexpr int least_chords = 12;  // a circle of fewer chords loses more than 5 % of the disk
 
-std::vector<ContactSegment> facet_contact(const FacetPlane& a, const FacetPlane& b,
-                                          double tolerance) {
-  // The tolerance of a large scene may exceed the extent of a small facet, so a share of the extent
-  // bounds it.
-  constexpr double share_of_extent = 1e-3;
-  tolerance = std::min({tolerance, share_of_extent * a.box.diagonal().norm(),
-                        share_of_extent * b.box.diagonal().norm()});
-  const PlaneIntersection of_b = intersect_plane(b, a, tolerance);
-  if (!of_b.can_share) return {};
-  const PlaneIntersection of_a = intersect_plane(a, b, tolerance);
-  if (!of_a.can_share) return {};
-  const bool coplanar = of_a.in_plane || of_b.in_plane;
-  const bool neighbours = a.is_triangle() && b.is_triangle() && shared_corners(a, b) == 2;
-  if (neighbours && (!coplanar || are_flat_neighbours(a, b, tolerance))) return {};
-  if (!coplanar) {
-    std::vector<Vector3d> points = of_a.points;
-    points.insert(points.end(), of_b.points.begin(), of_b.points.end());
-    return shared_parts(std::move(points), a, b, tolerance);
+// Height of points of a frustum over a plane, as a function of longitude and of the place from base
+// (0) to top (1), in which it is linear.
+struct HeightOnFrustum {
+  HeightOnFrustum(const FacetPlane& over, const Frustum& of)
+      : plane(over), frustum(of), frame(longitudes(of)) {}
+
+  Vector3d point(double phi, double along) const {
+    return frustum.base + along * frustum.height * frustum.axis +
+           radius_at(frustum, along) * (std::cos(phi) * frame.zero + std::sin(phi) * frame.quarter);
+  }
+  double operator()(double phi, double along) const { return plane.height(point(phi, along)); }
+
+  const FacetPlane& plane;
+  const Frustum& frustum;
+  LongitudeFrame frame;
+};
+
+// Where the height on a rim is 0 between two longitudes at whose ends it differs in sign.
+double crossing_on_rim(const HeightOnFrustum& height, double from, double to, double along) {
+  const bool rises = height(from, along) <= 0.0;
+  constexpr int halvings = 50;
+  for (int i = 0; i < halvings; ++i) {
+    const double middle = 0.5 * (from + to);
+    ((height(middle, along) <= 0.0) == rises ? from : to) = middle;
+  }
+  return 0.5 * (from + to);
+}
+
+// The piece of the line of height 0 between two generators, from the heights at the corners of this
+// strip. A strip that the line enters by all four sides, which is much wider than a chord of the
+// curve, keeps one of the two pieces.
+void add_piece(const HeightOnFrustum& height, double from, double to,
+               std::vector<ContactSegment>& pieces) {
+  std::vector<Vector3d> ends;
+  for (const double phi : {from, to}) {
+    const double base = height(phi, 0.0), top = height(phi, 1.0);
+    if ((base > 0.0) == (top > 0.0)) continue;
+    ends.push_back(height.point(phi, std::clamp(base / (base - top), 0.0, 1.0)));
+  }
+  for (const double along : {0.0, 1.0}) {
+    if ((height(from, along) > 0.0) == (height(to, along) > 0.0)) continue;
+    ends.push_back(height.point(crossing_on_rim(height, from, to, along), along));
+  }
+  if (ends.size() >= 2) pieces.push_back({ends[0], ends[1]});
+}
+
+std::vector<ContactSegment> contact_of(const FacetPlane& plane, const Frustum& frustum,
+                                       double max_arc, double min_radius, double tolerance) {
+  const double widest = std::max(frustum.base_radius, frustum.top_radius);
+  if (!(widest > min_radius)) return {};
+  const HeightOnFrustum height(plane, frustum);
+  const double highest = reach(frustum, plane.normal) - plane.normal.dot(plane.origin);
+  const double lowest = -reach(frustum, -plane.normal) - plane.normal.dot(plane.origin);
+  if (highest < -tolerance || lowest > tolerance) return {};
+  // A frustum that stands on the plane touches it with a rim.
+  const bool touches = highest <= tolerance || lowest >= -tolerance;
+  constexpr double full_turn = 2.0 * std::numbers::pi;
+  const int chords = std::max(
+      least_chords, static_cast<int>(std::min(1e4, std::ceil(full_turn * widest / max_arc))));
+  std::vector<ContactSegment> pieces;
+  for (int i = 0; i < chords; ++i) {
+    const double from = full_turn * i / chords, to = full_turn * (i + 1) / chords;
+    if (!touches) {
+      add_piece(height, from, to, pieces);
+      continue;
+    }
+    for (const double along : {0.0, 1.0}) {
+      const bool is_on =
+          std::abs(height(from, along)) <= tolerance && std::abs(height(to, along)) <= tolerance;
+      if (is_on) pieces.push_back({height.point(from, along), height.point(to, along)});
+    }
   }
   std::vector<ContactSegment> segments;
-  b.for_each_edge([&](int i, int j) { clip_edge(b, i, j, a, tolerance, segments); });
-  a.for_each_edge([&](int i, int j) { clip_edge(a, i, j, b, tolerance, segments); });
+  for (const auto& [from, to] : pieces) clip_segment(from, to, plane, tolerance, segments);
   return segments;
 }
 
-std::vector<ContactSegment> sphere_contact(const FacetPlane& plane, const Sphere& sphere,
-                                           double max_arc, double min_radius, double tolerance) {
+std::vector<ContactSegment> contact_of(const FacetPlane& plane, const Sphere& sphere,
+                                       double max_arc, double min_radius, double tolerance) {
   constexpr double full_turn = 2.0 * std::numbers::pi;
   const double height = plane.height(sphere.center);
   const double squared = sphere.radius * sphere.radius - height * height;
@@ -198,7 +250,6 @@ std::vector<ContactSegment> sphere_contact(const FacetPlane& plane, const Sphere
   };
   if (cuts.empty()) cuts.emplace_back(0.0, plane.lift(on_circle(0.0)));
 
-  constexpr int least_chords = 12;  // a circle of fewer chords loses more than 5 % of the disk
   const double max_angle = std::min(max_arc / radius, full_turn / least_chords);
   std::vector<ContactSegment> segments;
   for (std::size_t c = 0; c < cuts.size(); ++c) {
@@ -217,6 +268,41 @@ std::vector<ContactSegment> sphere_contact(const FacetPlane& plane, const Sphere
     }
   }
   return segments;
+}
+
+}  // namespace
+
+std::vector<ContactSegment> facet_contact(const FacetPlane& a, const FacetPlane& b,
+                                          double tolerance) {
+  // The tolerance of a large scene may exceed the extent of a small facet, so a share of the extent
+  // bounds it.
+  constexpr double share_of_extent = 1e-3;
+  tolerance = std::min({tolerance, share_of_extent * a.box.diagonal().norm(),
+                        share_of_extent * b.box.diagonal().norm()});
+  const PlaneIntersection of_b = intersect_plane(b, a, tolerance);
+  if (!of_b.can_share) return {};
+  const PlaneIntersection of_a = intersect_plane(a, b, tolerance);
+  if (!of_a.can_share) return {};
+  const bool coplanar = of_a.in_plane || of_b.in_plane;
+  const bool neighbours = a.is_triangle() && b.is_triangle() && shared_corners(a, b) == 2;
+  if (neighbours && (!coplanar || are_flat_neighbours(a, b, tolerance))) return {};
+  if (!coplanar) {
+    std::vector<Vector3d> points = of_a.points;
+    points.insert(points.end(), of_b.points.begin(), of_b.points.end());
+    return shared_parts(std::move(points), a, b, tolerance);
+  }
+  std::vector<ContactSegment> segments;
+  b.for_each_edge(
+      [&](int i, int j) { clip_segment(b.corner[i], b.corner[j], a, tolerance, segments); });
+  a.for_each_edge(
+      [&](int i, int j) { clip_segment(a.corner[i], a.corner[j], b, tolerance, segments); });
+  return segments;
+}
+
+std::vector<ContactSegment> round_contact(const FacetPlane& plane, const RoundShape& shape,
+                                          double max_arc, double min_radius, double tolerance) {
+  return std::visit(
+      [&](const auto& s) { return contact_of(plane, s, max_arc, min_radius, tolerance); }, shape);
 }
 
 }  // namespace lightwell

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mesh/geometry/facet_plane.h"
+#include "scene/round_shape.h"
 
 namespace lightwell {
 
@@ -20,9 +21,10 @@ using ContactSegment = std::array<Eigen::Vector3d, 2>;
 std::vector<ContactSegment> facet_contact(const FacetPlane& a, const FacetPlane& b,
                                           double tolerance);
 
-/// Returns the circle in which a sphere cuts a facet, inside the polygon, as chords of arcs no
-/// longer than `max_arc` (metres). A circle of a radius up to `min_radius` (metres) gives nothing.
-std::vector<ContactSegment> sphere_contact(const FacetPlane& plane, const Sphere& sphere,
-                                           double max_arc, double min_radius, double tolerance);
+/// Returns the curve in which a round shape cuts or touches a facet, inside the polygon, as chords
+/// of arcs no longer than `max_arc` (metres). A circle of a radius up to `min_radius` (metres)
+/// gives nothing; neither does a frustum that is nowhere wider, or a sphere that only touches.
+std::vector<ContactSegment> round_contact(const FacetPlane& plane, const RoundShape& shape,
+                                          double max_arc, double min_radius, double tolerance);
 
 }  // namespace lightwell

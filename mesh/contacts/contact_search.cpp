@@ -11,6 +11,7 @@
 #include "mesh/contacts/line_selection.h"
 #include "mesh/geometry/box_tree.h"
 #include "scene/parallel.h"
+#include "scene/round_shape.h"
 
 namespace lightwell {
 using Eigen::Vector3d;
@@ -26,18 +27,18 @@ constexpr double many_crossings = 4000.0, many_per_element = 3.0;
 // Crossings that are then left: in all facets, per element, and in each facet at least.
 constexpr double left_crossings = 1000.0, left_per_element = 0.1, left_in_facet = 4.0;
 
-std::vector<Sphere> spheres_of(const Scene& scene) {
-  std::vector<Sphere> spheres;
+std::vector<RoundShape> round_shapes_of(const Scene& scene) {
+  std::vector<RoundShape> shapes;
   for (const Surface& surface : scene.surfaces) {
-    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) spheres.push_back(*sphere);
+    if (const auto shape = round_shape(surface)) shapes.push_back(*shape);
   }
-  return spheres;
+  return shapes;
 }
 
 }  // namespace
 
-/// The search for contacts of facets, numbered as the planes, with each other and with spheres,
-/// numbered behind the facets.
+/// The search for contacts of facets, numbered as the planes, with each other and with round
+/// shapes, numbered behind the facets.
 class ContactGraph::Search {
  public:
   struct Contact {
@@ -49,13 +50,13 @@ class ContactGraph::Search {
 
   Search(const Scene& scene, const ContactGraph& graph)
       : planes_(graph.planes_),
-        spheres_(spheres_of(scene)),
+        round_shapes_(round_shapes_of(scene)),
         element_size_(graph.size_.element_size()),
         tolerance_(graph.welded_.tolerance()),
         boxes_(boxes()),
         tree_(boxes_) {}
 
-  /// Numbers of the facets and spheres whose boxes meet that of facet i, ascending.
+  /// Numbers of the facets and round shapes whose boxes meet that of facet i, ascending.
   void find_near(int i, std::vector<int>& near) const {
     tree_.find_overlaps(boxes_[static_cast<std::size_t>(i)], near);
   }
@@ -75,7 +76,7 @@ class ContactGraph::Search {
     return true;
   }
 
-  /// Appends the contacts of facet i with j, a facet or a sphere.
+  /// Appends the contacts of facet i with j, a facet or a round shape.
   void add(int i, int j, std::vector<Contact>& contacts) const {
     // A circle much smaller than an element would only make slivers (radius as a share of an
     // element).
@@ -86,8 +87,8 @@ class ContactGraph::Search {
     };
     const auto segments =
         j < count ? facet_contact(plane(std::min(i, j)), plane(std::max(i, j)), tolerance_)
-                  : sphere_contact(plane(i), spheres_[static_cast<std::size_t>(j - count)],
-                                   element_size_, least_circle * element_size_, tolerance_);
+                  : round_contact(plane(i), round_shapes_[static_cast<std::size_t>(j - count)],
+                                  element_size_, least_circle * element_size_, tolerance_);
     for (const ContactSegment& segment : segments) contacts.push_back({j, segment});
   }
 
@@ -122,15 +123,12 @@ class ContactGraph::Search {
       const Vector3d d = Vector3d::Constant(tolerance_);
       boxes.emplace_back(plane.box.min() - d, plane.box.max() + d);
     }
-    for (const Sphere& s : spheres_) {
-      const Vector3d r = Vector3d::Constant(s.radius);
-      boxes.emplace_back(s.center - r, s.center + r);
-    }
+    for (const RoundShape& shape : round_shapes_) boxes.push_back(bounds(shape));
     return boxes;
   }
 
   const std::vector<FacetPlane>& planes_;
-  std::vector<Sphere> spheres_;
+  std::vector<RoundShape> round_shapes_;
   double element_size_, tolerance_;
   std::vector<BoxTree::Box> boxes_;
   BoxTree tree_;

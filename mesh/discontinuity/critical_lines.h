@@ -51,8 +51,9 @@ struct CriticalLines {
 /// - D1 where an edge of the emitter lies in one plane with an edge of the occluder;
 /// - D2 elsewhere.
 ///
-/// Critical surfaces of three edges (EEE) are left out, and spheres cast no lines. Clear facets
-/// neither cast nor receive lines. A one-sided receiver gets no lines from emitters behind it.
+/// Critical surfaces of three edges (EEE) are left out, and round shapes cast no lines. Clear
+/// facets neither cast nor receive lines. A one-sided receiver gets no lines from emitters behind
+/// it.
 CriticalLines critical_lines(const Scene& scene, const std::vector<FacetPlane>& planes,
                              const CriticalLineOptions& options = {},
                              const Progress& progress = {});

@@ -10,7 +10,7 @@
 
 #include "mesh/elements/element_tree.h"
 #include "mesh/elements/quad_weights.h"
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "scene/facet_textures.h"
 
 namespace lightwell {
@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 bool is_front_polygon(const PatchMesh& mesh, int patch) {
   const int facet = mesh.facet[mesh.first_element[patch]];
-  return mesh.is_back[patch] == 0 && sphere_grid_of(mesh, facet) == nullptr;
+  return mesh.is_back[patch] == 0 && round_grid_of(mesh, facet) == nullptr;
 }
 
 // (alpha, beta) of QuadShape, of the quadrilateral with corners `c`.
@@ -49,22 +49,22 @@ ElementHit hit_behind(const PatchMesh& mesh, const ElementHit& hit) {
 
 namespace {
 
-// Sets the element and weights of `hit` at the point `from_center` away from a sphere's centre.
-void find_on_sphere(const PatchMesh& mesh, const SphereGrid& grid, const Vector3d& from_center,
-                    ElementHit& hit) {
-  const SphereGridPoint found = sphere_grid_point(grid, from_center);
+// Sets the element and weights of `hit` at a point of a round shape.
+void find_on_round(const PatchMesh& mesh, const RoundGrid& grid, const Vector3d& point,
+                   ElementHit& hit) {
+  const RoundGridPoint found = round_grid_point(grid, point);
   hit.element = grid.element[found.ring * grid.sectors + found.sector];
-  hit.weights = sphere_weights(grid, found);
+  hit.weights = round_weights(grid, found);
   if (!hit.from_back) return;
   hit.element = mesh.twin[hit.element];
-  const bool is_triangle = found.ring == 0 || found.ring == grid.rings - 1;
+  const bool is_triangle = ends_north(grid, found.ring) || ends_south(grid, found.ring);
   hit.weights =
       hit.element < 0 ? Array4f(Array4f::Zero()) : turned_weights(hit.weights, is_triangle);
 }
 
-// The primitives of a ray caster in its order: triangles, quadrilaterals, spheres.
+// The primitives of a ray caster in its order: triangles, quadrilaterals, round shapes.
 struct Primitives {
-  std::vector<int> element{};  // on the front; of a sphere, the index of its grid
+  std::vector<int> element{};  // on the front; of a round shape, the index of its grid
   std::vector<QuadShape> quad_shape{};
 };
 
@@ -103,10 +103,10 @@ CastGeometry cast_geometry(const PatchMesh& mesh, const GroupOf& group_of, Primi
       }
     }
   }
-  for (std::size_t g = 0; g < mesh.sphere_grids.size(); ++g) {
-    if (group_of(mesh.sphere_grids[g].facet) < 0) continue;
-    geometry.spheres.push_back(mesh.sphere_grids[g].sphere);
-    add(static_cast<int>(g), mesh.sphere_grids[g].facet);
+  for (std::size_t g = 0; g < mesh.round_grids.size(); ++g) {
+    if (group_of(mesh.round_grids[g].facet) < 0) continue;
+    geometry.round_shapes.push_back(mesh.round_grids[g].shape);
+    add(static_cast<int>(g), mesh.round_grids[g].facet);
   }
   return geometry;
 }
@@ -117,7 +117,8 @@ struct ElementCaster::Part {
   std::vector<int> facets{};  // by group; empty: groups are the scene's facets
   Primitives primitives{};
   std::optional<RayCaster> caster{};  // none if the part is empty
-  // Ends of the triangles and of the quadrilaterals among the primitives; spheres follow.
+  // Ends of the triangles and of the quadrilaterals among the primitives; round
+  // shapes follow.
   int triangles = 0, polygons = 0;
 
   template <class GroupOf>
@@ -147,8 +148,8 @@ struct ElementCaster::Part {
                       .from_back = hit.from_back,
                       .t = hit.t};
     if (hit.primitive >= polygons) {
-      const SphereGrid& grid = mesh.sphere_grids[result.element];
-      find_on_sphere(mesh, grid, ray.origin + hit.t * ray.direction - grid.sphere.center, result);
+      const RoundGrid& grid = mesh.round_grids[result.element];
+      find_on_round(mesh, grid, ray.origin + hit.t * ray.direction, result);
       return result;
     }
     if (tree || with_weights) {
@@ -402,8 +403,8 @@ ElementHit point_on_element(const PatchMesh& mesh, const PatchPoint& point) {
   const bool is_back = mesh.is_back[mesh.patch[point.element]] != 0;
   ElementHit result{
       .facet = mesh.facet[point.element], .element = point.element, .from_back = is_back};
-  if (const SphereGrid* grid = sphere_grid_of(mesh, result.facet)) {
-    find_on_sphere(mesh, *grid, point.position - grid->sphere.center, result);
+  if (const RoundGrid* grid = round_grid_of(mesh, result.facet)) {
+    find_on_round(mesh, *grid, point.position, result);
     return result;
   }
   const auto& c = mesh.corners[point.element];

@@ -27,7 +27,7 @@ struct ElementHit {
 /// The hit on the other side of a sheet, at the same place. Precondition: the element has a twin.
 ElementHit hit_behind(const PatchMesh& mesh, const ElementHit& hit);
 
-/// Casts rays at the elements of a PatchMesh and at exact spheres, and returns the element and
+/// Casts rays at the elements of a PatchMesh and at exact round shapes, and returns the element and
 /// place that each ray meets. Ray::origin_group and target_group are scene-wide facet numbers here.
 /// Keeps a reference to the mesh. A copy is cheap: large data are shared.
 ///
@@ -95,7 +95,7 @@ class ElementCaster {
 };
 
 /// The hit of a ray at a point of an element if nothing else were there. The point must lie in the
-/// element, or on its sphere.
+/// element, or on its round shape.
 ElementHit point_on_element(const PatchMesh& mesh, const PatchPoint& point);
 
 /// The value at a hit, interpolated from values at vertices (vertices x bands); 0 if nothing was

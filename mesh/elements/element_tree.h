@@ -10,7 +10,7 @@ namespace lightwell {
 
 /// The elements into which those of a base mesh were split (see RefinedElements), as a tree over
 /// each: finds the element at a place of the base. The tree holds fronts only, and no elements of
-/// spheres, which are never split.
+/// round shapes, which are never split.
 struct ElementTree {
   static constexpr std::int8_t is_split = -1;
   struct Node {

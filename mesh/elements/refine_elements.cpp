@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "mesh/elements/closure_pieces.h"
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 
 namespace lightwell {
 namespace {
@@ -55,8 +55,8 @@ void copy_patches(const PatchMesh& base, const std::vector<int>& first, PatchMes
   out.surface = base.surface;
   out.material = base.material;
   out.is_back = base.is_back;
-  out.sphere_grids = base.sphere_grids;
-  for (SphereGrid& grid : out.sphere_grids) {
+  out.round_grids = base.round_grids;
+  for (RoundGrid& grid : out.round_grids) {
     for (int& e : grid.element) e = first[e];
   }
   out.textures = base.textures;
@@ -81,9 +81,9 @@ void RefinedElements::add_base_cells(const std::vector<int>& places) {
   cell_of_.assign(base_->element_count(), -1);
   std::vector<std::tuple<int, int, int>> sides;  // places, 4 cell + corner
   for (int e = 0; e < base_->element_count(); ++e) {
-    const bool is_sphere = sphere_grid_of(*base_, base_->facet[e]) != nullptr;
+    const bool is_round = round_grid_of(*base_, base_->facet[e]) != nullptr;
     const int twin = base_->twin[e];
-    if (is_sphere || (twin >= 0 && twin < e)) continue;
+    if (is_round || (twin >= 0 && twin < e)) continue;
     const int number = static_cast<int>(cells_.size());
     cell_of_[e] = number;
     add_cell({.base = e,
@@ -187,7 +187,7 @@ std::int64_t RefinedElements::element_count() const {
   for (int e = 0; e < base_->element_count(); ++e) {
     const int root = cell_of_[e];
     if (root < 0) {  // backs are counted with their fronts
-      if (base_->twin[e] < 0 || sphere_grid_of(*base_, base_->facet[e])) ++count;
+      if (base_->twin[e] < 0 || round_grid_of(*base_, base_->facet[e])) ++count;
       continue;
     }
     for_each_leaf(root, [&](int leaf) {
@@ -247,10 +247,13 @@ std::array<int, 4> RefinedElements::ends(int vertex) const {
 PatchPoint RefinedElements::inside(int vertex, double inset) const {
   const Vertex& v = vertices_[vertex];
   const PatchPoint center = element_center(*base_, v.element);
-  if (const SphereGrid* grid = sphere_grid_of(*base_, base_->facet[v.element])) {
-    const Vector3d out = (v.position - grid->sphere.center).normalized();
-    const bool is_back = base_->is_back[base_->patch[v.element]] != 0;
-    return {v.element, v.position, is_back ? Vector3d(-out) : out};
+  if (const RoundGrid* grid = round_grid_of(*base_, base_->facet[v.element])) {
+    // A sphere has no rim at which something else could stand.
+    const bool has_rim = !std::holds_alternative<Sphere>(grid->shape);
+    const Vector3d at =
+        has_rim ? nearest_on(grid->shape, v.position + inset * (center.position - v.position))
+                : v.position;
+    return {v.element, at, round_normal(*base_, *grid, base_->patch[v.element], at)};
   }
   return {v.element, v.position + inset * (center.position - v.position), center.normal};
 }

@@ -13,7 +13,7 @@ namespace lightwell {
 /// A mesh made of RefinedElements, and the origin of its elements and vertices.
 struct RefinedMesh {
   PatchMesh mesh{};
-  std::vector<int> cell{};    ///< per element, its cell; -1 on spheres
+  std::vector<int> cell{};    ///< per element, its cell; -1 on round shapes
   std::vector<int> vertex{};  ///< per vertex, its number in RefinedElements
   std::shared_ptr<const ElementTree> tree{};
 };
@@ -35,7 +35,7 @@ struct RefinedMesh {
 /// No angle is less than a third of the least angle of the base's triangles and of the triangles
 /// into which diagonals cut the base's parallelograms (Rosenberg & Stenger 1975 for halved
 /// triangles; a triangle with two angles a is halved into a third of a at worst). Elements of
-/// spheres are never split.
+/// round shapes are never split.
 ///
 /// Keeps a reference to the base; a copy is a refinement of its own.
 class RefinedElements {
@@ -44,7 +44,7 @@ class RefinedElements {
   explicit RefinedElements(PatchMesh&& base) = delete;
 
   const PatchMesh& base() const { return *base_; }
-  /// The cells that are neither split nor on spheres, in the base's order.
+  /// The cells that are neither split nor on round shapes, in the base's order.
   std::vector<int> leaves() const;
   int level(int cell) const { return cells_[cell].level; }
   /// The cell that was split into this cell; -1 for an element of the base.

@@ -67,8 +67,8 @@ double segment_distance(const Eigen::Vector2d& q, const Eigen::Vector2d& a,
 /// welding joins neither the two ends of an edge nor the two sides of a needle.
 std::vector<double> weld_radii(const PolygonMesh& mesh, double tolerance);
 
-/// Returns the planes of all polygon facets of the scene, in scene-wide order (spheres have none),
-/// and adds the facets' corners to `points`.
+/// Returns the planes of all polygon facets of the scene, in scene-wide order (round shapes have
+/// none), and adds the facets' corners to `points`.
 std::vector<FacetPlane> facet_planes(const Scene& scene, WeldedPoints& points);
 
 }  // namespace lightwell

@@ -7,7 +7,7 @@
 
 #include "mesh/patches/parted_topology.h"
 #include "mesh/patches/patch_mesh.h"
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 
 namespace lightwell {
 namespace {
@@ -33,24 +33,23 @@ Vector3d mean_of_corners(const PatchMesh& mesh, int element) {
   return sum / n;
 }
 
-const SphereGrid* sphere_of_element(const PatchMesh& mesh, int element) {
-  return sphere_grid_of(mesh, mesh.facet[element]);
+const RoundGrid* round_of_element(const PatchMesh& mesh, int element) {
+  return round_grid_of(mesh, mesh.facet[element]);
 }
 
-// Sets vertex normals: radial on spheres, inwards for inner elements; elsewhere the mean of the
+// Sets vertex normals: those of the exact shape on round shapes; elsewhere the mean of the
 // faces around, weighted by area.
 void set_vertex_normals(PatchMesh& mesh, int vertex_count) {
   mesh.vertex_normal.assign(vertex_count, Vector3d::Zero());
   const int patches = mesh.patch_count();
   for (int p = 0; p < patches; ++p) {
-    const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[mesh.first_element[p]]);
-    const double towards = mesh.is_back[p] != 0 ? -1.0 : 1.0;
+    const RoundGrid* grid = round_grid_of(mesh, mesh.facet[mesh.first_element[p]]);
     for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
       const Vector3d area = element_area_vector(mesh, e);
       for (int i = 0; i < mesh.corner_count(e); ++i) {
         const int v = mesh.corners[e][i];
         if (grid) {
-          mesh.vertex_normal[v] = towards * (mesh.position(v) - grid->sphere.center);
+          mesh.vertex_normal[v] = round_normal(mesh, *grid, p, mesh.position(v));
         } else {
           mesh.vertex_normal[v] += area;
         }
@@ -107,10 +106,9 @@ bool add_face(PatchMesh& mesh, std::size_t element) {
 
 PatchPoint element_center(const PatchMesh& mesh, int element) {
   PatchPoint point{.element = element, .position = mean_of_corners(mesh, element)};
-  if (const SphereGrid* grid = sphere_of_element(mesh, element)) {
-    const Vector3d direction = (point.position - grid->sphere.center).normalized();
-    point.position = grid->sphere.center + grid->sphere.radius * direction;
-    point.normal = mesh.is_back[mesh.patch[element]] != 0 ? Vector3d(-direction) : direction;
+  if (const RoundGrid* grid = round_of_element(mesh, element)) {
+    point.position = nearest_on(grid->shape, point.position);
+    point.normal = round_normal(mesh, *grid, mesh.patch[element], point.position);
   } else {
     point.normal = element_area_vector(mesh, element).normalized();
   }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/round_shape.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -46,14 +47,17 @@ class MovableHalfedgeMesh {
   std::unique_ptr<HalfedgeMesh> mesh_;
 };
 
-/// The elements of one sphere's outside (or inside), for finding the element at a point of the
-/// exact sphere: a latitude-longitude grid about +z. Ring 0 touches the +z pole; sector 0 starts at
-/// longitude 0 (+x), turning towards +y.
-struct SphereGrid {
-  int facet = 0;  ///< scene-wide facet number of the sphere
-  Sphere sphere{};
+/// The elements of the front of a round shape (and their twins on its back), for finding the
+/// element at a point of the exact shape. Rings run from the north, ring 0, to the south, evenly
+/// along the shape; sectors are even in longitude, eastwards counter-clockwise as seen from the
+/// front.
+/// - Of a sphere, the north is at +z, and sector 0 starts at longitude 0 (+x), turning towards +y.
+/// - Of a frustum, the north is the top, and sector 0 starts as longitudes() says.
+struct RoundGrid {
+  int facet = 0;  ///< scene-wide facet number of the shape
+  RoundShape shape{};
   int rings = 0, sectors = 0;
-  std::vector<int> element{};  ///< outside element of (ring, sector) at ring * sectors + sector
+  std::vector<int> element{};  ///< front element of (ring, sector) at ring * sectors + sector
 };
 
 /// Surfaces cut into *patches*, the sources of energy and unknowns of the solver, and patches cut
@@ -78,7 +82,7 @@ struct PatchMesh {
   /// Vertices, counter-clockwise seen from the side that the element faces; [3] is -1 for a
   /// triangle. The same faces as those of `elements`, in a flat array for inner loops.
   std::vector<std::array<int, 4>> corners{};
-  /// Area, m^2, > 0; exact on spheres; without the holes that textures cut.
+  /// Area, m^2, > 0; exact on round shapes; without the holes that textures cut.
   Eigen::ArrayXd element_area{};
   /// The element on the other side of the same place; -1: the other side is black.
   std::vector<int> twin{};
@@ -107,7 +111,7 @@ struct PatchMesh {
   /// sources x bands. Empty: all 1.
   BandArray source_scale{};
 
-  std::vector<SphereGrid> sphere_grids{};
+  std::vector<RoundGrid> round_grids{};
   /// The textures of the scene; rays pass through their holes. Null: nothing varies over facets.
   std::shared_ptr<const FacetTextures> textures{};
   /// What the patterns of patches mirror. Null: no facet has a pattern.
@@ -143,7 +147,7 @@ struct PatchPoint {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, towards the side the patch faces
 };
 
-/// The mean of the element's corners (on spheres moved out to the exact sphere), with the unit
+/// The mean of the element's corners (on round shapes moved to the exact shape), with the unit
 /// normal there.
 PatchPoint element_center(const PatchMesh& mesh, int element);
 
@@ -152,7 +156,7 @@ PatchPoint element_center(const PatchMesh& mesh, int element);
 std::vector<int> vertex_patches(const PatchMesh& mesh);
 
 /// Rebuilds `elements` from `positions` (metres) and `corners`, and vertex normals from faces
-/// (weighted by area; exact on spheres): completes a PatchMesh read from a file. Throws
+/// (weighted by area; exact on round shapes): completes a PatchMesh read from a file. Throws
 /// std::runtime_error if an element names a vertex that does not exist or does not fit its
 /// neighbours.
 void build_topology(PatchMesh& mesh, const std::vector<Eigen::Vector3d>& positions);

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <tuple>
 
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "scene/facet_textures.h"
 #include "scene/parallel.h"
 
@@ -116,7 +116,7 @@ PatchOutline patch_outline(const PatchMesh& mesh, int patch) {
   PatchOutline outline;
   const int facet = mesh.facet_of(patch);
   const bool has_holes = facet >= 0 && mesh.textures && mesh.textures->has_holes(facet);
-  if (facet >= 0 && !has_holes && !sphere_grid_of(mesh, facet)) {
+  if (facet >= 0 && !has_holes && !round_grid_of(mesh, facet)) {
     std::vector<int> elements(mesh.first_element[patch + 1] - mesh.first_element[patch]);
     std::iota(elements.begin(), elements.end(), mesh.first_element[patch]);
     outline = polygon_outline(boundary_loops(mesh, elements));

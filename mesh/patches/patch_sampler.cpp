@@ -5,7 +5,7 @@
 #include <bit>
 #include <cmath>
 
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "scene/facet_textures.h"
 #include "scene/sampling.h"
 
@@ -19,30 +19,13 @@ using Eigen::Vector3d;
 // carry light through.
 constexpr double inset = 1e-4;
 
-// A direction uniform over a sphere's element: even in longitude and in cos(theta) (Archimedes).
-Vector3d direction_of_sphere(const PatchMesh& mesh, const SphereGrid& grid, int element, double u,
-                             double v) {
-  SphereGridPoint grid_point =
-      sphere_grid_point(grid, element_center(mesh, element).position - grid.sphere.center);
-  grid_point.u = 0.0;
-  grid_point.v = 0.0;
-  const double south = sphere_direction(grid, grid_point).z();
-  grid_point.v = 1.0;
-  const double north = sphere_direction(grid, grid_point).z();
-  const double z = std::clamp(south + v * (north - south), -1.0, 1.0);
-  grid_point.u = u;
-  const Vector3d around = sphere_direction(grid, {grid_point.ring, grid_point.sector, u, 0.5});
-  const double across = std::hypot(around.x(), around.y()), r = std::sqrt(1.0 - z * z);
-  return {r * around.x() / across, r * around.y() / across, z};
-}
-
 }  // namespace
 
 PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
     : mesh_(mesh),
       patch_(patch),
-      sphere_(sphere_grid_of(mesh, mesh.facet[mesh.first_element[patch]])),
-      is_flat_(!sphere_ && mesh.facet_of(patch) >= 0) {
+      round_(round_grid_of(mesh, mesh.facet[mesh.first_element[patch]])),
+      is_flat_(!round_ && mesh.facet_of(patch) >= 0) {
   if (mesh.textures && mesh.textures->has_holes()) {
     for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
       has_holes_ = has_holes_ || mesh.textures->has_holes(mesh.facet[e]);
@@ -65,8 +48,8 @@ PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
 PatchSampler::PatchSampler(const PatchMesh& mesh, int patch, int element)
     : mesh_(mesh),
       patch_(patch),
-      sphere_(sphere_grid_of(mesh, mesh.facet[element])),
-      is_flat_(!sphere_),
+      round_(round_grid_of(mesh, mesh.facet[element])),
+      is_flat_(!round_),
       has_holes_(mesh.textures && mesh.textures->has_holes(mesh.facet[element])),
       normal_(element_center(mesh, element).normal) {
   add_parts(element, element + 1);
@@ -74,7 +57,7 @@ PatchSampler::PatchSampler(const PatchMesh& mesh, int patch, int element)
 
 void PatchSampler::add_parts(int first_element, int end_element) {
   for (int e = first_element; e < end_element; ++e) {
-    if (sphere_) {
+    if (round_) {
       area_ += mesh_.element_area[e];
       parts_.push_back({.element = e, .area_up_to = area_});
       continue;
@@ -122,17 +105,18 @@ PatchPoint PatchSampler::point_on_part(double u, double v) const {
   const Part& part = parts_[i];
   const double before = i == 0 ? 0.0 : parts_[i - 1].area_up_to;
   u = std::clamp((area - before) / (part.area_up_to - before), 0.0, 1.0);
-  if (!sphere_) {
+  if (!round_) {
     // The square root makes the density even towards the corner.
     const double s = std::sqrt(u);
     return {.element = part.element,
             .position = part.corner + s * ((1.0 - v) * part.first_edge + v * part.second_edge),
             .normal = part.normal};
   }
-  const Vector3d direction = direction_of_sphere(mesh_, *sphere_, part.element, u, v);
-  return {.element = part.element,
-          .position = sphere_->sphere.center + sphere_->sphere.radius * direction,
-          .normal = mesh_.is_back[patch_] != 0 ? Vector3d(-direction) : direction};
+  const RoundGridPoint cell =
+      round_grid_point(*round_, element_center(mesh_, part.element).position);
+  const Vector3d at = even_point(*round_, cell.ring, cell.sector, u, v);
+  return {
+      .element = part.element, .position = at, .normal = round_normal(mesh_, *round_, patch_, at)};
 }
 
 Ray cosine_ray(const PatchMesh& mesh, const PatchPoint& from, float u, float v) {

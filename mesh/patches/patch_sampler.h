@@ -20,8 +20,8 @@ class PatchSampler {
   bool is_flat() const { return is_flat_; }
 
   /// A point uniform over the patch's area for (u, v) uniform in [0,1)^2; u also picks the element,
-  /// in proportion to area. On a sphere the point lies on the exact sphere. The point is linear in
-  /// u and v where the patch is a parallelogram, so that stratified samples stay stratified. A
+  /// in proportion to area. On a round shape the point lies on the exact shape. The point is linear
+  /// in u and v where the patch is a parallelogram, so that stratified samples stay stratified. A
   /// point in a hole of the surface is replaced by others that (u, v) determine, at most 64 times.
   PatchPoint point(double u, double v) const {
     return has_holes_ ? point_beside_holes(u, v) : any_point(u, v);
@@ -33,7 +33,7 @@ class PatchSampler {
   }
 
  private:
-  // A triangle of an element; an element of a sphere whole.
+  // A triangle of an element; an element of a round shape whole.
   struct Part {
     int element = -1;
     double area_up_to = 0.0;  // of this part and all parts before, m^2
@@ -60,7 +60,7 @@ class PatchSampler {
 
   const PatchMesh& mesh_;
   int patch_;
-  const SphereGrid* sphere_;
+  const RoundGrid* round_;
   bool is_flat_;
   bool has_holes_ = false;
   Eigen::Vector3d normal_ = Eigen::Vector3d::Zero();  // of a flat patch

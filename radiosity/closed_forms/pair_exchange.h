@@ -24,7 +24,7 @@ class PairExchange {
   explicit PairExchange(const std::vector<PatchOutline>& outlines,
                         double relative_error = usual_error);
 
-  /// S_ij in square metres; 0 for patches of spheres.
+  /// S_ij in square metres; 0 for patches of round shapes.
   double between(int i, int j) const { return bounded(i, j).value; }
 
   struct Bounded {
@@ -34,7 +34,7 @@ class PairExchange {
   /// S_ij with the bound of the method that computes the pair.
   Bounded bounded(int i, int j) const;
 
-  /// True if some of each patch lies before the other's plane. False for patches of spheres.
+  /// True if some of each patch lies before the other's plane. False for patches of round shapes.
   bool face_each_other(int i, int j) const;
 
  private:

@@ -316,12 +316,12 @@ std::vector<EmittingFacet> emitting_facets(const Scene& scene, const std::vector
     if (polygons) {
       area = facet_area(*polygons, polygons->facets[facets[f].facet]);
     } else {
-      const double r = std::get<Sphere>(surface.shape).radius;
-      area = 4.0 * M_PI * r * r;
+      area = surface_area(surface);
     }
     scene_area += area;
     const Material& material = scene.materials[surface.material];
-    if (!material.is_emitter()) continue;
+    // Hemisphere rays find the light of frustums.
+    if (!material.is_emitter() || std::holds_alternative<Frustum>(surface.shape)) continue;
     EmittingFacet facet{f, area, material.emission.sum()};
     if (material.emission_texture) {
       const auto same = std::ranges::find(known, f, &Emitter::facet);

@@ -70,10 +70,7 @@ ExactShadows::ExactShadows(const Scene& scene, const PatchMesh& mesh,
     const bool lets_through = piece.has_holes || is_pane[static_cast<std::size_t>(piece.sheet)];
     needs_rays_.push_back(lets_through ? 1 : 0);
   }
-  for (const Sphere& sphere : occluders_->spheres) {
-    const Vector3d reach = Vector3d::Constant(sphere.radius);
-    boxes.emplace_back(sphere.center - reach, sphere.center + reach);
-  }
+  for (const RoundShape& shape : occluders_->round_shapes) boxes.push_back(bounds(shape));
   tree_.emplace(std::move(boxes));
   for (const Emitter& emitter : emitters) targets_.push_back(target_of(emitter));
 }
@@ -191,10 +188,10 @@ std::optional<double> ExactShadows::share(int emitter, const SurfacePoint& at,
   const auto most = static_cast<std::size_t>(std::min(most_pieces, ShadowedPolygon::most_blockers));
   for (const int k : found) {
     if (k >= static_cast<int>(occluders_->pieces.size())) {
-      const Sphere& sphere =
-          occluders_->spheres[static_cast<std::size_t>(k) - occluders_->pieces.size()];
+      const RoundShape& shape =
+          occluders_->round_shapes[static_cast<std::size_t>(k) - occluders_->pieces.size()];
       const bool is_past = std::ranges::any_of(planes, [&](const Plane& plane) {
-        return plane.signedDistance(sphere.center) <= tolerance - sphere.radius;
+        return reach(shape, plane.normal()) + plane.offset() <= tolerance;
       });
       if (is_past) continue;
       return std::nullopt;

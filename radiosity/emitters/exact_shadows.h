@@ -26,7 +26,7 @@ class ExactShadows {
   /// The visible share of the form factor from a differential element to an emitter, [0, 1];
   /// exactly 1 or 0 where all or nothing is visible. Empty, so that rays must decide, if
   /// - more than `most_pieces` convex polygons may be occluders (below 0: always empty);
-  /// - a sphere, a clear pane or a texture with holes may be one;
+  /// - a round shape, a clear pane or a texture with holes may be one;
   /// - the emitter is no polygon, or another surface lies on it;
   /// - another surface lies on the point.
   std::optional<double> share(int emitter, const SurfacePoint& at, int most_pieces) const;
@@ -49,7 +49,7 @@ class ExactShadows {
 
   std::optional<Occluders> occluders_{};
   std::vector<char> needs_rays_{};  // per piece
-  std::optional<BoxTree> tree_{};   // of pieces, and after them of spheres
+  std::optional<BoxTree> tree_{};   // of pieces, and after them of round shapes
   std::vector<Target> targets_{};
 };
 

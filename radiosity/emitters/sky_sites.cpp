@@ -49,7 +49,7 @@ std::uint64_t site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& n
 // a wall and the picture on it, points of each.
 struct SkySites::Collector {
   explicit Collector(const PatchMesh& of) : mesh(of) {
-    for (const SphereGrid& grid : mesh.sphere_grids) spheres[grid.facet] = &grid.sphere;
+    for (const RoundGrid& grid : mesh.round_grids) round[grid.facet] = &grid.shape;
   }
 
   // Returns false if there are too many sites.
@@ -90,10 +90,10 @@ struct SkySites::Collector {
 
   void add_point(Eigen::Vector3d p, Eigen::Vector3d normal, int e) {
     const int facet = mesh.facet[static_cast<std::size_t>(e)];
-    if (const auto of_facet = spheres.find(facet); of_facet != spheres.end()) {
-      const Sphere& sphere = *of_facet->second;  // chords lie inside it
-      normal = (p - sphere.center).normalized();
-      p = sphere.center + sphere.radius * normal;
+    if (const auto of_facet = round.find(facet); of_facet != round.end()) {
+      const RoundShape& shape = *of_facet->second;  // chords do not lie on it
+      p = nearest_on(shape, p);
+      normal = front_normal(shape, p);
       const int patch = mesh.patch[static_cast<std::size_t>(e)];
       if (mesh.is_back[static_cast<std::size_t>(patch)] != 0) normal = -normal;
     }
@@ -111,7 +111,7 @@ struct SkySites::Collector {
   }
 
   const PatchMesh& mesh;
-  std::map<int, const Sphere*> spheres{};
+  std::map<int, const RoundShape*> round{};
   std::map<std::uint64_t, Points> points{};  // ordered by key
   double cube = 1.0;
 };

@@ -29,12 +29,12 @@ struct AnalyticErrors {
 ///   - 1 where the shaft between the patches (Shafts) is empty;
 ///   - exact where the shaft holds few polygons (visible_exchange): F_ij has an error of at most
 ///     1e-6, or of a tenth of `target_error` if that is less;
-///   - sampled where spheres or many polygons stand between, or a surface lies on one of the
+///   - sampled where round shapes or many polygons stand between, or a surface lies on one of the
 ///     patches: shadow rays between stratified points of both, weighted by the kernel of the form
 ///     factor. 16 or 64 rays at first, up to 2^18 while the standard error of F_ij is above
 ///     `target_error` (0: 1e-3).
 ///
-/// Patches of spheres, and patches that lie on each other, are left to other methods. `take(i,
+/// Patches of round shapes, and patches that lie on each other, are left to other methods. `take(i,
 /// row)` gets the exchange of patch i with patches j > i, row after row. Rows that `phase` holds
 /// are recalled.
 void analytic_exchange(const PolygonPairs& pairs, const Progress& progress, AnalyticErrors errors,

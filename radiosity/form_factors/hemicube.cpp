@@ -57,7 +57,7 @@ class Tally {
   }
 
   // Follows the ray of a cell that sees a specular surface. The ray determines what the cell sees,
-  // so nothing is lost where a flat element and the exact sphere differ.
+  // so nothing is lost where a flat element and the exact shape differ.
   void follow(const HemicubeEye& eye, int face, int row, int column) {
     const PatchMesh& mesh = caster_.mesh();
     const Ray ray{.origin = eye.position,

@@ -16,7 +16,7 @@ struct HemicubeOptions {
   /// the aliasing of a polygon that is not partly hidden is below 1e-3 of the hemisphere.
   int resolution = 256;
   /// Method for the visible surface of a cell. Both agree except for cells at edges, and on
-  /// spheres: rays meet the exact sphere, scan conversion its flat elements.
+  /// round shapes: rays meet the exact shape, scan conversion its flat elements.
   enum class BackEnd {
     scan_conversion,  ///< polygons drawn into a depth buffer; 10 to 30 times as fast
     rays              ///< a ray through each cell's centre

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "radiosity/form_factors/hemicube_view.h"
 
 namespace lightwell {
@@ -323,7 +323,7 @@ void HemicubeScan::add_facet_elements(int first_element, int last_element) {
     whole += area;
     polygons_.push_back(polygon);
   }
-  if (!sphere_grid_of(mesh, group.facet)) {  // the normal of a sliver is inaccurate
+  if (!round_grid_of(mesh, group.facet)) {  // the normal of a sliver is inaccurate
     const Vector3d normal = whole.normalized();
     for (auto p = group.first_polygon; p < static_cast<int>(polygons_.size()); ++p) {
       polygons_[p].normal = normal;

@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
@@ -78,25 +78,23 @@ PatchPoint point_on_polygon(const PatchMesh& mesh, int patch) {
   return center_nearest_to(mesh, patch, middle);
 }
 
-PatchPoint point_on_sphere(const PatchMesh& mesh, int patch, const SphereGrid& grid) {
+PatchPoint point_on_round(const PatchMesh& mesh, int patch, const RoundGrid& grid) {
   Vector3d middle = Vector3d::Zero();
   for (int e = mesh.first_element[patch]; e < mesh.first_element[patch + 1]; ++e) {
-    middle += mesh.element_area[e] * (element_center(mesh, e).position - grid.sphere.center);
+    middle += mesh.element_area[e] / mesh.area[patch] * element_center(mesh, e).position;
   }
-  if (middle.norm() > 0.0) {
-    middle = grid.sphere.radius * middle.normalized();
-    const SphereGridPoint eye_point = sphere_grid_point(grid, middle);
-    const int outside = grid.element[eye_point.ring * grid.sectors + eye_point.sector];
-    const int element = mesh.is_back[patch] != 0 ? mesh.twin[outside] : outside;
-    if (element >= 0 && mesh.patch[element] == patch) {
-      const Vector3d normal = (mesh.is_back[patch] != 0 ? -1.0 : 1.0) * middle.normalized();
-      return {.element = element, .position = grid.sphere.center + middle, .normal = normal};
-    }
+  middle = nearest_on(grid.shape, middle);
+  const RoundGridPoint place = round_grid_point(grid, middle);
+  const int front = grid.element[place.ring * grid.sectors + place.sector];
+  const int element = mesh.is_back[patch] != 0 ? mesh.twin[front] : front;
+  if (element >= 0 && mesh.patch[element] == patch) {
+    return {
+        .element = element, .position = middle, .normal = round_normal(mesh, grid, patch, middle)};
   }
-  return center_nearest_to(mesh, patch, grid.sphere.center + middle);
+  return center_nearest_to(mesh, patch, middle);
 }
 
-// Moves the point from the exact sphere onto the flat element.
+// Moves the point from the exact shape onto the flat element.
 void drop_onto_element(const PatchMesh& mesh, PatchPoint& eye_point) {
   const auto& c = mesh.corners[eye_point.element];
   const int n = mesh.corner_count(eye_point.element);
@@ -109,11 +107,11 @@ void drop_onto_element(const PatchMesh& mesh, PatchPoint& eye_point) {
 }  // namespace
 
 HemicubeEye hemicube_eye(const PatchMesh& mesh, int patch, bool on_elements) {
-  const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[mesh.first_element[patch]]);
-  PatchPoint eye_point = grid ? point_on_sphere(mesh, patch, *grid) : point_on_polygon(mesh, patch);
+  const RoundGrid* grid = round_grid_of(mesh, mesh.facet[mesh.first_element[patch]]);
+  PatchPoint eye_point = grid ? point_on_round(mesh, patch, *grid) : point_on_polygon(mesh, patch);
   HemicubeEye eye{.element = eye_point.element,
                   .facet = mesh.facet[eye_point.element],
-                  .inside = grid && mesh.is_back[patch] != 0};
+                  .inside = grid && sees_itself(grid->shape, mesh.is_back[patch] != 0)};
   if (eye.inside && on_elements) drop_onto_element(mesh, eye_point);
   eye.position = eye_point.position;
   Vector3d x, y;

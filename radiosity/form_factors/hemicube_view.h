@@ -18,14 +18,15 @@ struct HemicubeEye {
   Eigen::Matrix3d frame = Eigen::Matrix3d::Identity();
   int element = -1;     ///< element under the eye; -1: in free space
   int facet = -1;       ///< facet of that element, invisible from the eye unless `inside`
-  bool inside = false;  ///< eye on the inside of a sphere, which sees its own facet
+  bool inside = false;  ///< eye on the inside of a round shape, which sees its own facet
 };
 
 /// Hemicube of a patch. The eye stands
 ///   - at the area centroid if that lies on the patch;
 ///   - otherwise (an L, a ring) at the centre of the nearest element;
-///   - on a sphere, on the exact sphere, except inside one with `on_elements`: there flat elements
-///     would lie in front of the exact sphere.
+///   - on a round shape, on the exact shape, except inside one with `on_elements`: there flat
+///   elements
+///     would lie in front of the exact shape.
 ///
 /// The frame is turned about the normal by a random angle that depends on the patch alone, so that
 /// parallel edges throughout a scene do not alias alike on every patch.
@@ -44,13 +45,13 @@ inline int facet(const PatchMesh& mesh, int item) {
 }
 }  // namespace hemicube_item
 
-/// Casts one ray through the centre of each cell, with exact spheres. Writes cells.cell_count()
-/// items.
+/// Casts one ray through the centre of each cell, with exact round shapes. Writes
+/// cells.cell_count() items.
 void cast_hemicube(const ElementCaster& caster, const HemicubeEye& eye, const HemicubeCells& cells,
                    std::span<int> items);
 
 /// Scan conversion of a mesh's elements into the cells of hemicubes: a depth buffer with items.
-/// Spheres are drawn as their elements, flat polygons inscribed in the sphere.
+/// Round shapes are drawn as their elements, flat polygons with corners on the shape.
 ///
 /// A polygon covers a cell if the cell's centre lies in the pyramid from the eye over the polygon.
 /// The test, in three dimensions and in double precision, projects no vertex, so polygons that

@@ -106,7 +106,7 @@ std::vector<BrightPatch> choose_bright(const Scene& scene, const ElementCaster& 
   std::vector<char> is_bright(static_cast<std::size_t>(mesh.patch_count()), 0);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const Surface& surface = scene.surfaces[static_cast<std::size_t>(mesh.surface[p])];
-    if (std::holds_alternative<Sphere>(surface.shape) || surface.motion >= 0) continue;
+    if (!std::holds_alternative<PolygonMesh>(surface.shape) || surface.motion >= 0) continue;
     if (!(std::sqrt(square[p]) > least)) continue;
     bright.push_back({p});
     is_bright[static_cast<std::size_t>(p)] = 1;

@@ -24,9 +24,9 @@ class BrightPatches {
   /// No bright patches.
   BrightPatches() = default;
   /// `radiosity` is the light that rays read, vertices x columns, W/m^2. Moving surfaces are left
-  /// out, and so are spheres, since rays hit the sphere itself and not its elements. Patches whose
-  /// rays mostly meet other bright patches, as within a lampshade, are drawn less often: points of
-  /// the room hardly see them. Keeps a reference to the caster's mesh.
+  /// out, and so are round shapes, since rays hit the shape itself and not its elements. Patches
+  /// whose rays mostly meet other bright patches, as within a lampshade, are drawn less often:
+  /// points of the room hardly see them. Keeps a reference to the caster's mesh.
   BrightPatches(const Scene& scene, const ElementCaster& caster, const BandArray& radiosity);
 
   bool is_empty() const { return patches_.empty(); }

@@ -11,7 +11,7 @@
 #include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/patch_textures.h"
 #include "mesh/patches/pictured_emission.h"
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "mesh/patches/translucency.h"
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/gather/gap_light.h"
@@ -678,11 +678,11 @@ GatherPoint VertexGatherPoints::operator[](int vertex) const {
   if (e < 0) return {};
   const PatchPoint center = element_center(mesh_, e);
   const Eigen::Vector3d p = mesh_.position(vertex), inwards = inset * (center.position - p);
-  // On a sphere the element is a chord inside the ball, so the point is moved out to the surface.
-  if (const SphereGrid* grid = sphere_grid_of(mesh_, mesh_.facet[e])) {
-    const Eigen::Vector3d out = (p + inwards - grid->sphere.center).normalized();
-    return {.position = grid->sphere.center + grid->sphere.radius * out,
-            .normal = mesh_.is_back[mesh_.patch[e]] ? Eigen::Vector3d(-out) : out,
+  // The element of a round shape is a chord of it, so the point is moved to the surface.
+  if (const RoundGrid* grid = round_grid_of(mesh_, mesh_.facet[e])) {
+    const Eigen::Vector3d at = nearest_on(grid->shape, p + inwards);
+    return {.position = at,
+            .normal = round_normal(mesh_, *grid, mesh_.patch[e], at),
             .facet = mesh_.facet[e]};
   }
   // Facets that meet smoothly have a common normal. The point lies so far above them that no facet

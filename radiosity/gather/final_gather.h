@@ -123,8 +123,8 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
 
 /// A gather point for every vertex: 2 % of the way from the vertex to the centre of one of its
 /// elements, so that the point lies on no edge, with the facet and the normal of that element. On
-/// spheres the point lies on the surface. If the vertex is shared by facets that meet smoothly, the
-/// point lies as far above them as well, with their common normal and no facet.
+/// round shapes the point lies on the surface. If the vertex is shared by facets that meet
+/// smoothly, the point lies as far above them as well, with their common normal and no facet.
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
 
 /// The points of vertex_gather_points, each made on demand. Keeps a reference to the mesh.

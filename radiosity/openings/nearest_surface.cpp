@@ -28,11 +28,8 @@ NearestSurface::NearestSurface(const Scene& scene) {
   for (const Surface& surface : scene.surfaces) {
     const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
     if (material.dielectric || surface.motion >= 0) continue;
-    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-      const Vector3d reach = Vector3d::Constant(sphere->radius);
-      shapes_.push_back({.origin = sphere->center,
-                         .radius = sphere->radius,
-                         .box = BoxTree::Box(sphere->center - reach, sphere->center + reach)});
+    if (const auto round = round_shape(surface)) {
+      shapes_.push_back({.round = round, .box = bounds(*round)});
       continue;
     }
     const auto& mesh = std::get<PolygonMesh>(surface.shape);
@@ -62,12 +59,8 @@ NearestSurface::Shape NearestSurface::polygon(const PolygonMesh& mesh, const Fac
 }
 
 Vector3d NearestSurface::nearest_of(const Shape& shape, const Vector3d& from) {
+  if (shape.round) return nearest_on(*shape.round, from);
   const Vector3d to = from - shape.origin;
-  if (shape.loops.empty()) {
-    const double distance = to.norm();
-    return distance > 0.0 ? Vector3d(shape.origin + shape.radius / distance * to)
-                          : Vector3d(shape.origin + shape.radius * shape.normal);
-  }
   const Vector2d p(to.dot(shape.x), to.dot(shape.y));
   bool is_inside = false;
   Vector2d best = p;

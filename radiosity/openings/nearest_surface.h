@@ -5,12 +5,13 @@
 #include <vector>
 
 #include "mesh/geometry/box_tree.h"
+#include "scene/round_shape.h"
 #include "scene/scene.h"
 
 namespace lightwell {
 
-/// Finds the nearest point of the surfaces that stand in the way of light: all polygons and spheres
-/// but clear ones and those that move.
+/// Finds the nearest point of the surfaces that stand in the way of light: all polygons and round
+/// shapes but clear ones and those that move.
 class NearestSurface {
  public:
   explicit NearestSurface(const Scene& scene);
@@ -20,12 +21,12 @@ class NearestSurface {
 
  private:
   using PlanarLoop = std::vector<Eigen::Vector2d>;
-  // A polygon in coordinates of its plane, or a sphere, whose loops are empty.
+  // A polygon in coordinates of its plane, or a round shape, whose loops are empty.
   struct Shape {
-    Eigen::Vector3d origin = Eigen::Vector3d::Zero();  // or centre of the sphere
+    Eigen::Vector3d origin = Eigen::Vector3d::Zero();
     Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(),
                     normal = Eigen::Vector3d::UnitZ();
-    double radius = 0.0;
+    std::optional<RoundShape> round{};
     std::vector<PlanarLoop> loops{};
     BoxTree::Box box{};
   };

@@ -18,7 +18,8 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
       max_depth_(max_depth),
       detail_(detail),
       patterns_(caster.mesh().patterns),
-      bases_(scene.materials) {
+      bases_(scene.materials),
+      round_(scene) {
   if (patterns_) textures_ = caster.mesh().textures;
   if (detail == PathDetail::points) smooth_.emplace(scene);
   for (const FacetRef& ref : scene_facets(scene)) {
@@ -30,7 +31,6 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
     diffuse_.push_back(material.is_diffuse() || material.is_emitter() || !material.is_specular());
     normal_.push_back(polygons ? facet_normal(*polygons, polygons->facets[ref.facet])
                                : Eigen::Vector3d::Zero());
-    sphere_.push_back(polygons ? nullptr : &std::get<Sphere>(surface.shape));
     has_specular_ = has_specular_ || material.is_specular();
     absorbs_ = absorbs_ || (material.dielectric && (material.dielectric->absorption > 0.0f).any());
   }
@@ -59,14 +59,14 @@ const Material& LightPaths::material_at(const ElementCaster& caster, const Eleme
 // The normal, unit, on the side that the light comes from.
 Eigen::Vector3d LightPaths::normal_at(const ElementCaster& caster, const ElementHit& hit,
                                       const Eigen::Vector3d& point) const {
-  const Sphere* sphere = sphere_[hit.facet];
   const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
   Eigen::Vector3d normal = normal_[hit.facet];
-  if (sphere) {
-    normal = (point - (pose ? *pose * sphere->center : sphere->center)).normalized();
-  } else if (pose) {
-    normal = pose->linear() * normal;
+  if (normal.isZero()) {
+    if (const RoundShape* shape = round_.of(hit.facet)) {
+      normal = front_normal(*shape, pose ? pose->inverse() * point : point);
+    }
   }
+  if (pose) normal = pose->linear() * normal;
   return hit.from_back ? Eigen::Vector3d(-normal) : normal;
 }
 

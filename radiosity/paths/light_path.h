@@ -8,6 +8,7 @@
 #include "mesh/elements/element_caster.h"
 #include "scene/coat.h"
 #include "scene/facet_normals.h"
+#include "scene/round_shape.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
 
@@ -112,9 +113,9 @@ class LightPaths {
   std::vector<char> specular_, diffuse_;
   CoatedBases bases_;
   std::vector<int> material_;            // per facet
-  std::vector<Eigen::Vector3d> normal_;  // per facet; zero for spheres
-  std::vector<const Sphere*> sphere_;    // per facet; null for polygons
-  std::optional<FacetNormals> smooth_;   // null: the facets' own
+  std::vector<Eigen::Vector3d> normal_;  // per facet; zero for round shapes
+  RoundShapes round_;
+  std::optional<FacetNormals> smooth_;  // null: the facets' own
 };
 
 }  // namespace lightwell

@@ -1,4 +1,5 @@
 #include "radiosity/paths/specular_targets.h"
+#include "scene/round_shape.h"
 
 #include <algorithm>
 #include <limits>
@@ -32,9 +33,9 @@ Box joined_boxes(Box a, const Box& b) {
 
 Box box_of(const Surface& surface) {
   Box box;
-  if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-    box.add(sphere->center - Eigen::Vector3d::Constant(sphere->radius));
-    box.add(sphere->center + Eigen::Vector3d::Constant(sphere->radius));
+  if (const auto shape = round_shape(surface)) {
+    box.add(bounds(*shape).min());
+    box.add(bounds(*shape).max());
     return box;
   }
   const auto& polygons = std::get<PolygonMesh>(surface.shape);
@@ -120,8 +121,9 @@ SpecularTargets::SpecularTargets(const Scene& scene) {
   // The distance to the farthest point, enlarged a little, since rays end in single precision.
   constexpr double hair = 1.0 + 1e-5;
   const auto reach = [&](SpecularTarget& target, const Surface& surface) {
-    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-      const double to = (sphere->center - target.center).norm() + sphere->radius;
+    if (const auto shape = round_shape(surface)) {
+      const Sphere ball = ball_around(*shape);
+      const double to = (ball.center - target.center).norm() + ball.radius;
       target.radius = std::max(target.radius, hair * to);
       return;
     }

@@ -14,8 +14,8 @@ enum class MeshSides { fronts, both };
 ///
 /// - `element`, `patch`, `facet`, `surface`, `material`: numbers from 0, as in a solution -
 /// `patch_color`: see patch_colors(); `patch_rgb` is the same as an 8-bit colour, the active
-/// scalars - `area`, `patch_area`: m^2, exact on spheres - `least_angle` (degrees), `aspect_ratio`:
-/// see element_shape() - `is_back`: 1 on the backs of two-sided surfaces
+/// scalars - `area`, `patch_area`: m^2, exact on round shapes - `least_angle` (degrees),
+/// `aspect_ratio`: see element_shape() - `is_back`: 1 on the backs of two-sided surfaces
 ///
 /// Field data hold the provenance. Backs coincide with their fronts and have the same elements, so
 /// backs are left out unless `sides` is `both`. The file is written under a temporary name and

@@ -115,33 +115,55 @@ void read_patches(const SolutionArrays& in, int band_count, PatchMesh& mesh) {
   mesh.behind = patches_behind(mesh);
 }
 
-void read_sphere_grids(const SolutionArrays& in, PatchMesh& mesh) {
-  const auto shape = in.optional<int>(in.field(), "sphere_facet_rings_sectors", 3);
-  if (shape.rows == 0) return;
-  const auto sphere = in.required<double>(in.field(), "sphere_center_radius", shape.rows, 4);
+RoundShape shape_of(const double* v, const Sphere& /*kind*/) {
+  return Sphere{.center = {v[0], v[1], v[2]}, .radius = v[3]};
+}
+
+RoundShape shape_of(const double* v, const Frustum& /*kind*/) {
+  return Frustum{.base = {v[0], v[1], v[2]},
+                 .axis = {v[3], v[4], v[5]},
+                 .height = v[6],
+                 .base_radius = v[7],
+                 .top_radius = v[8],
+                 .inward = v[9] != 0.0};
+}
+
+/// Reads the grids of one kind of round shape (see add_grids), of `count` numbers each.
+template <class Shape>
+void read_grids(const SolutionArrays& in, const std::string& name, const std::string& numbers,
+                int count, PatchMesh& mesh) {
+  const auto sizes = in.optional<int>(in.field(), (name + "_facet_rings_sectors").c_str(), 3);
+  if (sizes.rows == 0) return;
+  const auto values =
+      in.required<double>(in.field(), (name + "_" + numbers).c_str(), sizes.rows, count);
+  const std::size_t first = mesh.round_grids.size();
   std::int64_t cells = 0;
-  for (int g = 0; g < shape.rows; ++g) {
-    const int* row = shape.data + std::ptrdiff_t{3} * g;
-    in.require(row[0] >= 0 && row[1] > 0 && row[2] > 0 && sphere.data[4 * g + 3] > 0.0,
-               fmt::format("sphere grid {} has no rings, sectors or radius", g));
+  for (int g = 0; g < sizes.rows; ++g) {
+    const int* row = sizes.data + std::ptrdiff_t{3} * g;
+    const RoundShape shape = shape_of(values.data + std::ptrdiff_t{count} * g, Shape{});
+    in.require(row[0] >= 0 && row[1] > 0 && row[2] > 0 && area(shape) > 0.0,
+               fmt::format("{} grid {} has no rings, sectors or area", name, g));
     cells += std::int64_t{row[1]} * row[2];
-    in.require(cells < no_limit, "its sphere grids are too large");
+    in.require(cells < no_limit, fmt::format("its {} grids are too large", name));
+    mesh.round_grids.push_back(
+        {.facet = row[0], .shape = shape, .rings = row[1], .sectors = row[2]});
   }
-  const auto element =
-      in.integers(in.field(), "sphere_element", static_cast<int>(cells), -1, mesh.element_count());
+  const auto element = in.integers(in.field(), (name + "_element").c_str(), static_cast<int>(cells),
+                                   -1, mesh.element_count());
   auto next = element.begin();
-  for (int g = 0; g < shape.rows; ++g) {
-    const int* row = shape.data + std::ptrdiff_t{3} * g;
-    const double* ball = sphere.data + std::ptrdiff_t{4} * g;
-    const auto end = next + std::ptrdiff_t{row[1]} * row[2];
-    mesh.sphere_grids.push_back(
-        {.facet = row[0],
-         .sphere = {.center = {ball[0], ball[1], ball[2]}, .radius = ball[3]},
-         .rings = row[1],
-         .sectors = row[2],
-         .element = {next, end}});
+  for (std::size_t g = first; g < mesh.round_grids.size(); ++g) {
+    RoundGrid& grid = mesh.round_grids[g];
+    const auto end = next + std::ptrdiff_t{grid.rings} * grid.sectors;
+    grid.element = {next, end};
     next = end;
   }
+}
+
+void read_round_grids(const SolutionArrays& in, PatchMesh& mesh) {
+  constexpr int of_sphere = 4, of_frustum = 10;
+  read_grids<Sphere>(in, "sphere", "center_radius", of_sphere, mesh);
+  read_grids<Frustum>(in, "frustum", "base_axis_height_radii_inward", of_frustum, mesh);
+  std::ranges::sort(mesh.round_grids, {}, &RoundGrid::facet);
 }
 
 PatchMesh read_mesh(const SolutionArrays& in, int band_count) {
@@ -150,7 +172,7 @@ PatchMesh read_mesh(const SolutionArrays& in, int band_count) {
   const int vertex_count = static_cast<int>(positions.size());
   mesh.corners = read_corners(in, vertex_count);
   read_patches(in, band_count, mesh);
-  read_sphere_grids(in, mesh);
+  read_round_grids(in, mesh);
   build_topology(mesh, positions);
   // Stored normals replace the rebuilt ones, which may differ in the last bit.
   const auto normal = in.required<double>(in.points(), "normal", vertex_count, 3);

@@ -45,6 +45,50 @@ class SealedWriter : public vtkXMLPolyDataWriter {
   std::string preamble_;
 };
 
+std::vector<double> numbers_of(const Sphere& sphere) {
+  const Eigen::Vector3d& c = sphere.center;
+  return {c.x(), c.y(), c.z(), sphere.radius};
+}
+
+std::vector<double> numbers_of(const Frustum& frustum) {
+  const Eigen::Vector3d &b = frustum.base, &a = frustum.axis;
+  return {b.x(),
+          b.y(),
+          b.z(),
+          a.x(),
+          a.y(),
+          a.z(),
+          frustum.height,
+          frustum.base_radius,
+          frustum.top_radius,
+          frustum.inward ? 1.0 : 0.0};
+}
+
+// Adds the grids of one kind of round shape: arrays NAME_facet_rings_sectors, NAME_<numbers> and
+// NAME_element. Kinds that are not met are left out, but for spheres.
+template <class Shape>
+void add_grids(vtkFieldData* data, const PatchMesh& mesh, const std::string& name,
+               const std::string& numbers) {
+  std::vector<int> sizes, element;
+  std::vector<double> shapes;
+  std::ptrdiff_t grids = 0;
+  for (const RoundGrid& grid : mesh.round_grids) {
+    const auto* shape = std::get_if<Shape>(&grid.shape);
+    if (!shape) continue;
+    ++grids;
+    sizes.insert(sizes.end(), {grid.facet, grid.rings, grid.sectors});
+    const std::vector<double> values = numbers_of(*shape);
+    shapes.insert(shapes.end(), values.begin(), values.end());
+    element.insert(element.end(), grid.element.begin(), grid.element.end());
+  }
+  if (grids == 0 && !std::is_same_v<Shape, Sphere>) return;
+  add_values(data, (name + "_facet_rings_sectors").c_str(), sizes.data(), grids, 3);
+  add_values(data, (name + "_" + numbers).c_str(), shapes.data(), grids,
+             static_cast<int>(numbers_of(Shape{}).size()));
+  add_values(data, (name + "_element").c_str(), element.data(),
+             static_cast<std::ptrdiff_t>(element.size()));
+}
+
 void add_bands(vtkFieldData* data, const char* name, const BandArray& values, const Bands& bands) {
   auto* array =
       add_values(data, name, values.data(), values.rows(), static_cast<int>(values.cols()));
@@ -149,18 +193,8 @@ void add_patches(vtkFieldData* data, const PatchMesh& mesh, const RadiositySolut
 
   if (s.parts.count() > 0) add_values(data, "patch_part", s.parts.of_patch.data(), n);
 
-  std::vector<int> shape, element;
-  std::vector<double> sphere;
-  for (const SphereGrid& grid : mesh.sphere_grids) {
-    shape.insert(shape.end(), {grid.facet, grid.rings, grid.sectors});
-    const Eigen::Vector3d& c = grid.sphere.center;
-    sphere.insert(sphere.end(), {c.x(), c.y(), c.z(), grid.sphere.radius});
-    element.insert(element.end(), grid.element.begin(), grid.element.end());
-  }
-  const auto grids = static_cast<std::ptrdiff_t>(mesh.sphere_grids.size());
-  add_values(data, "sphere_facet_rings_sectors", shape.data(), grids, 3);
-  add_values(data, "sphere_center_radius", sphere.data(), grids, 4);
-  add_values(data, "sphere_element", element.data(), static_cast<std::ptrdiff_t>(element.size()));
+  add_grids<Sphere>(data, mesh, "sphere", "center_radius");
+  add_grids<Frustum>(data, mesh, "frustum", "base_axis_height_radii_inward");
 }
 
 void add_record(vtkFieldData* data, const RadiositySolution& s) {

@@ -14,10 +14,8 @@ ClearPanes::ClearPanes(const Scene& scene) : bands_(scene.bands.count()) {
     const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
     of_facet_.push_back(is_clear_pane(material) ? static_cast<int>(panes_.size()) : -1);
     if (of_facet_.back() < 0) continue;
-    Pane pane{.material = material};
-    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-      pane.center = sphere->center;
-    } else {
+    Pane pane{.material = material, .round = round_shape(surface)};
+    if (!pane.round) {
       const auto& polygons = std::get<PolygonMesh>(surface.shape);
       const auto facet = static_cast<std::size_t>(ref.facet);
       pane.normal = facet_normal(polygons, polygons.facets[facet]);
@@ -42,11 +40,8 @@ Spectrum ClearPanes::passed(const ElementCaster& caster, const Ray& first) const
     const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
     Eigen::Vector3d normal = pane.normal;
     const Eigen::Isometry3d* pose = caster.pose_of(hit.facet);
-    if (normal.isZero()) {
-      normal = (point - (pose ? *pose * pane.center : pane.center)).normalized();
-    } else if (pose) {
-      normal = pose->linear() * normal;
-    }
+    if (pane.round) normal = front_normal(*pane.round, pose ? pose->inverse() * point : point);
+    if (pose) normal = pose->linear() * normal;
     if (normal.dot(direction) > 0.0) normal = -normal;
     const FacetTextures* textures = caster.mesh().textures.get();
     std::optional<Material> here;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
+#include "scene/round_shape.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -25,8 +27,8 @@ class ClearPanes {
  private:
   struct Pane {
     Material material{};
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // zero for a sphere
-    Eigen::Vector3d center = Eigen::Vector3d::Zero();  // center of a sphere
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // zero for a round shape
+    std::optional<RoundShape> round{};
   };
   std::vector<Pane> panes_{};
   std::vector<int> of_facet_{};  // pane of each facet; -1: the facet is no clear pane

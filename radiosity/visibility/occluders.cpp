@@ -6,7 +6,7 @@
 #include <tuple>
 
 #include "mesh/patches/patch_outline.h"
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "scene/facet_textures.h"
 
 namespace lightwell {
@@ -33,7 +33,7 @@ class Sheets {
     facets_.resize(elements_.size());
     for (std::size_t f = 0; f < facets_.size(); ++f) facets_[f] = {static_cast<int>(f)};
     for (int p = 0; p < mesh.patch_count(); ++p) {
-      if (mesh.is_back[p] || sphere_grid_of(mesh, mesh.facet[mesh.first_element[p]])) continue;
+      if (mesh.is_back[p] || round_grid_of(mesh, mesh.facet[mesh.first_element[p]])) continue;
       for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
         elements_[mesh.facet[e]].push_back(e);
       }
@@ -164,7 +164,7 @@ Occluders::Occluders(const PatchMesh& mesh) {
   for (int v = 0; v < mesh.vertex_count(); ++v) bounds.extend(mesh.position(v));
   constexpr double touching = 1e-7;
   tolerance = touching * bounds.diagonal().norm();
-  for (const SphereGrid& grid : mesh.sphere_grids) spheres.push_back(grid.sphere);
+  for (const RoundGrid& grid : mesh.round_grids) round_shapes.push_back(grid.shape);
 
   const Sheets sheets(mesh, tolerance);
   for (int f = 0; f < sheets.facet_count(); ++f) {

@@ -25,8 +25,8 @@ struct Occluders {
   explicit Occluders(const PatchMesh& mesh);
 
   std::vector<Occluder> pieces{};
-  std::vector<int> sheet_of_facet{};  ///< per scene-wide facet; -1 for spheres
-  std::vector<Sphere> spheres{};
+  std::vector<int> sheet_of_facet{};  ///< per scene-wide facet; -1 for round shapes
+  std::vector<RoundShape> round_shapes{};
   /// Distance that counts as touching, m: 1e-7 of the diagonal of the mesh's bounds, the resolution
   /// of shadow rays in single precision.
   double tolerance = 0.0;

@@ -37,7 +37,7 @@ void PairShafts::find(int i, int j, Between& between) const {
 }
 
 bool PairShafts::has_exact(int i, int j, const Between& between) const {
-  return !between.may_be_sphere && between.pieces.size() <= most_pieces_between &&
+  return !between.may_be_round && between.pieces.size() <= most_pieces_between &&
          !ends_[i].parts.empty() && !ends_[j].parts.empty();
 }
 

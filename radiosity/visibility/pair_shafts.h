@@ -26,7 +26,7 @@ class PairShafts {
   /// polygons, and neither is covered.
   void find(int i, int j, Between& between) const;
   /// True if visible() can compute the pair. Conditions:
-  ///   - no sphere and no polygon with holes in between;
+  ///   - no round shape and no polygon with holes in between;
   ///   - at most most_pieces_between pieces in between;
   ///   - both patches are polygons that do not cross themselves.
   bool has_exact(int i, int j, const Between& between) const;

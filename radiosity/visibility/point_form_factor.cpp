@@ -106,7 +106,7 @@ PointFormFactors::Unsampled PointFormFactors::without_rays(const ShaftEnd& targe
   const ShaftEnd from = shafts_.end({point.position, point.normal, point.facet});
   Between between;
   shafts_.find(from, target, between);
-  result.needs_rays = between.may_be_sphere || between.pieces.size() > most_pieces_between ||
+  result.needs_rays = between.may_be_round || between.pieces.size() > most_pieces_between ||
                       shafts_.is_covered(from);
   if (result.needs_rays) return result;
   std::vector<Blocker> blockers;

@@ -61,7 +61,8 @@ class PointFormFactors {
   ///   - otherwise the visible share of the kernel cos cos / r^2, by shadow rays to stratified
   ///     points of the shooter.
   ///
-  /// Patches of spheres, and polygons that cross themselves, use by_discs with `max_rays` discs.
+  /// Patches of round shapes, and polygons that cross themselves, use by_discs with `max_rays`
+  /// discs.
   void by_closed_form(int shooter, std::span<const ReceivingPoint> points, std::span<double> F,
                       const PointFormFactorOptions& options = {}) const;
 

@@ -155,7 +155,7 @@ void Shafts::find(const ShaftEnd& a, const ShaftEnd& b, Between& between) const 
   find_in(inner_, a, b, between);
   // All that a patch, or a point on a facet, can see lies on one side of each outer piece's plane.
   if (a.sheet < 0 || b.sheet < 0) find_in(outer_, a, b, between);
-  if (between.pieces.empty() && occluders_.spheres.empty()) return;
+  if (between.pieces.empty() && occluders_.round_shapes.empty()) return;
   const double tolerance = occluders_.tolerance;
   constexpr double rounding = 1e-3;  // relative to the tolerance
   std::vector<HalfSpace> faces = {a.plane.opposite(), b.plane.opposite()};
@@ -167,17 +167,17 @@ void Shafts::find(const ShaftEnd& a, const ShaftEnd& b, Between& between) const 
     });
   });
   std::sort(between.pieces.begin(), between.pieces.end());
-  between.may_be_sphere =
+  between.may_be_round =
       std::ranges::any_of(between.pieces, [&](int p) { return occluders_.pieces[p].has_holes; });
   const Eigen::AlignedBox3d box = a.box.merged(b.box);
-  for (const Sphere& sphere : occluders_.spheres) {
-    const bool is_outside =
-        box.squaredExteriorDistance(sphere.center) >= sphere.radius * sphere.radius ||
-        std::any_of(faces.begin(), faces.end(), [&](const HalfSpace& face) {
-          return face.height(sphere.center) >= sphere.radius - tolerance;
-        });
+  for (const RoundShape& shape : occluders_.round_shapes) {
+    const Sphere ball = ball_around(shape);
+    const bool is_outside = box.squaredExteriorDistance(ball.center) >= ball.radius * ball.radius ||
+                            std::any_of(faces.begin(), faces.end(), [&](const HalfSpace& face) {
+                              return -reach(shape, -face.normal) - face.offset >= -tolerance;
+                            });
     if (!is_outside) {
-      between.may_be_sphere = true;
+      between.may_be_round = true;
       break;
     }
   }

@@ -22,10 +22,10 @@ struct ShaftEnd {
 
 /// Candidate occluders between two ends.
 struct Between {
-  std::vector<int> pieces{};   ///< indices of Occluders::pieces
-  bool may_be_sphere = false;  ///< a sphere, or a polygon with holes, which only rays resolve
+  std::vector<int> pieces{};  ///< indices of Occluders::pieces
+  bool may_be_round = false;  ///< a round shape, or a polygon with holes, which only rays resolve
 
-  bool is_nothing() const { return pieces.empty() && !may_be_sphere; }
+  bool is_nothing() const { return pieces.empty() && !may_be_round; }
 };
 
 /// Shaft culling (Haines & Wallace 1994): facets that may stand between two patches, or between a

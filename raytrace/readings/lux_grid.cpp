@@ -103,8 +103,7 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
   const auto* mesh = std::get_if<PolygonMesh>(&named.shape);
   if (!mesh || mesh->facets.empty()) {
     throw InputError(fmt::format(
-        "surface '{}' is a sphere, over which there is no plane grid; name a plane surface",
-        named.name));
+        "surface '{}' is round; over it there is no plane grid; name a plane surface", named.name));
   }
   const MeshPlane plane = largest(planes_of(*mesh, scene_bounds(scene).diagonal()), up);
   const std::vector<Edge> edges = outline_of(plane);

@@ -38,7 +38,7 @@ struct LuxGrid {
 ///
 /// The spacing follows from the longer side, or from the shorter side if their ratio exceeds 2:1
 /// (EN 12464-1). Throws InputError if:
-/// - the surface is a sphere;
+/// - the surface is a round shape;
 /// - the margin leaves nothing, or no point lies within the outline;
 /// - a side would have more than 1000 points.
 LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <optional>
 
+#include "mesh/patches/round_grid.h"
 #include "radiosity/emitters/sky_light.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/refine/illuminance_bound.h"
@@ -33,9 +34,7 @@ double diagonal(const PatchMesh& mesh) {
 // surface has no element, so the normal is that of its front.
 Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
                            const Eigen::Vector3d& at) {
-  for (const SphereGrid& grid : mesh.sphere_grids) {
-    if (grid.facet == hit.facet) return (at - grid.sphere.center).normalized();
-  }
+  if (const RoundGrid* grid = round_grid_of(mesh, hit.facet)) return front_normal(grid->shape, at);
   if (hit.element >= 0) return element_center(mesh, hit.element).normal;
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (mesh.facet[e] == hit.facet) return element_center(mesh, e).normal;

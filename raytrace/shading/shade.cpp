@@ -117,9 +117,9 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
     FacetShape shape{.material = surface.material};
-    if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
-      shape.is_sphere = true;
-      shape.point = sphere->center;
+    if (const auto round = round_shape(surface)) {
+      shape.round = static_cast<int>(round_shapes_.size());
+      round_shapes_.push_back(*round);
     } else {
       const auto& polygons = std::get<PolygonMesh>(surface.shape);
       const Facet& facet = polygons.facets[ref.facet];
@@ -133,7 +133,7 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     FacetShape& shape = facets_[f];
     shape.smooth_surface = joined[f];
-    shape.chain = chain_key(shape.is_sphere || normals_.is_given(static_cast<int>(f)), joined[f],
+    shape.chain = chain_key(shape.round >= 0 || normals_.is_given(static_cast<int>(f)), joined[f],
                             shape.normal, shape.point, diagonal);
   }
 }
@@ -480,8 +480,8 @@ RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& h
                   .rest_normal = facet.normal,
                   .pose = caster.pose_of(hit.facet)};
   at.rest = at.pose ? Eigen::Vector3d(at.pose->inverse() * at.position) : at.position;
-  if (facet.is_sphere) {
-    at.rest_normal = (at.rest - facet.point).normalized();
+  if (facet.round >= 0) {
+    at.rest_normal = front_normal(round_shapes_[static_cast<std::size_t>(facet.round)], at.rest);
   } else {
     // The point is projected onto the facet's plane in double, since the caster's distances are
     // float.

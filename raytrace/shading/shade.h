@@ -25,6 +25,7 @@
 #include "scene/facet_normals.h"
 #include "scene/facet_relief.h"
 #include "scene/facet_textures.h"
+#include "scene/round_shape.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
@@ -176,10 +177,10 @@ class RayTree {
   /// Geometry and material of a facet.
   struct FacetShape {
     int material = 0;
-    int smooth_surface = 0;  ///< the same for facets that share vertices
-    bool is_sphere = false;
+    int smooth_surface = 0;   ///< the same for facets that share vertices
+    int round = -1;           ///< index into round_shapes_; -1: a polygon
     std::uint64_t chain = 0;  ///< the same for facets of one plane or of one curved surface
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the plane, or the sphere's centre
+    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the plane
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   };
   /// A point hit by a ray. The normal is unit and on the side that the ray came from.
@@ -384,6 +385,7 @@ class RayTree {
   CoatedBases bases_;
   bool absorbs_ = false;  ///< whether any body absorbs light
   std::vector<FacetShape> facets_{};
+  std::vector<RoundShape> round_shapes_{};
 };
 
 }  // namespace lightwell

@@ -28,7 +28,7 @@ ShadowOptions shadows_for(ShadowOptions shadows, float weight, int fewest) {
 // Normals of the file if given; else normals of the mesh's vertices, which round off a tessellated
 // surface and equal the facet's normal on a flat one.
 Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const ShadingPoint& at) const {
-  if (facets_[hit.facet].is_sphere) return at.normal;
+  if (facets_[hit.facet].round >= 0) return at.normal;
   if (normals_.is_given(hit.facet)) {
     return at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
   }

@@ -146,7 +146,7 @@ bool CoplanarGroups::lie_parallel(const Eigen::Vector3d& a, const Eigen::Vector3
   return std::abs(a.dot(b)) > cosine;
 }
 
-// Planes of all groups but spheres, by distance from the middle of the geometry.
+// Planes of all groups but round shapes, by distance from the middle of the geometry.
 std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry& geometry) {
   int groups = 0;
   for (const int g : geometry.group) groups = std::max(groups, g + 1);

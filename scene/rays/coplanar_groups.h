@@ -26,7 +26,7 @@ class CoplanarGroups {
   CoplanarGroups(const CastGeometry& geometry, double tolerance);
 
   /// Unit normal of a group's plane, of either sign; groups that lie on each other have the same
-  /// sign. Zero for a sphere, or for a number that is no group.
+  /// sign. Zero for a round shape, or for a number that is no group.
   const Eigen::Vector3d& normal(int group) const {
     return is_known(group) ? groups_[group].normal : none_;
   }

@@ -12,8 +12,8 @@
 
 namespace lightwell {
 
-// Context of a query, which Embree passes on to callbacks: the sphere callback needs the ray's
-// origin in double precision and the ray's group.
+// Context of a query, which Embree passes on to callbacks: the callback of round shapes needs the
+// ray's origin in double precision and the ray's group.
 #if RTC_VERSION_MAJOR >= 4
 using EmbreeContext = RTCRayQueryContext;
 #else

@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "scene/parallel.h"
+#include "scene/round_shape.h"
 
 namespace lightwell {
 namespace {
@@ -40,7 +41,7 @@ Eigen::Vector3d middle(const CastGeometry& source, std::span<const int> polygon)
 EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
   triangles = static_cast<int>(geometry.triangles.size());
   quads = static_cast<int>(geometry.quads.size());
-  const int total = triangles + quads + static_cast<int>(geometry.spheres.size());
+  const int total = triangles + quads + static_cast<int>(geometry.round_shapes.size());
   if (static_cast<int>(geometry.group.size()) != total) {
     throw std::invalid_argument(
         fmt::format("RayCaster: {} groups given for {} primitives", geometry.group.size(), total));
@@ -49,10 +50,7 @@ EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
 
   Eigen::AlignedBox3d box;
   for (const auto& v : geometry.vertices) box.extend(v);
-  for (const auto& s : geometry.spheres) {
-    box.extend(s.center - Eigen::Vector3d::Constant(s.radius));
-    box.extend(s.center + Eigen::Vector3d::Constant(s.radius));
-  }
+  for (const RoundShape& shape : geometry.round_shapes) box.extend(bounds(shape));
   if (!box.isEmpty()) center = box.center();
   constexpr double roundings = 4.0;  // of the origin, the vertices and the intersection
   if (!box.isEmpty()) {
@@ -85,7 +83,7 @@ EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
   rtcSetSceneFlags(scene, static_cast<RTCSceneFlags>(RTC_SCENE_FLAG_ROBUST | filter_flag));
   rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
   add_polygons(geometry);
-  add_spheres(geometry);
+  add_round_shapes(geometry);
   rtcCommitScene(scene);
   check();
   find_hidden(geometry);
@@ -207,14 +205,14 @@ void EmbreeScene::skip_holes(const RTCFilterFunctionNArguments* args) {
   }
 }
 
-void EmbreeScene::add_spheres(const CastGeometry& source) {
-  if (source.spheres.empty()) return;
-  sphere_set = {
-      .spheres = source.spheres,
-      .group = {group.end() - static_cast<std::ptrdiff_t>(source.spheres.size()), group.end()},
+void EmbreeScene::add_round_shapes(const CastGeometry& source) {
+  if (source.round_shapes.empty()) return;
+  round_set = {
+      .shapes = source.round_shapes,
+      .group = {group.end() - static_cast<std::ptrdiff_t>(source.round_shapes.size()), group.end()},
       .center = center,
       .rounding = rounding};
-  attach(sphere_geometry(device, sphere_set), spheres_id);
+  attach(round_geometry(device, round_set), round_id);
 }
 
 // Groups that lie on a plane at `place`, group `on` itself included.
@@ -224,7 +222,7 @@ std::vector<int> EmbreeScene::groups_at(const Eigen::Vector3d& place, int on) co
   } search;
   const Eigen::Vector3d& normal = planes->normal(on);
   const Ray ray{.origin = place - 8.0 * rounding * normal, .direction = normal};
-  init(search, &ray);  // read by the callback of spheres
+  init(search, &ray);  // read by the callback of round shapes
   search.caster = this;
   const Eigen::Vector3d from = ray.origin - center;
   RTCRayHit query{};

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "scene/rays/cast_spheres.h"
+#include "scene/rays/cast_round_shapes.h"
 #include "scene/rays/cell_sheets.h"
 #include "scene/rays/coplanar_groups.h"
 #include "scene/rays/embree_queries.h"
@@ -16,7 +16,7 @@ namespace lightwell {
 struct EmbreeScene {
   // Embree's geometry IDs. Polygons with holes are a geometry of their own: its filter costs the
   // others nothing.
-  enum GeometryId : unsigned { polygons_id, spheres_id, porous_id };
+  enum GeometryId : unsigned { polygons_id, round_id, porous_id };
   enum Hidden : std::uint8_t { from_front = 1, from_back = 2 };
 
   explicit EmbreeScene(const CastGeometry& geometry);
@@ -32,7 +32,7 @@ struct EmbreeScene {
   std::unique_ptr<CoplanarGroups> planes;
   std::vector<std::uint8_t> hidden;  // per triangle and quad: sides hidden by another group
   bool is_any_hidden = false;        // saves rays the access to `hidden`
-  SphereSet sphere_set;
+  RoundShapeSet round_set;
   int triangles = 0, quads = 0;
   // Primitives of Embree's two geometries of polygons.
   std::vector<int> solid, porous;
@@ -42,7 +42,7 @@ struct EmbreeScene {
   // Number of the primitive that was met. For a sheet: any cell, since all cells are of one group
   // and nothing lies on them.
   int primitive(const RTCHit& hit) const {
-    if (hit.geomID == spheres_id) return static_cast<int>(hit.primID) + triangles + quads;
+    if (hit.geomID == round_id) return static_cast<int>(hit.primID) + triangles + quads;
     return (hit.geomID == porous_id ? porous : solid)[hit.primID];
   }
 
@@ -67,7 +67,7 @@ struct EmbreeScene {
   RTCGeometry polygon_geometry(const CastGeometry& source, std::span<const int> primitives,
                                std::span<const CellSheet> with) const;
   static void skip_holes(const RTCFilterFunctionNArguments* args);
-  void add_spheres(const CastGeometry& source);
+  void add_round_shapes(const CastGeometry& source);
   void find_hidden(const CastGeometry& source);
   std::vector<int> groups_at(const Eigen::Vector3d& place, int on) const;
 };

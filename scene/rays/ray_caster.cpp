@@ -60,7 +60,7 @@ struct RayCaster::Impl : EmbreeScene {
   // A ray ends before the plane of its target, as it starts past its own plane. The target would
   // otherwise answer every other unblocked ray, which would be cast three times. Objects that stand
   // on the target must still hide the target, so rays that graze the target keep their full length
-  // and are cast again. Spheres have no plane.
+  // and are cast again. Round shapes have no plane.
   double before_target(const Ray& ray) const {
     constexpr double at_most = 1e-4;  // of the ray's length
     if (ray.target_group < 0) return ray.t_max;
@@ -87,7 +87,7 @@ struct RayCaster::Impl : EmbreeScene {
   bool counts(const RTCHit& hit, float t, const Ray& ray, int target) const {
     const bool is_past = target >= 0 && t > static_cast<float>(ray.t_max);
     const int p = primitive(hit), g = group[p];
-    if (hit.geomID == spheres_id) return target < 0 || (g != target && !is_past);
+    if (hit.geomID == round_id) return target < 0 || (g != target && !is_past);
     if (g == ray.origin_group || (target >= 0 && g == target)) return false;
     if (ray.origin_group >= 0) {
       const double along = planes->normal(ray.origin_group).dot(ray.direction);
@@ -185,13 +185,13 @@ struct RayCaster::Impl : EmbreeScene {
       clear(query.hit);
       intersect(scene, context, query, skip_what_does_not_count);
       if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-      if (query.hit.geomID != spheres_id || target < 0 || group[primitive(query.hit)] != target) {
+      if (query.hit.geomID != round_id || target < 0 || group[primitive(query.hit)] != target) {
         Hit hit;
         set_hit(ray, query, hit);
         return hit;
       }
-      // Spheres have no filter. tnear is at least a normal number: Embree flushes denormals and
-      // would meet the same point again.
+      // Round shapes have no filter. tnear is at least a normal number: Embree flushes denormals
+      // and would meet the same point again.
       query.ray.tnear =
           std::max(std::numeric_limits<float>::min(),
                    std::nextafter(query.ray.tfar, std::numeric_limits<float>::infinity()));
@@ -242,7 +242,7 @@ struct RayCaster::Impl : EmbreeScene {
     for (int i = 0; i < lanes; ++i) {
       const std::size_t number = begin + static_cast<std::size_t>(i);
       blocked[number] = shadow.tfar[i] < 0.0f;
-      if (!blocked[number] || sphere_set.spheres.empty()) continue;
+      if (!blocked[number] || round_set.shapes.empty()) continue;
       if (suspects.count == packet_size) confirm(rays, suspects, blocked);
       const int to = suspects.count++;
       suspects.number[static_cast<std::size_t>(to)] = number;
@@ -328,10 +328,11 @@ struct RayCaster::Impl : EmbreeScene {
       hit.u = cell.u;
       hit.v = cell.v;
     }
-    if (query.hit.geomID == spheres_id) {
-      const Sphere& sphere = sphere_set.spheres[query.hit.primID];
-      hit.t = sphere_root(sphere, ray, group[p] == ray.origin_group);
-      hit.from_back = (ray.origin + hit.t * ray.direction - sphere.center).dot(ray.direction) > 0.0;
+    if (query.hit.geomID == round_id) {
+      const RoundShape& shape = round_set.shapes[query.hit.primID];
+      hit.t = round_root(shape, ray, group[p] == ray.origin_group);
+      const Eigen::Vector3d at = ray.origin + hit.t * ray.direction;
+      hit.from_back = front_normal(shape, at).dot(ray.direction) > 0.0;
     } else {
       const Eigen::Vector3d normal(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z);
       hit.t = query.ray.tfar;
@@ -371,8 +372,8 @@ int RayCaster::triangle_count() const {
 int RayCaster::quad_count() const {
   return impl_->quads;
 }
-int RayCaster::sphere_count() const {
-  return static_cast<int>(impl_->sphere_set.spheres.size());
+int RayCaster::round_count() const {
+  return static_cast<int>(impl_->round_set.shapes.size());
 }
 
 }  // namespace lightwell

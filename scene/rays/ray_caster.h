@@ -8,22 +8,23 @@
 #include <span>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/round_shape.h"
 
 namespace lightwell {
 
-/// Geometry of a RayCaster. Primitives are numbered triangles first, then quads, then spheres.
+/// Geometry of a RayCaster. Primitives are numbered triangles first, then quads, then round
+/// shapes.
 ///
 /// A *group* joins primitives that cannot see each other because they lie in one plane (a facet),
-/// or are one sphere. A ray never meets the group it starts from, whatever rounding does to the
-/// ray's origin. Where groups lie on each other, the group that is met first hides the others (see
-/// CoplanarGroups for the order). If the order is not known, neither group hides the other from a
-/// ray that starts on one of the two.
+/// or are one round shape. A ray never meets the group it starts from, whatever rounding does to
+/// the ray's origin. Where groups lie on each other, the group that is met first hides the others
+/// (see CoplanarGroups for the order). If the order is not known, neither group hides the other
+/// from a ray that starts on one of the two.
 struct CastGeometry {
   std::vector<Eigen::Vector3d> vertices{};
   std::vector<std::array<int, 3>> triangles{};
   std::vector<std::array<int, 4>> quads{};  ///< planar, convex, in order around
-  std::vector<Sphere> spheres{};
+  std::vector<RoundShape> round_shapes{};
   std::vector<int> group{};  ///< group of each primitive, >= 0
   /// True if rays pass through a point of a group that has holes. Called from many threads.
   std::function<bool(int group, const Eigen::Vector3d& point)> is_hole{};
@@ -35,8 +36,8 @@ struct Ray {
   Eigen::Vector3d direction =
       Eigen::Vector3d::UnitZ();  ///< any length > 0; distances t are in multiples of the length
   double t_max = std::numeric_limits<double>::infinity();
-  int origin_group =
-      -1;  ///< group the ray starts on (a ray inside a sphere still meets its far side)
+  int origin_group = -1;  ///< group the ray starts on (a ray inside a round shape still meets its
+                          ///< far side)
   int target_group = -1;  ///< for occluded(): group that does not count as an occluder
 };
 
@@ -45,9 +46,9 @@ struct Hit {
   int group = -1;      ///< of the primitive
   double t = std::numeric_limits<double>::infinity();
   /// Position on the primitive. Triangle (v0,v1,v2): weights (1-u-v, u, v). Quad (v0..v3):
-  /// bilinear, u along v0-v1, v along v0-v3. Sphere: 0.
+  /// bilinear, u along v0-v1, v along v0-v3. Round shape: 0.
   float u = 0.0f, v = 0.0f;
-  bool from_back = false;  ///< the ray met the clockwise side, or a sphere's inside
+  bool from_back = false;  ///< the ray met the clockwise side, or a round shape's back
 };
 
 /// Answers batches of rays by Embree, which no other room includes. Immutable once built, and safe
@@ -56,7 +57,8 @@ struct Hit {
 ///
 /// Triangles and quads are watertight along shared edges (Embree's robust mode). Of rays aimed at a
 /// vertex itself, to the last float digit, one in 1e4 slips through. Small quads in even rows and
-/// columns of a group are cast as one (see CellSheet). Spheres are intersected in double precision.
+/// columns of a group are cast as one (see CellSheet). Round shapes are intersected in double
+/// precision.
 class RayCaster {
  public:
   /// Throws std::invalid_argument if `group` does not match the primitives, std::runtime_error if
@@ -83,7 +85,7 @@ class RayCaster {
 
   int triangle_count() const;
   int quad_count() const;
-  int sphere_count() const;
+  int round_count() const;
 
  private:
   struct Impl;

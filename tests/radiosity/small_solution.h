@@ -58,13 +58,13 @@ inline SolvedScene small_solution(int band_count) {
   mesh.material = {1, 2};
   mesh.facet = {7, 7, 9};
   mesh.is_back = {0, 1};
-  mesh.sphere_grids = {
+  mesh.round_grids = {
       {.facet = 3,
-       .sphere = {{0.1, 0.2, 0.3}, 0.7},
+       .shape = Sphere{{0.1, 0.2, 0.3}, 0.7},
        .rings = 1,
        .sectors = 3,
        .element = {0, 1, 2}},
-      {.facet = 5, .sphere = {{1, 2, 3}, 0.1}, .rings = 2, .sectors = 1, .element = {2, 0}}};
+      {.facet = 5, .shape = Sphere{{1, 2, 3}, 0.1}, .rings = 2, .sectors = 1, .element = {2, 0}}};
   build_topology(mesh, positions);
 
   RadiositySolution s;

@@ -79,8 +79,8 @@ class SceneBuilder {
     return scene_;
   }
 
- private:
-  SceneBuilder& add(const Paint& paint, std::variant<PolygonMesh, Sphere> shape) {
+  /// A surface of any shape.
+  SceneBuilder& add(const Paint& paint, SurfaceShape shape) {
     const Bands& bands = scene_.bands;
     Material material{.name = "paint " + std::to_string(scene_.materials.size()),
                       .reflectance = constant_spectrum(bands, paint.reflectance),
@@ -113,6 +113,7 @@ class SceneBuilder {
     return *this;
   }
 
+ private:
   Scene scene_{};
 };
 

@@ -11,7 +11,7 @@
 
 #include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/patches/mesh_bounds.h"
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "radiosity/refine/illuminance_bound.h"
 #include "raytrace/display/display.h"
 #include "scene/errors.h"
@@ -134,6 +134,11 @@ void add_face(const PatchMesh& mesh, const std::vector<SideUse>& use, const Band
   model.black_behind.push_back(twin >= 0 && use[twin] == SideUse::left_out ? 1 : 0);
 }
 
+std::optional<Sphere> sphere_of(const RoundGrid* grid) {
+  const auto* sphere = grid ? std::get_if<Sphere>(&grid->shape) : nullptr;
+  return sphere ? std::optional(*sphere) : std::nullopt;
+}
+
 /// Fills parts, materials and faces. Returns the mesh's vertex for each vertex of the model.
 std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
                            const std::vector<SideUse>& use, const BandArray& radiance,
@@ -146,7 +151,7 @@ std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
     const std::string name = s < scene.surfaces.size() ? scene.surfaces[s].name : std::string();
     const int first_face = model.face_count(), first_vertex = vertex.count();
     int map = -1;
-    const SphereGrid* const grid = sphere_grid_of(mesh, mesh.facet[elements.front()]);
+    const RoundGrid* const grid = round_grid_of(mesh, mesh.facet[elements.front()]);
     vertex.begin_group();
     for (const int e : elements) {
       const int facet = mesh.facet[e];
@@ -161,7 +166,7 @@ std::vector<int> add_parts(const PatchMesh& mesh, const Scene& scene,
          .material = material(names ? scene.surfaces[s].material
                                     : mesh.material[mesh.patch[elements.front()]]),
          .picture = side.picture,
-         .sphere = grid ? std::optional(grid->sphere) : std::nullopt,
+         .sphere = sphere_of(grid),
          .is_back = side.is_back,
          .first_vertex = first_vertex,
          .vertex_count = vertex.count() - first_vertex,

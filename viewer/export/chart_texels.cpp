@@ -7,7 +7,7 @@
 #include <numbers>
 #include <utility>
 
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 
 namespace lightwell {
 namespace {
@@ -176,7 +176,7 @@ std::vector<ChartTexels::Texel> ChartTexels::flat_texels() const {
 std::vector<ChartTexels::Texel> ChartTexels::sphere_texels() const {
   const LightmapChart& chart = layout_.charts[chart_];
   const ChartRectangle& place = layout_.place[chart_];
-  const SphereGrid& grid = mesh_.sphere_grids[chart.sphere];
+  const RoundGrid& grid = mesh_.round_grids[chart.sphere];
   std::map<int, int> face_of;  // keyed by the element of the outside
   const bool is_back = mesh_.is_back[mesh_.patch[model_.element[chart.faces.front()]]] != 0;
   for (const int f : chart.faces) {
@@ -189,7 +189,7 @@ std::vector<ChartTexels::Texel> ChartTexels::sphere_texels() const {
     for (int x = -1; x <= place.width; ++x) {
       const double turn = (x + 0.5) / place.width;
       const double column = (turn - std::floor(turn)) * grid.sectors;
-      SphereGridPoint at;
+      RoundGridPoint at;
       at.ring = std::clamp(static_cast<int>(row), 0, grid.rings - 1);
       at.sector = std::clamp(static_cast<int>(column), 0, grid.sectors - 1);
       at.u = std::clamp(column - at.sector, 0.0, 1.0);
@@ -197,7 +197,7 @@ std::vector<ChartTexels::Texel> ChartTexels::sphere_texels() const {
       const auto found = face_of.find(grid.element[at.ring * grid.sectors + at.sector]);
       if (found == face_of.end()) continue;
       const int f = found->second, count = model_.corner_count(f);
-      Eigen::Array4f of_mesh = sphere_weights(grid, at);
+      Eigen::Array4f of_mesh = round_weights(grid, at);
       if (is_back) of_mesh = turned_weights(of_mesh, count);
       Texel texel{.x = place.x + x,
                   .y = place.y + y,

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "mesh/elements/element_caster.h"
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "scene/sampling.h"
 #include "viewer/export/chart_neighbours.h"
 #include "viewer/export/chart_plane.h"
@@ -150,12 +150,12 @@ void cut_and_add(const BakedModel& model, const ChartNeighbours& near, std::vect
 /// pole has a vertex for each sector.
 LightmapChart unroll(const BakedModel& model, const PatchMesh& mesh, int sphere,
                      std::vector<int> faces) {
-  const SphereGrid& grid = mesh.sphere_grids[sphere];
+  const RoundGrid& grid = mesh.round_grids[sphere];
   std::map<int, int> cell_of;
   for (std::size_t i = 0; i < grid.element.size(); ++i) {
     cell_of[grid.element[i]] = static_cast<int>(i);
   }
-  const double r = grid.sphere.radius;
+  const auto& [center, r] = std::get<Sphere>(grid.shape);
   LightmapChart chart;
   chart.sphere = sphere;
   chart.size = {2.0 * std::numbers::pi * r, std::numbers::pi * r};
@@ -168,7 +168,7 @@ LightmapChart unroll(const BakedModel& model, const PatchMesh& mesh, int sphere,
     std::array<int, 4> corners{-1, -1, -1, -1};
     for (int c = 0; c < model.corner_count(f); ++c) {
       const int v = model.faces[f][c];
-      const Vector3d towards = (model.position[v] - grid.sphere.center).normalized();
+      const Vector3d towards = (model.position[v] - center).normalized();
       const double across = std::hypot(towards.x(), towards.y());
       const bool is_pole = !(across > 0.25 * std::numbers::pi / grid.rings);
       // Longitude from the middle of this cell, in sectors, the shorter way around.
@@ -200,8 +200,9 @@ bool is_dark(const BakedModel& model, const LightmapChart& chart) {
 }
 
 int sphere_of(const PatchMesh& mesh, int element) {
-  const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[element]);
-  return grid ? static_cast<int>(grid - mesh.sphere_grids.data()) : -1;
+  const RoundGrid* grid = round_grid_of(mesh, mesh.facet[element]);
+  const bool is_sphere = grid && std::holds_alternative<Sphere>(grid->shape);
+  return is_sphere ? static_cast<int>(grid - mesh.round_grids.data()) : -1;
 }
 
 /// Whether other surfaces cover all faces of a chart.

@@ -23,7 +23,7 @@ struct LightmapChart {
   /// Projection of a chart that is no sphere: p is at ((p - origin).x_axis, (p - origin).y_axis).
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d x_axis = Eigen::Vector3d::UnitX(), y_axis = Eigen::Vector3d::UnitY();
-  int sphere = -1;       ///< index into PatchMesh::sphere_grids; -1: no sphere
+  int sphere = -1;       ///< index into PatchMesh::round_grids; -1: no sphere
   bool is_dark = false;  ///< no light at any vertex
   /// Chart around the footprint of another body: a covered dark chart lies in its host's gap, so
   /// that no dark texels show at the foot of the body. -1: none.

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mesh/patches/pictured_emission.h"
-#include "mesh/patches/sphere_grid.h"
+#include "mesh/patches/round_grid.h"
 #include "mesh/patches/translucency.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/openings/portals.h"
@@ -70,10 +70,9 @@ GatherPoint gather_point(const BakedModel& model, const PatchMesh& mesh, const T
     point.normal += weight * mesh.vertex_normal[model.mesh_vertex[corners[c]]];
   }
   const PatchPoint center = element_center(mesh, e);
-  if (const SphereGrid* grid = sphere_grid_of(mesh, mesh.facet[e])) {
-    const Eigen::Vector3d out = (point.position - grid->sphere.center).normalized();
-    point.position = grid->sphere.center + grid->sphere.radius * out;
-    point.normal = out.dot(center.normal) > 0.0 ? out : Eigen::Vector3d(-out);
+  if (const RoundGrid* grid = round_grid_of(mesh, mesh.facet[e])) {
+    point.position = nearest_on(grid->shape, point.position);
+    point.normal = round_normal(mesh, *grid, mesh.patch[e], point.position);
   } else {
     point.position -= center.normal.dot(point.position - center.position) * center.normal;
     point.normal = point.normal.norm() > 0.0 ? point.normal.normalized() : center.normal;

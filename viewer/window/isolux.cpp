@@ -26,7 +26,7 @@ namespace {
 constexpr std::size_t most_labels = 60;
 
 // The drawn triangles without glass, with illuminance (lx) and normals at their corners.
-vtkSmartPointer<vtkPolyData> lit_triangles(const PatchMesh& mesh, const FineSpheres& spheres,
+vtkSmartPointer<vtkPolyData> lit_triangles(const PatchMesh& mesh, const FineRoundShapes& spheres,
                                            const std::vector<ElementKind>& kinds,
                                            const std::vector<float>& lux,
                                            const BandArray& radiance) {
@@ -40,7 +40,7 @@ vtkSmartPointer<vtkPolyData> lit_triangles(const PatchMesh& mesh, const FineSphe
     light->InsertNextValue(lux[static_cast<std::size_t>(v)]);
     normals->InsertNextTuple(mesh.vertex_normal[static_cast<std::size_t>(v)].data());
   }
-  for (const FineSpheres::Point& point : spheres.points) {
+  for (const FineRoundShapes::Point& point : spheres.points) {
     float value = 0.0f;
     for (int c = 0; c < 4; ++c) {
       if (point.vertex[c] >= 0) value += point.weight[c] * lux[point.vertex[c]];
@@ -50,7 +50,7 @@ vtkSmartPointer<vtkPolyData> lit_triangles(const PatchMesh& mesh, const FineSphe
     normals->InsertNextTuple(point.normal.data());
   }
   vtkNew<vtkCellArray> triangles;
-  for (const FineSpheres::Face& face : spheres.faces) {
+  for (const FineRoundShapes::Face& face : spheres.faces) {
     if (kinds[face.element] == ElementKind::glass) continue;
     for (int c = 1; c < 3 && face.corner[c + 1] >= 0; ++c) {
       triangles->InsertNextCell(3);
@@ -129,7 +129,7 @@ void IsoluxLines::add_to(vtkRenderer* renderer) const {
   for (const auto& text : texts_) renderer->AddViewProp(text);
 }
 
-void IsoluxLines::set(const PatchMesh& mesh, const FineSpheres& spheres,
+void IsoluxLines::set(const PatchMesh& mesh, const FineRoundShapes& spheres,
                       const std::vector<ElementKind>& kinds, const std::vector<float>& lux,
                       const BandArray& radiance, const std::vector<double>& levels, double lift) {
   segments_.clear();

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "viewer/window/fine_spheres.h"
+#include "viewer/window/fine_round_shapes.h"
 #include "viewer/window/visible_hits.h"
 
 class vtkActor;
@@ -24,9 +24,9 @@ class IsoluxLines {
   void add_to(vtkRenderer* renderer) const;
   /// Contours the illuminance at `levels` (lx). `lux` has one value a vertex; `radiance` (vertices
   /// x bands) splits quads as SolutionActor does. `lift` is the distance of lines from surfaces, m.
-  void set(const PatchMesh& mesh, const FineSpheres& spheres, const std::vector<ElementKind>& kinds,
-           const std::vector<float>& lux, const BandArray& radiance,
-           const std::vector<double>& levels, double lift);
+  void set(const PatchMesh& mesh, const FineRoundShapes& spheres,
+           const std::vector<ElementKind>& kinds, const std::vector<float>& lux,
+           const BandArray& radiance, const std::vector<double>& levels, double lift);
   void show(bool shown);
   /// Draws the lines that face the camera, and the labels that nothing hides. No effect while the
   /// lines are hidden.

@@ -7,16 +7,16 @@
 
 #include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/patches/pictured_emission.h"
+#include "mesh/patches/round_grid.h"
 #include "scene/facet_textures.h"
 
 namespace lightwell {
 namespace {
 
 Eigen::Vector3d normal_at(const PatchMesh& mesh, const VisibleHit& seen) {
-  for (const SphereGrid& grid : mesh.sphere_grids) {
-    if (grid.facet != seen.hit.facet) continue;
-    const Eigen::Vector3d outward = (seen.position - grid.sphere.center).normalized();
-    return seen.hit.from_back ? Eigen::Vector3d(-outward) : outward;
+  if (const RoundGrid* grid = round_grid_of(mesh, seen.hit.facet)) {
+    const Eigen::Vector3d front = front_normal(grid->shape, seen.position);
+    return seen.hit.from_back ? Eigen::Vector3d(-front) : front;
   }
   return element_center(mesh, seen.hit.element).normal;
 }

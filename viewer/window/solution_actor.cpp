@@ -89,7 +89,8 @@ void set_program(vtkActor* actor, bool is_behind, bool shows_classes) {
 }
 
 /// Edges of the spheres' elements, along the exact sphere.
-vtkSmartPointer<vtkActor> make_outlines(vtkPoints* points, int first, const FineSpheres& spheres) {
+vtkSmartPointer<vtkActor> make_outlines(vtkPoints* points, int first,
+                                        const FineRoundShapes& spheres) {
   vtkNew<vtkCellArray> lines;
   for (const auto& [from, to] : spheres.outlines) {
     const vtkIdType ends[2] = {first + from, first + to};
@@ -138,11 +139,11 @@ vtkSmartPointer<vtkTexture> make_texture(const DrawnPicture& picture) {
 
 }  // namespace
 
-SolutionActor::SolutionActor(const PatchMesh& mesh, const FineSpheres& spheres,
+SolutionActor::SolutionActor(const PatchMesh& mesh, const FineRoundShapes& spheres,
                              const std::vector<ElementKind>& kinds, const BandArray& radiance,
                              const DrawnPictures& drawn)
     : spheres_(spheres), colors_(vtkSmartPointer<vtkUnsignedCharArray>::New()) {
-  // Points: the mesh's vertices, then the points of FineSpheres.
+  // Points: the mesh's vertices, then the points of FineRoundShapes.
   const vtkIdType count = mesh.vertex_count() + static_cast<vtkIdType>(spheres.points.size());
   colors_->SetNumberOfComponents(3);
   colors_->SetNumberOfTuples(count);
@@ -214,7 +215,7 @@ vtkSmartPointer<vtkCellArray> SolutionActor::polygons_of(const PatchMesh& mesh, 
                                                          const BandArray& radiance) const {
   auto polygons = vtkSmartPointer<vtkCellArray>::New();
   if (part.is_fine) {
-    for (const FineSpheres::Face& face : spheres_.faces) {
+    for (const FineRoundShapes::Face& face : spheres_.faces) {
       if (kinds[face.element] != part.kind) continue;
       polygons->InsertNextCell(face.corner[3] < 0 ? 3 : 4);
       for (const int point : face.corner) {
@@ -268,7 +269,7 @@ void SolutionActor::set_colors(const std::vector<std::uint8_t>& plain,
                                const std::vector<std::uint8_t>& codes) {
   show_classes(false);
   unsigned char* next = std::copy(plain.begin(), plain.end(), colors_->GetPointer(0));
-  for (const FineSpheres::Point& point : spheres_.points) {
+  for (const FineRoundShapes::Point& point : spheres_.points) {
     Eigen::Array3f color = Eigen::Array3f::Constant(0.5f);  // rounds to the nearest byte
     for (int c = 0; c < 4; ++c) {
       if (point.vertex[c] < 0) continue;
@@ -298,7 +299,7 @@ void SolutionActor::set_classes(const std::vector<float>& lux) {
     next = std::copy(code.begin(), code.end(), next);
   };
   for (const float value : lux) append(value);
-  for (const FineSpheres::Point& point : spheres_.points) {
+  for (const FineRoundShapes::Point& point : spheres_.points) {
     float value = 0.0f;
     for (int c = 0; c < 4; ++c) {
       if (point.vertex[c] < 0) continue;

@@ -8,7 +8,7 @@
 #include "mesh/patches/patch_mesh.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/drawn_pictures.h"
-#include "viewer/window/fine_spheres.h"
+#include "viewer/window/fine_round_shapes.h"
 
 class vtkActor;
 class vtkCellArray;
@@ -27,7 +27,7 @@ class SolutionActor {
   /// `radiance` (vertices x bands) splits each quad along the diagonal whose ends differ less, so
   /// that the crease follows the light. Lit elements show their textures. Keeps a reference to
   /// `spheres`.
-  SolutionActor(const PatchMesh& mesh, const FineSpheres& spheres,
+  SolutionActor(const PatchMesh& mesh, const FineRoundShapes& spheres,
                 const std::vector<ElementKind>& kinds, const BandArray& radiance,
                 const DrawnPictures& drawn);
   ~SolutionActor();
@@ -51,7 +51,7 @@ class SolutionActor {
  private:
   struct Part {
     ElementKind kind;
-    bool is_fine = false;  ///< faces of FineSpheres; outlines_ has their elements' edges
+    bool is_fine = false;  ///< faces of FineRoundShapes; outlines_ has their elements' edges
     vtkSmartPointer<vtkPolyData> data;
     vtkSmartPointer<vtkActor> actor;
   };
@@ -72,7 +72,7 @@ class SolutionActor {
   static void show_picture(const PicturedPart& pictured, bool shown);
   void add_pictures(const PatchMesh& mesh, const DrawnPictures& drawn);
 
-  const FineSpheres& spheres_;
+  const FineRoundShapes& spheres_;
   std::vector<Part> parts_;
   vtkSmartPointer<vtkActor> outlines_;  ///< edges of the spheres' elements
   vtkSmartPointer<vtkUnsignedCharArray> colors_;

@@ -84,7 +84,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       lux_(vertex_illuminance(solved.solution)),
       bounds_(mesh_bounds(solved.mesh)),
       up_axis_(guess_up_axis(options.cameras, bounds_)),
-      spheres_(fine_spheres(solved.mesh)),
+      spheres_(fine_round_shapes(solved.mesh)),
       actor_(solved.mesh, spheres_, kinds_, radiance_, drawn_),
       sky_(scene_ ? effective_sky(*scene_, solved.mesh) : std::nullopt),
       drawn_lamps_(scene_ ? DrawnLamps(*scene_, caster_) : DrawnLamps()),

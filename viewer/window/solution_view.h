@@ -123,7 +123,7 @@ class SolutionView {
   Eigen::Vector3d up_axis_;
   Camera start_camera_;
   Look look_;
-  FineSpheres spheres_;
+  FineRoundShapes spheres_;
   SolutionActor actor_;
   std::optional<Sky> sky_;
   std::optional<SkyActor> outside_;

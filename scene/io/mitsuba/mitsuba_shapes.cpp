@@ -113,7 +113,7 @@ void MitsubaShapes::add_placed(const MitsubaNode& shape, const Eigen::Affine3d& 
 }
 
 void MitsubaShapes::add_surface(const MitsubaNode& shape, const std::string& name,
-                                std::variant<PolygonMesh, Sphere> placed) {
+                                SurfaceShape placed) {
   for (const MitsubaNode& child : shape.children) {
     const std::string& tag = child.tag;
     if (tag == "medium" || tag == "subsurface" || tag == "sensor") {
@@ -130,7 +130,7 @@ void MitsubaShapes::add_surface(const MitsubaNode& shape, const std::string& nam
   scene_.surfaces.push_back({.name = name, .material = material, .shape = std::move(placed)});
 }
 
-std::variant<PolygonMesh, Sphere> MitsubaShapes::sphere(const MitsubaNode& shape,
+SurfaceShape MitsubaShapes::sphere(const MitsubaNode& shape,
                                                         const Eigen::Affine3d& to_world,
                                                         const std::string& name) {
   const Eigen::Vector3d center = point_or(shape, "center", Eigen::Vector3d::Zero());

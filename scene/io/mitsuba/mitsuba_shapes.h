@@ -44,8 +44,8 @@ class MitsubaShapes {
   void account(const MitsubaNode& shape, std::int64_t triangles);
   void add_instance(const MitsubaNode& instance);
   void add_surface(const MitsubaNode& shape, const std::string& name,
-                   std::variant<PolygonMesh, Sphere> placed);
-  std::variant<PolygonMesh, Sphere> sphere(const MitsubaNode& shape,
+                   SurfaceShape placed);
+  SurfaceShape sphere(const MitsubaNode& shape,
                                            const Eigen::Affine3d& to_world,
                                            const std::string& name);
   PolygonMesh cylinder(const MitsubaNode& shape, const Eigen::Affine3d& to_world);

@@ -147,7 +147,7 @@ bool RadianceShapes::sides_differ(int material) const {
 }
 
 void RadianceShapes::add_surface(const RadiancePrimitive& p, int material,
-                                 std::variant<PolygonMesh, Sphere> shape) {
+                                 SurfaceShape shape) {
   if (const auto* mesh = std::get_if<PolygonMesh>(&shape)) {
     account(p, triangles_of(*mesh));
     if (mesh->facets.empty()) {

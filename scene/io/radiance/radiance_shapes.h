@@ -42,7 +42,7 @@ class RadianceShapes {
   void add_cone(const RadiancePrimitive& cone, int material);
   void add_ring(const RadiancePrimitive& ring, int material);
   void add_surface(const RadiancePrimitive& primitive, int material,
-                   std::variant<PolygonMesh, Sphere> shape);
+                   SurfaceShape shape);
   void account(const RadiancePrimitive& primitive, std::int64_t triangles);
   bool sides_differ(int material) const;
 

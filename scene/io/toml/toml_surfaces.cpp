@@ -155,7 +155,7 @@ class TomlSurfaces::Reader {
     return scene_.materials[static_cast<std::size_t>(material)].shows_picture();
   }
 
-  void add_surface(const std::string& name, int material, std::variant<PolygonMesh, Sphere> shape) {
+  void add_surface(const std::string& name, int material, SurfaceShape shape) {
     if (!all_.names_.insert(name).second) {
       value_.fail("has a name that an earlier surface has; give it another");
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <set>
@@ -215,6 +216,67 @@ TEST(ContactLines, WallStandingOnASmoothEdgeStopsSharingThere) {
   // 21 places, doubled where the wall stands: at 0, 0.05 ... 0.35, but not at the wall's free end
   // at 0.4.
   EXPECT_EQ(at_edge.size(), 21u + 8u);
+}
+
+// Area of the floor's elements that lie inside of a curve; all others lie outside. Chords, on which
+// vertices may lie, come nearer to the middle than the curve by cos(pi / n), n > 18 chords.
+double covered_area(const Frustum& frustum,
+                    const std::function<double(const Vector3d&)>& share_of_curve) {
+  Scene scene = empty_scene();
+  add_polygon(scene, "floor", {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
+  scene.surfaces.push_back({.name = "column", .shape = frustum});
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.2});
+  expect_consistent(mesh);
+  double covered = 0.0;
+  for (const int e : elements_of(mesh, 0)) {
+    double nearest = INFINITY, farthest = 0.0;
+    for (int i = 0; i < mesh.corner_count(e); ++i) {
+      const double share = share_of_curve(mesh.position(mesh.corners[e][i]));
+      nearest = std::min(nearest, share);
+      farthest = std::max(farthest, share);
+    }
+    const double dip = std::cos(std::numbers::pi / 18);
+    EXPECT_TRUE(farthest < 1 + 1e-9 || nearest > dip) << nearest << " " << farthest;
+    if (farthest < 1 + 1e-9) covered += mesh.element_area[e];
+  }
+  return covered;
+}
+
+double polygon_in_circle(double r, double element) {
+  const double n = std::ceil(2 * std::numbers::pi * r / element);
+  return 0.5 * n * r * r * std::sin(2 * std::numbers::pi / n);
+}
+
+TEST(ContactLines, AColumnCutsItsCircleOutOfTheFloor) {
+  const double r = 0.45;
+  const auto share = [&](const Vector3d& p) { return std::hypot(p.x() - 0.9, p.y() - 1.1) / r; };
+  // Standing on the floor, hanging down to it, and through it.
+  for (const double low : {0.0, -1.0, -0.4}) {
+    const Frustum column{.base = {0.9, 1.1, low}, .height = 1.0, .base_radius = r, .top_radius = r};
+    EXPECT_NEAR(covered_area(column, share), polygon_in_circle(r, 0.1), 1e-12) << low;
+  }
+}
+
+TEST(ContactLines, ACutConeLeavesTheCircleAtItsHeight) {
+  const Frustum cone{
+      .base = {0.9, 1.1, -0.5}, .height = 1.0, .base_radius = 0.8, .top_radius = 0.0};
+  const auto share = [&](const Vector3d& p) { return std::hypot(p.x() - 0.9, p.y() - 1.1) / 0.4; };
+  // The chords are those of the base: an angle of 0.1 / 0.8.
+  EXPECT_NEAR(covered_area(cone, share), 0.25 * polygon_in_circle(0.8, 0.1), 1e-12);
+}
+
+TEST(ContactLines, ALeaningColumnCutsAnEllipse) {
+  const double r = 0.3, lean = 0.5;
+  const Vector3d axis(std::sin(lean), 0, std::cos(lean));
+  const Frustum column{.base = Vector3d(0.9, 1.1, 0) - 0.8 * axis,
+                       .axis = axis,
+                       .height = 1.7,
+                       .base_radius = r,
+                       .top_radius = r};
+  const auto share = [&](const Vector3d& p) {
+    return std::hypot((p.x() - 0.9) * std::cos(lean), p.y() - 1.1) / r;
+  };
+  EXPECT_NEAR(covered_area(column, share), polygon_in_circle(r, 0.1) / std::cos(lean), 1e-12);
 }
 
 TEST(ContactLines, HalfSunkSphereCutsItsCircleOutOfTheFloor) {

@@ -89,7 +89,7 @@ TEST(ElementCaster, EveryElementIsFoundFromItsOwnSide) {
     EXPECT_EQ(hits[e].from_back, mesh.is_back[mesh.patch[e]] != 0);
     EXPECT_NEAR(hits[e].t, away, 1e-6);
     const int n = mesh.corner_count(e);
-    if (!mesh.sphere_grids.empty() && mesh.facet[e] == mesh.sphere_grids[0].facet) {
+    if (!mesh.round_grids.empty() && mesh.facet[e] == mesh.round_grids[0].facet) {
       continue;
     }
     // At the mean of the corners, all weights are equal in a parallelogram or triangle; in any
@@ -169,7 +169,7 @@ TEST(ElementCaster, SphereIsMetExactlyFromOutsideAndInside) {
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.3});
   const ElementCaster caster(mesh);
   const BandArray values = positions_as_values(mesh);
-  const double cell = std::numbers::pi * ball.radius / mesh.sphere_grids.front().rings;
+  const double cell = std::numbers::pi * ball.radius / mesh.round_grids.front().rings;
   for (int i = 0; i < 4000; ++i) {
     const bool inside = i % 2 == 1;
     const Vector3d d = random_direction(static_cast<std::uint64_t>(i));

@@ -333,8 +333,8 @@ TEST(Spheres, StayWhatTheyAre) {
   refined.split(refined.leaves());
   const PatchMesh mesh = refined.mesh().mesh;
   expect_consistent(mesh);
-  ASSERT_EQ(mesh.sphere_grids.size(), 1u);
-  const SphereGrid& grid = mesh.sphere_grids.front();
+  ASSERT_EQ(mesh.round_grids.size(), 1u);
+  const RoundGrid& grid = mesh.round_grids.front();
   for (const int e : grid.element) EXPECT_EQ(mesh.facet[e], grid.facet);
   EXPECT_EQ(mesh.element_count(), refined.element_count());
 }

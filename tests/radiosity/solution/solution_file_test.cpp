@@ -46,14 +46,14 @@ void expect_same_mesh(const PatchMesh& a, const PatchMesh& b) {
   expect_same_bits(a.area, b.area, "area");
   expect_same_bits(a.reflectance, b.reflectance, "reflectance");
   expect_same_bits(a.emission, b.emission, "emission");
-  ASSERT_EQ(a.sphere_grids.size(), b.sphere_grids.size());
-  for (std::size_t g = 0; g < a.sphere_grids.size(); ++g) {
-    EXPECT_EQ(a.sphere_grids[g].facet, b.sphere_grids[g].facet);
-    EXPECT_EQ(a.sphere_grids[g].sphere.center, b.sphere_grids[g].sphere.center);
-    EXPECT_EQ(a.sphere_grids[g].sphere.radius, b.sphere_grids[g].sphere.radius);
-    EXPECT_EQ(a.sphere_grids[g].rings, b.sphere_grids[g].rings);
-    EXPECT_EQ(a.sphere_grids[g].sectors, b.sphere_grids[g].sectors);
-    EXPECT_EQ(a.sphere_grids[g].element, b.sphere_grids[g].element);
+  ASSERT_EQ(a.round_grids.size(), b.round_grids.size());
+  for (std::size_t g = 0; g < a.round_grids.size(); ++g) {
+    EXPECT_EQ(a.round_grids[g].facet, b.round_grids[g].facet);
+    EXPECT_EQ(bounds(a.round_grids[g].shape).min(), bounds(b.round_grids[g].shape).min());
+    EXPECT_EQ(bounds(a.round_grids[g].shape).max(), bounds(b.round_grids[g].shape).max());
+    EXPECT_EQ(a.round_grids[g].rings, b.round_grids[g].rings);
+    EXPECT_EQ(a.round_grids[g].sectors, b.round_grids[g].sectors);
+    EXPECT_EQ(a.round_grids[g].element, b.round_grids[g].element);
   }
 }
 
@@ -156,9 +156,28 @@ TEST_F(SolutionFile, RestoresNamesThatAreNotUtf8) {
             "che");
 }
 
+TEST_F(SolutionFile, RestoresFrustumsAmongSpheres) {
+  SolvedScene solved = small_solution(3);
+  const Frustum ring{.base = {1, 2, 3},
+                     .axis = Eigen::Vector3d(1, -2, 2) / 3.0,
+                     .height = 0.0,
+                     .base_radius = 0.7,
+                     .top_radius = 0.2,
+                     .inward = true};
+  solved.mesh.round_grids[0].shape = ring;
+  write_solution(file(), solved);
+  const SolvedScene again = read_solution(file());
+  expect_same_mesh(solved.mesh, again.mesh);
+  const auto& found = std::get<Frustum>(again.mesh.round_grids[0].shape);
+  EXPECT_EQ(found.axis, ring.axis);
+  EXPECT_EQ(found.top_radius, ring.top_radius);
+  EXPECT_TRUE(found.inward);
+  EXPECT_TRUE(std::holds_alternative<Sphere>(again.mesh.round_grids[1].shape));
+}
+
 TEST_F(SolutionFile, RestoresASolutionWithoutHistoryOrSpheres) {
   SolvedScene solved = small_solution(3);
-  solved.mesh.sphere_grids.clear();
+  solved.mesh.round_grids.clear();
   solved.solution.history.clear();
   solved.solution.seconds.clear();
   solved.solution.provenance = {};

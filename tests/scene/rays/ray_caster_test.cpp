@@ -209,7 +209,7 @@ TEST(RayCaster, AFanOfManyOwnTrianglesIsPassedToo) {
 }
 
 CastGeometry one_sphere(const Vector3d& center, double radius) {
-  return {.spheres = {{.center = center, .radius = radius}}, .group = {0}};
+  return {.round_shapes = {Sphere{.center = center, .radius = radius}}, .group = {0}};
 }
 
 TEST(RayCasterSphere, DistanceIsExact) {
@@ -267,10 +267,13 @@ CastGeometry furnished(double scale, const Vector3d& shift) {
   }
   g.quads.push_back({first, first + 1, first + 2, first + 3});
   g.group.push_back(6);
-  g.spheres.push_back({.center = {0.6, 0.7, 0.75}, .radius = 0.15});
+  g.round_shapes.push_back(Sphere{.center = {0.6, 0.7, 0.75}, .radius = 0.15});
   g.group.push_back(7);
   for (auto& v : g.vertices) v = scale * v + shift;
-  for (auto& s : g.spheres) s = {.center = scale * s.center + shift, .radius = scale * s.radius};
+  for (RoundShape& shape : g.round_shapes) {
+    const auto s = std::get<Sphere>(shape);
+    shape = Sphere{.center = scale * s.center + shift, .radius = scale * s.radius};
+  }
   return g;
 }
 
@@ -369,7 +372,7 @@ TEST(RayCaster, NothingIsSeenInEmptySpace) {
   const Ray ray;
   EXPECT_EQ(closest(caster, ray).primitive, -1);
   EXPECT_FALSE(is_blocked(caster, ray));
-  EXPECT_EQ(caster.triangle_count() + caster.quad_count() + caster.sphere_count(), 0);
+  EXPECT_EQ(caster.triangle_count() + caster.quad_count() + caster.round_count(), 0);
 }
 
 TEST(RayCaster, CountsItsPrimitivesAndRefusesMissingGroups) {
@@ -377,7 +380,7 @@ TEST(RayCaster, CountsItsPrimitivesAndRefusesMissingGroups) {
   const RayCaster caster(g);
   EXPECT_EQ(caster.triangle_count(), 64);
   EXPECT_EQ(caster.quad_count(), 65);
-  EXPECT_EQ(caster.sphere_count(), 1);
+  EXPECT_EQ(caster.round_count(), 1);
   g.group.pop_back();
   EXPECT_THROW(RayCaster{g}, std::invalid_argument);
 }

@@ -123,7 +123,7 @@ double power(const LightmapLayout& layout, const LightmapAtlas& atlas, std::size
     // On a sphere, texels of rows near the poles have less area.
     double area = texel;
     if (chart.sphere >= 0) {
-      const double r = solved.mesh.sphere_grids[chart.sphere].sphere.radius;
+      const double r = std::get<Sphere>(solved.mesh.round_grids[chart.sphere].shape).radius;
       const double theta = (y + 0.5 - place.y) / place.height * std::numbers::pi;
       area = std::sin(theta) * 2.0 * std::numbers::pi * std::numbers::pi * r * r /
              (place.width * place.height);
@@ -276,7 +276,7 @@ TEST(Lightmap, ABallIsRolledOffByLongitudeAndLatitude) {
   ASSERT_NE(ball, layout.charts.end());
   const ChartRectangle& place =
       layout.place[static_cast<std::size_t>(ball - layout.charts.begin())];
-  const Sphere& sphere = solved.mesh.sphere_grids[ball->sphere].sphere;
+  const auto& sphere = std::get<Sphere>(solved.mesh.round_grids[ball->sphere].shape);
   std::vector<Probe> probes;
   std::vector<float> read;
   for (int y = 0; y < place.height; ++y) {

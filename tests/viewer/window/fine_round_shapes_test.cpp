@@ -1,4 +1,4 @@
-#include "viewer/window/fine_spheres.h"
+#include "viewer/window/fine_round_shapes.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include "viewer/window/solution_view.h"
 #include "viewer/window/x_display.h"
 
-namespace lightwell::fine_spheres_test {
+namespace lightwell::fine_round_shapes_test {
 namespace {
 
 constexpr double pi = std::numbers::pi;
@@ -36,11 +36,11 @@ PatchMesh ball_mesh() {
 
 /// The inscribed faces have less area than the sphere by a share of (2.8 degrees)^2 / 6 = 4e-4 on
 /// each side.
-TEST(FineSpheres, FacesCoverBothSidesOfTheSphereAndFaceAwayFromThem) {
+TEST(FineRoundShapes, FacesCoverBothSidesOfTheSphereAndFaceAwayFromThem) {
   const PatchMesh mesh = ball_mesh();
-  const FineSpheres fine = fine_spheres(mesh);
+  const FineRoundShapes fine = fine_round_shapes(mesh);
   std::array<double, 2> area{};
-  for (const FineSpheres::Face& face : fine.faces) {
+  for (const FineRoundShapes::Face& face : fine.faces) {
     const bool is_back = mesh.is_back[mesh.patch[face.element]] != 0;
     for (int c = 1; c < 3 && face.corner[c + 1] >= 0; ++c) {
       const auto& a = fine.points[face.corner[0]];
@@ -60,14 +60,14 @@ TEST(FineSpheres, FacesCoverBothSidesOfTheSphereAndFaceAwayFromThem) {
 }
 
 /// Light at points is that of the elements that rays hit there.
-TEST(FineSpheres, PointsHaveTheLightOfTheirElement) {
+TEST(FineRoundShapes, PointsHaveTheLightOfTheirElement) {
   const PatchMesh mesh = ball_mesh();
   const ElementCaster caster(mesh);
   BandArray values(mesh.vertex_count(), 1);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     values(v, 0) = static_cast<float>(mesh.position(v).z()) + (v % 7);
   }
-  for (const FineSpheres::Point& point : fine_spheres(mesh).points) {
+  for (const FineRoundShapes::Point& point : fine_round_shapes(mesh).points) {
     EXPECT_NEAR((point.position - ball.center).norm(), ball.radius, 1e-12);
     EXPECT_NEAR(point.weight.sum(), 1.0f, 1e-6f);
     const Ray ray{.origin = point.position + point.normal, .direction = -point.normal};
@@ -89,7 +89,7 @@ TEST(FineSpheres, PointsHaveTheLightOfTheirElement) {
 
 /// From 4 m away the outline is a circle of radius tan(asin(0.5 / 4)) for any element size. The lit
 /// share of the picture is that of the disc, to a tenth of a pixel along the outline.
-TEST(FineSpheres, OutlinesAreRound) {
+TEST(FineRoundShapes, OutlinesAreRound) {
   const Scene scene = ball_scene();
   SolvedScene solved{.mesh = ball_mesh(), .solution = {}};
   solved.solution.bands = scene.bands;
@@ -119,9 +119,9 @@ TEST(FineSpheres, OutlinesAreRound) {
   EXPECT_NEAR(std::sqrt(shown / pi), radius, 0.03);
 }
 
-TEST(FineSpheres, AreNoneWithoutSpheres) {
-  EXPECT_TRUE(fine_spheres(PatchMesh{}).faces.empty());
+TEST(FineRoundShapes, AreNoneWithoutSpheres) {
+  EXPECT_TRUE(fine_round_shapes(PatchMesh{}).faces.empty());
 }
 
 }  // namespace
-}  // namespace lightwell::fine_spheres_test
+}  // namespace lightwell::fine_round_shapes_test
