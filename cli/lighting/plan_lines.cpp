@@ -11,7 +11,9 @@
 #include <utility>
 #include <variant>
 
+#include "scene/io/round_facets.h"
 #include "scene/lamp_faces.h"
+#include "scene/round_shape.h"
 
 namespace lightwell {
 namespace {
@@ -71,10 +73,12 @@ double free_height(const ElementCaster& caster, const LuxGrid& grid) {
 template <class Visit>
 void for_each_facet(const Scene& scene, Visit&& visit) {
   for (const Surface& surface : scene.surfaces) {
-    const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
-    if (!mesh) continue;
+    if (std::holds_alternative<Sphere>(surface.shape)) continue;
+    const auto* frustum = std::get_if<Frustum>(&surface.shape);
+    const PolygonMesh cut = frustum ? facets_of(*frustum) : PolygonMesh();
+    const PolygonMesh& mesh = frustum ? cut : std::get<PolygonMesh>(surface.shape);
     const Material& material = scene.materials[static_cast<std::size_t>(surface.material)];
-    for (const Facet& facet : mesh->facets) visit(*mesh, facet, material);
+    for (const Facet& facet : mesh.facets) visit(mesh, facet, material);
   }
 }
 
@@ -281,7 +285,9 @@ void add_luminaires(const Scene& scene, const PlanFrame& frame, const OverTheGri
       continue;
     }
     Vector3d middle;
-    PlanLuminaire luminaire = luminaire_of(frame, std::get<PolygonMesh>(surface.shape), middle);
+    const auto* frustum = std::get_if<Frustum>(&surface.shape);
+    PlanLuminaire luminaire = luminaire_of(
+        frame, frustum ? facets_of(*frustum) : std::get<PolygonMesh>(surface.shape), middle);
     if (over.holds(plan, middle, 0.0)) plan.luminaires.push_back(std::move(luminaire));
   }
 }

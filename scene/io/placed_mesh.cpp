@@ -11,7 +11,6 @@ namespace lightwell {
 namespace {
 
 // Sides of a round shape: the outline of a disk stays within 0.5 % of its radius.
-constexpr int round_sides = 32;
 constexpr int rings = 16;
 
 Eigen::Vector2d on_circle(int side, double radius) {
@@ -56,18 +55,6 @@ std::vector<Loop> disk_loops() {
     loop.emplace_back(p.x(), p.y(), 0.0);
   }
   return {loop};
-}
-
-std::vector<Loop> cylinder_loops() {
-  // n chords of length 2 r sin(pi / n) add up to 2 pi.
-  const double half = std::numbers::pi / round_sides;
-  const double radius = half / std::sin(half);
-  std::vector<Loop> loops;
-  for (int i = 0; i < round_sides; ++i) {
-    const Eigen::Vector2d a = on_circle(i, radius), b = on_circle(i + 1, radius);
-    loops.push_back({{a.x(), a.y(), 0}, {b.x(), b.y(), 0}, {b.x(), b.y(), 1}, {a.x(), a.y(), 1}});
-  }
-  return loops;
 }
 
 std::vector<Loop> cone_loops(double radius, double top_radius, double height) {

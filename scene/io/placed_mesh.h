@@ -12,10 +12,10 @@ namespace lightwell {
 /// from +z.
 std::vector<Loop> rectangle_loops();  ///< x and y from -1 to 1, z = 0
 std::vector<Loop> cube_loops();       ///< all coordinates from -1 to 1
+/// Corners around of round shapes that are read as polygons.
+inline constexpr int round_sides = 32;
 /// Regular polygon about the origin, z = 0, with the area of the disk of radius 1.
 std::vector<Loop> disk_loops();
-/// Rectangles round the z axis from z = 0 to 1, with the area of the cylinder of radius 1; no caps.
-std::vector<Loop> cylinder_loops();
 /// Quadrilaterals (triangles where a radius is 0) round the z axis between circles at z = 0 and z =
 /// `height`, with the area of the truncated cone; no caps. Radii >= 0, not both 0.
 std::vector<Loop> cone_loops(double radius, double top_radius, double height);

@@ -4,6 +4,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/clean_names.h"
+#include "scene/io/round_facets.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -42,6 +43,7 @@ Scene read_scene(const std::filesystem::path& path, References references) {
   Scene scene = read_any(path);
   scene.files = read.files();
   clean_names(scene);
+  replace_by_facets(scene);
   return scene;
 }
 

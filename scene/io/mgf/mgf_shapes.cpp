@@ -16,13 +16,6 @@ MgfShape mgf_bubble() {
   return shape;
 }
 
-MgfShape mgf_cone(double radius, double top_radius, double height) {
-  MgfShape shape{.loops = cone_loops(std::abs(radius), std::abs(top_radius), height),
-                 .is_inward = radius < 0.0 || top_radius < 0.0};
-  shape.normals = cone_normals(shape.loops, std::abs(radius), std::abs(top_radius), height);
-  return shape;
-}
-
 MgfShape mgf_torus(double inner, double outer, bool is_inward) {
   constexpr int around = 32, across = 16;
   const double tube = 0.5 * (outer - inner), middle = 0.5 * (outer + inner);

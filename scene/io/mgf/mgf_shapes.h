@@ -17,9 +17,6 @@ struct MgfShape {
 /// A sphere of radius 1 about the origin that is seen from within.
 MgfShape mgf_bubble();
 
-/// A truncated cone about z from z = 0 to `height`; radii below 0 face inwards.
-MgfShape mgf_cone(double radius, double top_radius, double height);
-
 /// A torus about z between the radii `inner` and `outer`, 0 <= inner < outer.
 MgfShape mgf_torus(double inner, double outer, bool is_inward);
 

@@ -16,6 +16,7 @@
 #include "scene/io/radiance/text/radiance_xform.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
+#include "scene/io/round_facets.h"
 #include "scene/io/scene_size.h"
 #include "scene/io/text_file.h"
 #include "scene/limits.h"
@@ -362,39 +363,42 @@ class MgfReader {
     if (radius < 0.0) {
       return add_loops(mgf_bubble(), Eigen::Translation3d(at.position) * Eigen::Scaling(-radius));
     }
+    const Sphere sphere{.center = at.position, .radius = radius};
+    add_copies([&](const Eigen::Affine3d& to_world) {
+      const double scale = to_world.linear().col(0).norm();  // the same in all directions
+      return Sphere{.center = to_world * sphere.center, .radius = scale * sphere.radius};
+    });
+  }
+
+  void add_round(const Frustum& frustum) {
+    add_copies([&](const Eigen::Affine3d& to_world) { return placed_frustum(frustum, to_world); });
+  }
+
+  /// Adds placed(to_world) as a surface for each transformation in force.
+  template <class Placed>
+  void add_copies(const Placed& placed) {
     count(1);
     complete_surface();
     const int material = material_number();
     for (const Eigen::Affine3d& to_world : transforms_.back()) {
-      const double scale = to_world.linear().col(0).norm();  // the same in all directions
       scene_.surfaces.push_back(
-          {.name = names_.unique(object_name()),
-           .material = material,
-           .shape = Sphere{.center = to_world * at.position, .radius = scale * radius}});
+          {.name = names_.unique(object_name()), .material = material, .shape = placed(to_world)});
     }
   }
 
   void add_cone(const MgfVertex& from, double radius, const MgfVertex& to, double top) {
     if (radius * top < 0.0) location_.fail(fmt::format("'{}' has radii of different signs", key_));
     const Eigen::Vector3d axis = to.position - from.position;
-    if (radius == 0.0 && top == 0.0) return remark_no_area();
-    add_loops(mgf_cone(radius, top, axis.stableNorm()), stand(from, axis));
+    if ((radius == 0.0 && top == 0.0) || !(axis.stableNorm() > 0.0)) return remark_no_area();
+    add_round(frustum_about(from.position, axis, axis.stableNorm(), std::abs(radius), std::abs(top),
+                            radius < 0.0 || top < 0.0));
   }
 
   void add_ring() {
     require(3, 3);
     const double inner = positive(1), outer = positive(2);
     if (!(outer - inner > flatness * outer)) return remark_no_area();
-    const Polygon ring = ring_polygon(inner, outer);
-    complete_surface();
-    count(2 * triangles_of(ring.boundary.size()));
-    const int material = material_number();
-    for (const Eigen::Affine3d& to_world : transforms_.back()) {
-      add_placed(ring, {}, to_world * stand(vertex(0), vertex(0).normal));
-    }
-    stem_ = object_name();
-    of_faces_ = material;
-    complete_surface();
+    add_round(frustum_about(vertex(0).position, vertex(0).normal, 0.0, outer, inner, false));
   }
 
   void add_torus() {

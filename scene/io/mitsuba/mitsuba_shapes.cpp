@@ -9,6 +9,7 @@
 #include "scene/io/mitsuba/mitsuba_serialized.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
 #include "scene/io/placed_mesh.h"
+#include "scene/io/round_facets.h"
 #include "scene/io/text_file.h"
 #include "scene/rotation_between.h"
 
@@ -100,13 +101,12 @@ void MitsubaShapes::add_placed(const MitsubaNode& shape, const Eigen::Affine3d& 
   }
   if (shape.type == "cube") return add_surface(shape, name, loops(cube_loops()));
   if (shape.type == "disk") {
-    remarks_.add("Disks were read as polygons of 32 corners and the same area", name);
-    return add_surface(shape, name, loops(disk_loops()));
+    const Frustum unit = frustum_about({0, 0, 0}, Eigen::Vector3d::UnitZ(), 0.0, 1.0, 0.0, flip);
+    return add_surface(shape, name, round(shape, unit, to_world, name));
   }
   if (shape.type == "sphere") return add_surface(shape, name, sphere(shape, to_world, name));
   if (shape.type == "cylinder") {
-    remarks_.add("Cylinders were read as 32 rectangles of the same area", name);
-    return add_surface(shape, name, cylinder(shape, to_world));
+    return add_surface(shape, name, round(shape, cylinder(shape), to_world, name));
   }
   if (is_mesh(shape)) return add_mesh(shape, to_world, name);
   remarks_.add(fmt::format("Shapes of the plugin '{}' were left out", shape.type), name);
@@ -130,9 +130,8 @@ void MitsubaShapes::add_surface(const MitsubaNode& shape, const std::string& nam
   scene_.surfaces.push_back({.name = name, .material = material, .shape = std::move(placed)});
 }
 
-SurfaceShape MitsubaShapes::sphere(const MitsubaNode& shape,
-                                                        const Eigen::Affine3d& to_world,
-                                                        const std::string& name) {
+SurfaceShape MitsubaShapes::sphere(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
+                                   const std::string& name) {
   const Eigen::Vector3d center = point_or(shape, "center", Eigen::Vector3d::Zero());
   const double radius = positive(shape, "radius", 1.0);
   const bool flip = shape.boolean_or("flip_normals", false);
@@ -148,22 +147,25 @@ SurfaceShape MitsubaShapes::sphere(const MitsubaNode& shape,
   return placed_loops(loops, place, flip, repairs_, {}, loops);
 }
 
-PolygonMesh MitsubaShapes::cylinder(const MitsubaNode& shape, const Eigen::Affine3d& to_world) {
+Frustum MitsubaShapes::cylinder(const MitsubaNode& shape) {
   const Eigen::Vector3d p0 = point_or(shape, "p0", Eigen::Vector3d::Zero());
   const Eigen::Vector3d axis = point_or(shape, "p1", Eigen::Vector3d::UnitZ()) - p0;
   const double radius = positive(shape, "radius", 1.0);
   if (!(axis.stableNorm() > 0.0)) shape.fail("has no length: p0 and p1 are one point");
-  const Eigen::Affine3d place = Eigen::Translation3d(p0) *
-                                rotation_between(Eigen::Vector3d::UnitZ(), axis) *
-                                Eigen::Scaling(radius, radius, axis.stableNorm());
-  const std::vector<Loop> loops = cylinder_loops();
-  account(shape, triangles_of(loops));
-  std::vector<NormalLoop> normals = loops;
-  for (NormalLoop& loop : normals) {
-    for (Eigen::Vector3d& n : loop) n.z() = 0.0;
+  return frustum_about(p0, axis, axis.stableNorm(), radius, radius,
+                       shape.boolean_or("flip_normals", false));
+}
+
+SurfaceShape MitsubaShapes::round(const MitsubaNode& shape, const Frustum& frustum,
+                                  const Eigen::Affine3d& to_world, const std::string& name) {
+  if (keeps_angles(to_world)) {
+    account(shape, 1);
+    return placed_frustum(frustum, to_world);
   }
-  return placed_loops(loops, to_world * place, shape.boolean_or("flip_normals", false), repairs_,
-                      {}, normals);
+  remarks_.add("Cylinders and disks that are no longer round became polygons of 32 corners around",
+               name);
+  account(shape, 2 * round_sides);
+  return placed_mesh(facets_of(frustum), to_world, false, true, repairs_);
 }
 
 void MitsubaShapes::add_mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,

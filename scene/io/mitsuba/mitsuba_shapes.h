@@ -43,12 +43,12 @@ class MitsubaShapes {
                   const std::string& prefix);
   void account(const MitsubaNode& shape, std::int64_t triangles);
   void add_instance(const MitsubaNode& instance);
-  void add_surface(const MitsubaNode& shape, const std::string& name,
-                   SurfaceShape placed);
-  SurfaceShape sphere(const MitsubaNode& shape,
-                                           const Eigen::Affine3d& to_world,
-                                           const std::string& name);
-  PolygonMesh cylinder(const MitsubaNode& shape, const Eigen::Affine3d& to_world);
+  void add_surface(const MitsubaNode& shape, const std::string& name, SurfaceShape placed);
+  SurfaceShape sphere(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
+                      const std::string& name);
+  static Frustum cylinder(const MitsubaNode& shape);
+  SurfaceShape round(const MitsubaNode& shape, const Frustum& frustum,
+                     const Eigen::Affine3d& to_world, const std::string& name);
   void add_mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world, const std::string& name);
   PolygonMesh mesh(const MitsubaNode& shape, const Eigen::Affine3d& to_world,
                    const std::string& name);

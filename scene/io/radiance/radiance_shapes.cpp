@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "scene/io/placed_mesh.h"
+#include "scene/io/round_facets.h"
 #include "scene/io/seams.h"
 #include "scene/limits.h"
 #include "scene/rotation_between.h"
@@ -35,15 +36,6 @@ void require_moderate(const RadiancePrimitive& p) {
       p.fail(fmt::format("reaches {:g}; nothing may lie beyond {:g}", value, farthest_coordinate));
     }
   }
-}
-
-Eigen::Affine3d along(const Eigen::Vector3d& from, const Eigen::Vector3d& axis) {
-  return Eigen::Translation3d(from) * rotation_between(Eigen::Vector3d::UnitZ(), axis);
-}
-
-Loop placed(Loop loop, const Eigen::Affine3d& transform) {
-  for (Eigen::Vector3d& p : loop) p = transform * p;
-  return loop;
 }
 
 }  // namespace
@@ -146,8 +138,7 @@ bool RadianceShapes::sides_differ(int material) const {
   return m.one_sided || m.dielectric.has_value() || m.is_emitter();
 }
 
-void RadianceShapes::add_surface(const RadiancePrimitive& p, int material,
-                                 SurfaceShape shape) {
+void RadianceShapes::add_surface(const RadiancePrimitive& p, int material, SurfaceShape shape) {
   if (const auto* mesh = std::get_if<PolygonMesh>(&shape)) {
     account(p, triangles_of(*mesh));
     if (mesh->facets.empty()) {
@@ -187,12 +178,9 @@ void RadianceShapes::add_cone(const RadiancePrimitive& p, int material) {
   }
   const bool is_inner = p.type == "tube" || p.type == "cup";
   const bool inward = is_inner != (first < 0.0 || second < 0.0);
-  remarks_.add(
-      "Cylinders and cones were read as 32 facets of the same area with the normals of round ones",
-      p.name);
-  const std::vector<Loop> loops = cone_loops(std::abs(first), std::abs(second), height);
-  const auto normals = cone_normals(loops, std::abs(first), std::abs(second), height);
-  add_surface(p, material, placed_loops(loops, along(from, axis), inward, repairs_, {}, normals));
+  account(p, 1);
+  add_surface(p, material,
+              frustum_about(from, axis, height, std::abs(first), std::abs(second), inward));
 }
 
 void RadianceShapes::add_ring(const RadiancePrimitive& p, int material) {
@@ -205,14 +193,8 @@ void RadianceShapes::add_ring(const RadiancePrimitive& p, int material) {
   if (!(outer - inner > flatness * outer)) {
     return remarks_.add("Shapes without area were left out", p.name);
   }
-  remarks_.add("Rings were read as polygons of 32 corners and the same area", p.name);
-  const Eigen::Affine3d transform = along(p.point(0), normal);
-  Polygon ring = ring_polygon(inner, outer);
-  ring.boundary = placed(std::move(ring.boundary), transform);
-  for (Loop& hole : ring.holes) hole = placed(std::move(hole), transform);
-  MeshBuilder mesh;
-  mesh.add(ring);
-  add_surface(p, material, mesh.mesh());
+  account(p, 1);
+  add_surface(p, material, frustum_about(p.point(0), normal, 0.0, outer, inner, false));
 }
 
 }  // namespace lightwell

@@ -41,8 +41,7 @@ class RadianceShapes {
   void add_sphere(const RadiancePrimitive& sphere, int material);
   void add_cone(const RadiancePrimitive& cone, int material);
   void add_ring(const RadiancePrimitive& ring, int material);
-  void add_surface(const RadiancePrimitive& primitive, int material,
-                   SurfaceShape shape);
+  void add_surface(const RadiancePrimitive& primitive, int material, SurfaceShape shape);
   void account(const RadiancePrimitive& primitive, std::int64_t triangles);
   bool sides_differ(int material) const;
 

@@ -13,14 +13,15 @@
 #include "scene/io/numbered_names.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
+#include "scene/io/round_facets.h"
 #include "scene/io/text_file.h"
 #include "scene/io/toml/toml_motions.h"
 
 namespace lightwell {
 namespace {
 
-constexpr std::initializer_list<const char*> shape_keys = {"polygon", "polygons", "box", "sphere",
-                                                           "mesh"};
+constexpr std::initializer_list<const char*> shape_keys = {"polygon",  "polygons", "box",  "sphere",
+                                                           "cylinder", "cone",     "disc", "mesh"};
 
 // True for meshes of formats that name their unit of length, and bring materials.
 bool has_unit(std::string_view extension) {
@@ -133,6 +134,9 @@ class TomlSurfaces::Reader {
     if (shape == "mesh") return read_mesh(given);
     const int material = find_material(table_.require("material"));
     if (shape == "sphere") return add_surface(name_, material, read_sphere(given));
+    if (shape == "cylinder") return add_surface(name_, material, read_cylinder(given));
+    if (shape == "cone") return add_surface(name_, material, read_cone(given));
+    if (shape == "disc") return add_surface(name_, material, read_disc(given));
     MeshBuilder mesh;
     if (shape == "polygon") add_polygon(given, mesh);
     if (shape == "polygons") add_polygons(given, mesh);
@@ -167,6 +171,49 @@ class TomlSurfaces::Reader {
     const TomlTable t = value.table({"center", "radius"});
     return {.center = place_(t.require("center").vector()),
             .radius = place_.scale * t.require("radius").positive()};
+  }
+
+  static double at_least_0(const TomlValue& value) {
+    const double number = value.number();
+    if (!(number >= 0.0)) value.fail(fmt::format("is {}; it must be at least 0", number));
+    return number;
+  }
+
+  // A frustum between the points `from` and `to` of a table.
+  Frustum frustum_of(const TomlTable& t, double radius, double top_radius) const {
+    const Eigen::Vector3d from = place_(t.require("from").vector());
+    const Eigen::Vector3d axis = place_(t.require("to").vector()) - from;
+    if (!(axis.norm() > 0.0)) t.fail("has one point as 'from' and 'to'; give it a length");
+    const auto inward = t.find("inward");
+    return frustum_about(from, axis, axis.norm(), place_.scale * radius, place_.scale * top_radius,
+                         inward && inward->boolean());
+  }
+
+  Frustum read_cylinder(const TomlValue& value) const {
+    const TomlTable t = value.table({"from", "to", "radius", "inward"});
+    const double radius = t.require("radius").positive();
+    return frustum_of(t, radius, radius);
+  }
+
+  Frustum read_cone(const TomlValue& value) const {
+    const TomlTable t = value.table({"from", "to", "radius", "top_radius", "inward"});
+    const auto top = t.find("top_radius");
+    return frustum_of(t, t.require("radius").positive(), top ? at_least_0(*top) : 0.0);
+  }
+
+  Frustum read_disc(const TomlValue& value) const {
+    const TomlTable t = value.table({"center", "normal", "radius", "inner_radius"});
+    const Eigen::Vector3d normal = t.require("normal").vector();
+    if (!(normal.norm() > 0.0)) t.require("normal").fail("is 0; give a direction");
+    const double radius = t.require("radius").positive();
+    const auto inner = t.find("inner_radius");
+    const double hole = inner ? at_least_0(*inner) : 0.0;
+    // A thinner ring counts as one without area, as a thinner polygon does.
+    if (!(radius - hole > flatness * radius)) {
+      inner->fail(fmt::format("is {}; it must be less than the radius {}", hole, radius));
+    }
+    return frustum_about(place_(t.require("center").vector()), place_.rotation * normal, 0.0,
+                         place_.scale * radius, place_.scale * hole, false);
   }
 
   void add_polygon(const TomlValue& value, MeshBuilder& mesh) {
@@ -402,9 +449,9 @@ void TomlSurfaces::add(const TomlValue& value, std::size_t number) {
   const std::string name = given ? given->name() : fmt::format("surface{}", number);
   if (name != shortened(name)) given->fail("is very long; 250 characters are enough");
   const TomlValue named = value.renamed(fmt::format("surface '{}'", name));
-  const TomlTable table =
-      named.table({"name", "material", "polygon", "holes", "polygons", "box", "sphere", "mesh",
-                   "flip", "smooth", "scale", "rotate", "pivot", "translate", "uv", "motion"});
+  const TomlTable table = named.table(
+      {"name", "material", "polygon", "holes", "polygons", "box", "sphere", "cylinder", "cone",
+       "disc", "mesh", "flip", "smooth", "scale", "rotate", "pivot", "translate", "uv", "motion"});
   Reader(named, table, name, *this).read();
 }
 

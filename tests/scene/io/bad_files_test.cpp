@@ -90,7 +90,7 @@ const std::vector<BadFile> bad_files = {
     {"spectrum-per-reflectance.toml", {"spectrum-per-reflectance.toml:2:", "unknown key 'per'"}},
     {"material-missing.toml", {"material-missing.toml:6:12:", "'whit'", "Did you mean 'white'?"}},
     {"surface-no-material.toml", {"surface-no-material.toml:4:", "surface 'floor' lacks the key 'material'"}},
-    {"surface-no-shape.toml", {"surface-no-shape.toml:4:", "'polygon', 'polygons', 'box', 'sphere' or 'mesh'"}},
+    {"surface-no-shape.toml", {"surface-no-shape.toml:4:", "'polygon', 'polygons', 'box', 'sphere', 'cylinder', 'cone', 'disc' or 'mesh'"}},
     {"surface-two-shapes.toml", {"surface-two-shapes.toml:4:", "both 'polygon' and 'box'"}},
     {"surface-same-name.toml", {"surface-same-name.toml:9:", "surface 'floor'", "another"}},
     {"polygon-two-vertices.toml", {"polygon-two-vertices.toml:7:11:", "surface 'floor'", "2 vertices", "at least 3"}},

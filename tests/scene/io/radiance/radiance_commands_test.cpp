@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "scene/io/radiance/text/radiance_expression.h"
+#include "scene/round_shape.h"
 #include "tests/sanitizers.h"
 #include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
@@ -135,9 +136,10 @@ TEST_F(RadianceCommands, LengthsScaleWithTheirShapes) {
   const auto& sphere = std::get<Sphere>(scene.surfaces.at(0).shape);
   EXPECT_DOUBLE_EQ(sphere.radius, 1.0);
   expect_near(sphere.center, {-0.5, 0, 0});
-  EXPECT_NEAR(area_of(mesh_of(scene, 1)), pi * 3 / 4, 1e-12);
-  expect_near(normal_of(scene, 1), {0, -1, 0});
-  EXPECT_NEAR(area_of(mesh_of(scene, 2)), 2 * pi / 4, 1e-12);
+  const auto& ring = std::get<Frustum>(scene.surfaces.at(1).shape);
+  EXPECT_NEAR(area(ring), pi * 3 / 4, 1e-12);
+  expect_near(front_normal(ring, ring.base), {0, -1, 0});
+  EXPECT_NEAR(surface_area(scene.surfaces.at(2)), 2 * pi / 4, 1e-12);
 }
 
 TEST_F(RadianceCommands, ABoxIsClosedAndFacesOutwardsOrInwards) {
@@ -250,13 +252,13 @@ TEST_F(RadianceCommands, AGridOfFormulasIsSplitWhereItBends) {
 TEST_F(RadianceCommands, AWormIsSpheresAndConesThatTouchThem) {
   const Scene straight = read("!genworm grey w 0 0 '3*t' .5 3");
   EXPECT_EQ(straight.surfaces.size(), 4u + 3u);
-  EXPECT_NEAR(area_of(mesh_of(straight, 1)), 2 * pi * 0.5 * 1.0, 1e-12);
+  EXPECT_NEAR(surface_area(straight.surfaces.at(1)), 2 * pi * 0.5 * 1.0, 1e-12);
   // A cone tangent to both spheres is perpendicular to their radii at the contacts. From radius 1
   // to 0.5 at distance 1 its slant length is sqrt(1 - 0.25), and its end radii are those of the
   // spheres times sqrt(1 - 0.25).
   const Scene thinner = read("!genworm grey w 0 0 t '1-t/2' 1");
   const double shrink = std::sqrt(0.75);
-  EXPECT_NEAR(area_of(mesh_of(thinner, 1)), pi * (1 + 0.5) * shrink * shrink, 1e-12);
+  EXPECT_NEAR(surface_area(thinner.surfaces.at(1)), pi * (1 + 0.5) * shrink * shrink, 1e-12);
 }
 
 TEST(RadianceFormula, BindsAsRadianceDoes) {

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "scene/io/glossy.h"
+#include "scene/round_shape.h"
 #include "scene/specular.h"
 #include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
@@ -137,36 +138,54 @@ TEST_F(Radiance, BubblesShineInwards) {
   EXPECT_EQ(outward_share(mesh_of(scene, 0)), 0.0);
 }
 
-TEST_F(Radiance, CylindersAndTubesHaveTheirAreaAndFront) {
-  const Scene cylinder = shape("cylinder", "7 0 0 1 0 0 4 .5");
-  EXPECT_NEAR(area_of(mesh_of(cylinder)), 2 * pi * 0.5 * 3, 1e-12);
-  EXPECT_EQ(outward_share(mesh_of(cylinder)), 1.0);
-  EXPECT_EQ(outward_share(mesh_of(shape("cylinder", "7 0 0 4 0 0 1 .5"))), 1.0);
-  EXPECT_EQ(outward_share(mesh_of(shape("tube", "7 0 0 1 0 0 4 .5"))), 0.0);
-  EXPECT_EQ(outward_share(mesh_of(shape("cylinder", "7 0 0 1 0 0 4 -.5"))), 0.0);
+const Frustum& frustum_of(const Scene& scene) {
+  return std::get<Frustum>(scene.surfaces.at(0).shape);
 }
 
-TEST_F(Radiance, ConesAndCupsHaveTheirAreaAndFront) {
+TEST_F(Radiance, CylindersAndTubesAreExact) {
+  const Scene cylinder = shape("cylinder", "7 0 0 1 0 0 4 .5");
+  EXPECT_NEAR(surface_area(cylinder.surfaces[0]), 2 * pi * 0.5 * 3, 1e-12);
+  EXPECT_FALSE(frustum_of(cylinder).inward);
+  expect_near(frustum_of(cylinder).base, {0, 0, 1});
+  expect_near(frustum_of(cylinder).axis, {0, 0, 1});
+  EXPECT_TRUE(cylinder.losses.empty());
+  EXPECT_FALSE(frustum_of(shape("cylinder", "7 0 0 4 0 0 1 .5")).inward);
+  EXPECT_TRUE(frustum_of(shape("tube", "7 0 0 1 0 0 4 .5")).inward);
+  EXPECT_TRUE(frustum_of(shape("cylinder", "7 0 0 1 0 0 4 -.5")).inward);
+}
+
+TEST_F(Radiance, ConesAndCupsAreExact) {
   const Scene cone = shape("cone", "8 0 0 0 0 0 4 3 0");
-  EXPECT_NEAR(area_of(mesh_of(cone)), pi * 3 * 5, 1e-12);  // pi r s, slant 5
-  EXPECT_EQ(outward_share(mesh_of(cone)), 1.0);
-  for (const Facet& facet : mesh_of(cone).facets) EXPECT_EQ(facet.boundary.size(), 3u);
+  EXPECT_NEAR(surface_area(cone.surfaces[0]), pi * 3 * 5, 1e-12);  // pi r s, slant 5
+  EXPECT_FALSE(frustum_of(cone).inward);
+  EXPECT_EQ(frustum_of(cone).base_radius, 3.0);
+  EXPECT_EQ(frustum_of(cone).top_radius, 0.0);
   const Scene cup = shape("cup", "8 0 0 0 0 0 4 1 4");
-  EXPECT_NEAR(area_of(mesh_of(cup)), pi * (1 + 4) * 5, 1e-12);
-  EXPECT_EQ(outward_share(mesh_of(cup)), 0.0);
-  // Limits of a cone: as flat as a ring, and as steep as a cylinder.
-  EXPECT_NEAR(area_of(mesh_of(shape("cone", "8 0 0 0 0 0 1e-5 1 2"))), pi * 3, 1e-6);
-  EXPECT_NEAR(area_of(mesh_of(shape("cone", "8 0 0 0 0 0 1 2 2"))), 2 * pi * 2, 1e-12);
+  EXPECT_NEAR(surface_area(cup.surfaces[0]), pi * (1 + 4) * 5, 1e-12);
+  EXPECT_TRUE(frustum_of(cup).inward);
 }
 
 TEST_F(Radiance, RingsHaveTheirAreaTheirHoleAndTheirNormal) {
   for (const char* radii : {"1 2", "2 1"}) {
     const Scene scene = shape("ring", std::string("8 5 6 7 0 -3 0 ") + radii);
-    EXPECT_NEAR(area_of(mesh_of(scene)), pi * (4 - 1), 1e-12);
-    EXPECT_EQ(mesh_of(scene).facets.at(0).holes.size(), 1u);
-    expect_near(normal_of(scene), {0, -1, 0});
+    EXPECT_NEAR(surface_area(scene.surfaces[0]), pi * (4 - 1), 1e-12);
+    EXPECT_EQ(frustum_of(scene).top_radius, 1.0);
+    expect_near(front_normal(frustum_of(scene), {5.0, 6.0, 8.5}), {0, -1, 0});
   }
-  EXPECT_NEAR(area_of(mesh_of(shape("ring", "8 0 0 0 1 1 1 0 1"))), pi, 1e-12);
+  EXPECT_NEAR(surface_area(shape("ring", "8 0 0 0 1 1 1 0 1").surfaces[0]), pi, 1e-12);
+}
+
+TEST_F(Radiance, RoundShapesThatShineAreFacetsOfTheSameAreaAndFront) {
+  const std::string lamp = "void light lamp 0 0 3 1 1 1\n";
+  const Scene cylinder = read(lamp + "lamp cylinder c 0 0 7 0 0 1 0 0 4 .5\n");
+  EXPECT_NEAR(area_of(mesh_of(cylinder)), 2 * pi * 0.5 * 3, 1e-12);
+  EXPECT_EQ(outward_share(mesh_of(cylinder)), 1.0);
+  EXPECT_EQ(outward_share(mesh_of(read(lamp + "lamp tube c 0 0 7 0 0 1 0 0 4 .5\n"))), 0.0);
+  const Scene ring = read(lamp + "lamp ring r 0 0 8 5 6 7 0 -3 0 1 2\n");
+  EXPECT_NEAR(area_of(mesh_of(ring)), pi * (4 - 1), 1e-12);
+  EXPECT_EQ(mesh_of(ring).facets.at(0).holes.size(), 1u);
+  expect_near(normal_of(ring), {0, -1, 0});
+  EXPECT_EQ(ring.losses.size(), 1u);
 }
 
 TEST_F(Radiance, PlasticShinesWhiteAndMetalInItsColour) {
@@ -445,8 +464,8 @@ TEST_F(Radiance, CopiesOfAnObjectShareTheirMaterials) {
   EXPECT_EQ(scene.materials.size(), 1u);
 }
 
-TEST_F(Radiance, RoundShapesHaveTheNormalsOfRoundOnes) {
-  const Scene scene = shape("cone", "8 0 0 0 0 0 2 1 .5");
+TEST_F(Radiance, FacetsOfRoundShapesHaveTheNormalsOfRoundOnes) {
+  const Scene scene = read("void light lamp 0 0 3 1 1 1\nlamp cone c 0 0 8 0 0 0 0 0 2 1 .5\n");
   const auto& mesh = std::get<PolygonMesh>(scene.surfaces.at(0).shape);
   ASSERT_FALSE(mesh.normal_maps.empty());
   for (const Facet& facet : mesh.facets) {

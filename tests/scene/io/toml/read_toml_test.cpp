@@ -8,6 +8,7 @@
 
 #include "scene/coat.h"
 #include "scene/io/read_scene.h"
+#include "scene/round_shape.h"
 #include "tests/scene/expected_messages.h"
 #include "tests/temporary_folder.h"
 
@@ -387,6 +388,52 @@ TEST(ReadToml, TurnsAboutXThenYThenZ) {
                                    .toRotationMatrix();
   const auto& sphere = std::get<Sphere>(s.surfaces[0].shape);
   EXPECT_TRUE(sphere.center.isApprox(turn * Eigen::Vector3d(1, 2, 3), 1e-12));
+}
+
+TEST(ReadToml, RoundShapesAreExactAndPlaced) {
+  const auto read = [](const std::string& shape) {
+    const Scene s = read_text(
+        "unit = \"cm\"\n[materials.white]\n[[surfaces]]\nmaterial = "
+        "\"white\"\nrotate = [90, 0, 0]\nscale = 2\n" +
+        shape + "\n");
+    EXPECT_TRUE(s.losses.empty());
+    return std::get<Frustum>(s.surfaces.at(0).shape);
+  };
+  const Frustum tube =
+      read("cylinder = { from = [100, 0, 0], to = [100, 0, 50], radius = 10, inward = true }");
+  EXPECT_TRUE(tube.base.isApprox(Eigen::Vector3d(2, 0, 0), 1e-12));
+  EXPECT_TRUE(tube.axis.isApprox(Eigen::Vector3d(0, -1, 0), 1e-12));
+  EXPECT_NEAR(tube.height, 1.0, 1e-12);
+  EXPECT_NEAR(tube.top_radius, 0.2, 1e-12);
+  EXPECT_TRUE(tube.inward);
+  const Frustum tip = read("cone = { from = [0, 0, 0], to = [0, 0, 50], radius = 10 }");
+  EXPECT_EQ(tip.top_radius, 0.0);
+  EXPECT_FALSE(tip.inward);
+  EXPECT_NEAR(
+      read("cone = { from = [0, 0, 0], to = [0, 0, 5], radius = 10, top_radius = 20 }").top_radius,
+      0.4, 1e-12);
+  const Frustum ring =
+      read("disc = { center = [0, 0, 5], normal = [0, 0, 3], radius = 10, inner_radius = 5 }");
+  EXPECT_EQ(ring.height, 0.0);
+  EXPECT_NEAR(ring.top_radius, 0.1, 1e-12);
+  EXPECT_TRUE(front_normal(ring, ring.base).isApprox(Eigen::Vector3d(0, -1, 0), 1e-12));
+}
+
+TEST(ReadToml, RoundShapesWithoutAreaAreRefused) {
+  const auto refused = [](const std::string& shape, const std::string& part) {
+    try {
+      read_text("[materials.white]\n[[surfaces]]\nmaterial = \"white\"\n" + shape + "\n");
+      ADD_FAILURE() << shape;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  };
+  refused("cylinder = { from = [0,0,0], to = [0,0,0], radius = 1 }", "give it a length");
+  refused("cylinder = { from = [0,0,0], to = [0,0,1], radius = 0 }", "radius");
+  refused("cone = { from = [0,0,0], to = [0,0,1], radius = 1, top_radius = -1 }", "at least 0");
+  refused("disc = { center = [0,0,0], normal = [0,0,0], radius = 1 }", "give a direction");
+  refused("disc = { center = [0,0,0], normal = [0,0,1], radius = 1, inner_radius = 1 }",
+          "less than the radius");
 }
 
 TEST(ReadToml, QuarterTurnsAreExact) {
