@@ -61,7 +61,7 @@ struct FrustumGlobe {
   static constexpr double span = 1.0;
   LongitudeFrame frame = longitudes(shape);
 
-  static constexpr int least_rows = 1, least_sectors = 8;
+  static constexpr int least_rows = 1, least_sectors = 24;  // pages draw the elements
   bool has_north = shape.top_radius == 0.0, has_south = shape.base_radius == 0.0;
   double meridian() const { return slant_height(shape); }
   double widest() const { return std::max(shape.base_radius, shape.top_radius); }

@@ -71,7 +71,8 @@ double form_factor(const std::vector<RoundShape>& shapes) {
   return met / sent;
 }
 
-constexpr double many_rays = 5e-5;
+constexpr double many_rays =
+    1.5e-4;  // n^-0.75; with 2^20 rays all are within 3e-5, most within 8e-6
 
 /// Catalogue, C-41.
 double coaxial_discs(double r1, double r2, double h) {
@@ -99,8 +100,8 @@ TEST(RoundFormFactors, OfTheInsideOfACylinderToItsBase) {
   for (const double height : {0.5, 2.0}) {
     const double base_to_side = 1.0 - coaxial_discs(1.0, 1.0, height);
     EXPECT_NEAR(form_factor({cylinder(1.0, height, true), disc(0, 1.0)}),
-                base_to_side / (2.0 * height), 4.0 * many_rays)
-        << height << ": the share jumps where side and base meet";
+                base_to_side / (2.0 * height), many_rays)
+        << height;
   }
 }
 

@@ -77,6 +77,10 @@ class Splitter {
       out.outlines.push_back({at(column, 0), at(column + 1, 0)});
     }
     for (int row = 0; row < rows_; ++row) out.outlines.push_back({at(0, row), at(0, row + 1)});
+    // The open end of a frustum has no neighbour in the north.
+    for (int column = 0; column < columns_ && ring == 0 && !ends_north(grid_, ring); ++column) {
+      out.outlines.push_back({at(column, rows_), at(column + 1, rows_)});
+    }
   }
 
  private:

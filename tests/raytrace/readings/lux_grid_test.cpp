@@ -84,7 +84,7 @@ TEST(LuxGrid, SaysWhatItCannotDo) {
   };
   EXPECT_TRUE(says(refused(0, {.margin = 2.0}), "nothing is left of surface 'surface 0'"));
   EXPECT_TRUE(says(refused(0, {.spacing = 1e-4}), "too fine"));
-  EXPECT_TRUE(says(refused(1, {}), "is a sphere"));
+  EXPECT_TRUE(says(refused(1, {}), "is round"));
 }
 
 /// A chest of 0.8 m reaches through the plane at 0.75 m.

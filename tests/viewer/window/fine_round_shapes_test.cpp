@@ -119,6 +119,31 @@ TEST(FineRoundShapes, OutlinesAreRound) {
   EXPECT_NEAR(std::sqrt(shown / pi), radius, 0.03);
 }
 
+/// 128 chords around lose 1 - sinc(pi / 128), 1e-4, of the area.
+TEST(FineRoundShapes, FacesOfFrustumsCoverBothSides) {
+  for (const double top : {0.0, 0.5, 1.0}) {
+    const Frustum frustum{.height = 2.0, .top_radius = top};
+    Scene scene = ball_scene();
+    scene.surfaces[0].shape = frustum;
+    const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
+    const FineRoundShapes fine = fine_round_shapes(mesh);
+    double covered = 0.0;
+    for (const FineRoundShapes::Face& face : fine.faces) {
+      const auto at = [&](int c) {
+        return fine.points[static_cast<std::size_t>(face.corner[static_cast<std::size_t>(c)])];
+      };
+      Eigen::Vector3d twice =
+          (at(1).position - at(0).position).cross(at(2).position - at(0).position);
+      if (face.corner[3] >= 0) {
+        twice += (at(2).position - at(0).position).cross(at(3).position - at(0).position);
+      }
+      covered += 0.5 * twice.norm();
+      EXPECT_GT(twice.dot(at(0).normal), 0.0);
+    }
+    EXPECT_NEAR(covered, 2.0 * area(frustum), 2.0 * area(frustum) * 2e-4) << top;
+  }
+}
+
 TEST(FineRoundShapes, AreNoneWithoutSpheres) {
   EXPECT_TRUE(fine_round_shapes(PatchMesh{}).faces.empty());
 }
