@@ -5,9 +5,9 @@ may have a filter of tests, as "radiosity:DirectLight.*"."""
 
 PLACES = [
     # number, file, what is off, text, replacement, test programs in order
-    (1, "scene/scene.cpp", "area of a sphere",
-     "return 4.0 * std::numbers::pi * sphere->radius",
-     "return broken(1) * 4.0 * std::numbers::pi * sphere->radius", "scene mesh radiosity"),
+    (1, "scene/round_shape.cpp", "area of a sphere",
+     "return 4.0 * pi * sphere->radius",
+     "return broken(1) * 4.0 * pi * sphere->radius", "scene mesh radiosity"),
     (2, "scene/scene.cpp", "area of a polygon",
      "return facet_area_vector(mesh, facet).norm();",
      "return broken(2) * facet_area_vector(mesh, facet).norm();", "scene mesh radiosity"),
