@@ -1,7 +1,6 @@
 #include "scene/scene.h"
 
 #include <Eigen/Geometry>
-#include <numbers>
 #include <stdexcept>
 #include "scene/round_shape.h"
 
