@@ -339,7 +339,7 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
   const Material& even = scene_.materials[facets_[hit.facet].material];
   // The back of a one-sided mirror is black.
   if (!even.is_specular() || (!even.dielectric && hit.element < 0)) return;
-  const std::optional<Material> own = pattern_at(branch, hit, at);
+  const std::unique_ptr<const Material> own = pattern_at(branch, hit, at);
   const Material& material = own ? *own : even;
   if (!material.is_specular()) return;
   SurfaceInteraction interaction{.material = material,

@@ -320,9 +320,9 @@ class RayTree {
              TreeState& state) const;
   void shade_lamp(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                   TreeState& state) const;
-  /// Numbers of a pattern about a point; empty: the facet has none.
-  std::optional<Material> pattern_at(const Branch& branch, const ElementHit& hit,
-                                     const ShadingPoint& at) const;
+  /// Numbers of a pattern about a point; null: the facet has none.
+  std::unique_ptr<const Material> pattern_at(const Branch& branch, const ElementHit& hit,
+                                             const ShadingPoint& at) const;
   const CoatedBase* base_at(const ElementHit& hit) const {
     return bases_.empty() ? nullptr : bases_.of(facets_[hit.facet].material);
   }

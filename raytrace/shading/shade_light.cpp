@@ -66,16 +66,17 @@ Spectrum RayTree::reflectance(const Branch& branch, const ElementHit& hit,
   return textures_->reflectance(hit.facet, at.rest, footprint(branch, at));
 }
 
-std::optional<Material> RayTree::pattern_at(const Branch& branch, const ElementHit& hit,
-                                            const ShadingPoint& at) const {
-  if (!textures_ || !textures_->has_pattern(hit.facet)) return std::nullopt;
+std::unique_ptr<const Material> RayTree::pattern_at(const Branch& branch, const ElementHit& hit,
+                                                    const ShadingPoint& at) const {
+  if (!textures_ || !textures_->has_pattern(hit.facet)) return nullptr;
   // The back of a one-sided surface is black.
   const PatchMesh& mesh = caster_.mesh();
   const Material& material = scene_.materials[facets_[hit.facet].material];
   if (material.one_sided && hit.element >= 0 && mesh.is_back[mesh.patch[hit.element]] != 0) {
-    return std::nullopt;
+    return nullptr;
   }
-  return textures_->material(hit.facet, at.rest, footprint(branch, at));
+  return std::make_unique<const Material>(
+      textures_->material(hit.facet, at.rest, footprint(branch, at)));
 }
 
 // Sides of the pixel's footprint on the surface, in the rest pose.
@@ -130,7 +131,7 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   const float share = share_of_bright(branch, hit, at);
   Spectrum M = emission(branch, hit, at);
   if (!direct_light_.owns(hit.facet, hit.from_back)) M *= share;
-  const std::optional<Material> own = pattern_at(branch, hit, at);
+  const std::unique_ptr<const Material> own = pattern_at(branch, hit, at);
   Spectrum rho = share * (own ? own->reflectance : reflectance(branch, hit, at));
   const int patch = caster_.mesh().patch[hit.element];
   const bool is_translucent = caster_.mesh().patch_behind(patch) >= 0;
