@@ -1,175 +1,23 @@
 #include "radiosity/emitters/direct_light.h"
-#include "mesh/patches/pictured_emission.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <numbers>
 #include <span>
 #include <stdexcept>
 
 #include "radiosity/emitters/emission_tree.h"
 #include "radiosity/emitters/emitter_point.h"
+#include "radiosity/emitters/emitter_shadows.h"
 #include "radiosity/emitters/exact_shadows.h"
+#include "radiosity/emitters/find_emitters.h"
 #include "radiosity/emitters/sky_light.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"
-#include "scene/limits.h"
-#include "scene/picture_cells.h"
 #include "scene/random_purpose.h"
 
 namespace lightwell {
 namespace {
-
-constexpr double largest_direct_area = 0.25;    // share of the scene's area that counts as "small"
-constexpr std::size_t most_large_emitters = 1;  // facets that are emitters whatever their area
-
-struct EmittingFacet {
-  int facet = 0;
-  double area = 0.0;
-  float exitance = 0.0f;  // all bands
-  std::shared_ptr<const EmissionTree> picture{};
-};
-
-Loop loop_points(const PolygonMesh& mesh, const std::vector<int>& loop) {
-  Loop points;
-  for (int v : loop) points.push_back(mesh.vertices[v]);
-  return points;
-}
-
-// Boundary and holes of a facet.
-std::vector<Loop> facet_loops(const PolygonMesh& mesh, const Facet& facet) {
-  std::vector<Loop> loops = {loop_points(mesh, facet.boundary)};
-  for (const auto& hole : facet.holes) loops.push_back(loop_points(mesh, hole));
-  return loops;
-}
-
-// True for a convex polygon: a fan of triangles keeps samples better stratified than the many
-// elements of the mesh.
-bool is_convex_emitter(const Loop& loop, const Eigen::Vector3d& normal) {
-  const std::size_t n = loop.size();
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d a = loop[(i + 1) % n] - loop[i];
-    const Eigen::Vector3d b = loop[(i + 2) % n] - loop[(i + 1) % n];
-    if (a.cross(b).dot(normal) < 0.0) return false;
-  }
-  return true;
-}
-
-void tile(const PatchMesh& mesh, Emitter& emitter) {
-  if (emitter.loops.size() == 1 && is_convex_emitter(emitter.loops[0], emitter.normal)) {
-    const Loop& loop = emitter.loops[0];
-    for (std::size_t i = 2; i < loop.size(); ++i) {
-      emitter.triangles.push_back({loop[0], loop[i - 1], loop[i]});
-    }
-  } else {
-    for (int e = 0; e < mesh.element_count(); ++e) {
-      const int p = mesh.patch[e];
-      if (mesh.facet[e] != emitter.facet || mesh.is_back[p]) continue;
-      const auto& c = mesh.corners[e];
-      emitter.triangles.push_back({mesh.position(c[0]), mesh.position(c[1]), mesh.position(c[2])});
-      if (c[3] >= 0) {
-        emitter.triangles.push_back(
-            {mesh.position(c[0]), mesh.position(c[2]), mesh.position(c[3])});
-      }
-    }
-  }
-  double sum = 0.0;
-  for (const auto& t : emitter.triangles) {
-    sum += 0.5 * (t[1] - t[0]).cross(t[2] - t[0]).norm();
-    emitter.area_cdf.push_back(sum);
-  }
-  for (double& share : emitter.area_cdf) share /= sum;
-}
-
-void measure(Emitter& emitter) {
-  if (emitter.is_sphere) {
-    emitter.center = emitter.sphere.center;
-    emitter.radius = emitter.sphere.radius;
-    return;
-  }
-  double before = 0.0;
-  for (std::size_t t = 0; t < emitter.triangles.size(); ++t) {
-    const auto& [a, b, c] = emitter.triangles[t];
-    emitter.center += (emitter.area_cdf[t] - before) / 3.0 * (a + b + c);
-    before = emitter.area_cdf[t];
-  }
-  for (const Eigen::Vector3d& corner : emitter.loops[0]) {
-    emitter.radius = std::max(emitter.radius, (corner - emitter.center).norm());
-  }
-}
-
-// A shadow ray to a sample point of a polygon; its weight is the sample's kernel cos cos / r^2.
-ShadowSample polygon_sample(const Emitter& emitter, const Eigen::Vector3d& point,
-                            const Eigen::Vector3d& normal, double u, double v) {
-  const Eigen::Vector3d to = emitter_point(emitter, u, v) - point;
-  const double r2 = to.squaredNorm();
-  const double cos_cos = to.dot(normal) * std::abs(to.dot(emitter.normal));
-  return {.ray = {.origin = point, .direction = to, .t_max = 1.0},
-          .weight = cos_cos > 0.0 ? cos_cos / (r2 * r2) : 0.0};
-}
-
-// Samples are uniform over the cone of directions that the sphere fills, seen from outside.
-ShadowSample sphere_sample(const Emitter& emitter, const Eigen::Vector3d& point,
-                           const Eigen::Vector3d& normal, double u, double v) {
-  const Eigen::Vector3d to_center = emitter.sphere.center - point;
-  const double distance = to_center.norm();
-  const double sin_alpha = emitter.sphere.radius / distance;
-  const double cos_alpha = std::sqrt(std::max(0.0, 1.0 - sin_alpha * sin_alpha));
-  const double cos_beta = 1.0 - u * (1.0 - cos_alpha);
-  const double sin_beta = std::sqrt(std::max(0.0, 1.0 - cos_beta * cos_beta));
-  const double phi = 2.0 * std::numbers::pi * v;
-  const Eigen::Vector3d axis = to_center / distance;
-  Eigen::Vector3d a, b;
-  tangent_frame(axis, a, b);
-  const Eigen::Vector3d direction =
-      sin_beta * (std::cos(phi) * a + std::sin(phi) * b) + cos_beta * axis;
-  const double reach =
-      distance * cos_beta - std::sqrt(std::max(0.0, emitter.sphere.radius * emitter.sphere.radius -
-                                                        distance * distance * sin_beta * sin_beta));
-  return {.ray = {.origin = point, .direction = direction, .t_max = reach},
-          .weight = std::max(0.0, direction.dot(normal))};
-}
-
-// Samples of a polygon close by are uniform in solid angle, so the kernel is the cosine.
-ShadowSample solid_angle_sample(const SolidAngleSampler& sampler, const Eigen::Vector3d& point,
-                                const Eigen::Vector3d& normal, double u, double v) {
-  const Eigen::Vector3d to = sampler.to_point(u, v);
-  return {.ray = {.origin = point, .direction = to, .t_max = 1.0},
-          .weight = std::max(0.0, to.normalized().dot(normal))};
-}
-
-// Samples of a picture from afar are as dense as the light of its parts.
-ShadowSample picture_sample(const Emitter& emitter, const EmissionTree::View& view,
-                            const Eigen::Vector3d& point, const Eigen::Vector3d& normal, double u,
-                            double v) {
-  const EmissionTree::Sample at = emitter.picture->sample(view, u, v);
-  const Eigen::Vector3d to = at.point - point;
-  const double r2 = to.squaredNorm();
-  const double cos_cos = to.dot(normal) * std::abs(to.dot(emitter.normal));
-  return {.ray = {.origin = point, .direction = to, .t_max = 1.0},
-          .weight = cos_cos > 0.0 ? at.area_per_share * cos_cos / (r2 * r2) : 0.0,
-          .exitance = at.exitance};
-}
-
-// `view`: of an emitter that shines by a picture, for samples that weigh its light; null: for
-// samples of the emitter's form factor.
-ShadowSample emitter_shadow_sample(const Emitter& emitter, const SolidAngleSampler& sampler,
-                                   const SurfacePoint& at, double u, double v,
-                                   const EmissionTree::View* view = nullptr) {
-  const auto& [point, normal, facet] = at;
-  const bool by_picture = view && sampler.empty();
-  ShadowSample sample = emitter.is_sphere ? sphere_sample(emitter, point, normal, u, v)
-                        : by_picture      ? picture_sample(emitter, *view, point, normal, u, v)
-                        : sampler.empty() ? polygon_sample(emitter, point, normal, u, v)
-                                          : solid_angle_sample(sampler, point, normal, u, v);
-  if (view && !by_picture) {
-    sample.exitance = &emitter.picture->taken_at(point + sample.ray.direction);
-  }
-  sample.ray.origin_group = facet;
-  sample.ray.target_group = emitter.facet;
-  return sample;
-}
 
 // A light above a point's horizon: its unoccluded F, and the effort to find its visible share.
 struct LightShadow {
@@ -285,94 +133,7 @@ void find_share(const ExactShadows& exact, const ElementCaster& caster, const Su
   if (!shadow.share) shadow.sampler = SolidAngleSampler(*shadow.emitter, at.position);
 }
 
-// The picture by which a facet shines; null: none.
-std::shared_ptr<const EmissionTree> picture_of(const Scene& scene, const FacetRef& ref,
-                                               int most_across) {
-  const Surface& surface = scene.surfaces[ref.surface];
-  const auto& texture = scene.materials[surface.material].emission_texture;
-  const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);
-  if (!texture || !mesh || mesh->facets[ref.facet].uv_map < 0) return nullptr;
-  const Facet& facet = mesh->facets[ref.facet];
-  const UvMap& uv = mesh->uv_maps[facet.uv_map];
-  auto tree = std::make_shared<const EmissionTree>(
-      *texture, uv, picture_cells(texture->image, uv, *mesh, facet, most_across),
-      facet_loops(*mesh, facet), facet_normal(*mesh, facet));
-  return tree->is_empty() ? nullptr : tree;
-}
-
-// Facets that shine, in order. Pictures of `known` emitters are shared instead of made again.
-std::vector<EmittingFacet> emitting_facets(const Scene& scene, const std::vector<FacetRef>& facets,
-                                           std::span<const Emitter> known, double& scene_area) {
-  const auto is_pictured = [&](const FacetRef& ref) {
-    return scene.materials[scene.surfaces[ref.surface].material].emission_texture.has_value();
-  };
-  const int across =
-      cells_across(static_cast<std::size_t>(std::ranges::count_if(facets, is_pictured)));
-  std::vector<EmittingFacet> emitting;
-  for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
-    const Surface& surface = scene.surfaces[facets[f].surface];
-    const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
-    double area = 0.0;
-    if (polygons) {
-      area = facet_area(*polygons, polygons->facets[facets[f].facet]);
-    } else {
-      area = surface_area(surface);
-    }
-    scene_area += area;
-    const Material& material = scene.materials[surface.material];
-    // Hemisphere rays find the light of frustums.
-    if (!material.is_emitter() || std::holds_alternative<Frustum>(surface.shape)) continue;
-    EmittingFacet facet{f, area, material.emission.sum()};
-    if (material.emission_texture) {
-      const auto same = std::ranges::find(known, f, &Emitter::facet);
-      facet.picture = same != known.end() ? same->picture : picture_of(scene, facets[f], across);
-    }
-    if (facet.picture) facet.exitance = facet.picture->mean().sum();
-    if (facet.exitance > 0.0f) emitting.push_back(std::move(facet));
-  }
-  std::stable_sort(emitting.begin(), emitting.end(),
-                   [](const auto& a, const auto& b) { return a.exitance > b.exitance; });
-  return emitting;
-}
-
-// A patch on the front of each facet; -1: the mesh has none.
-std::vector<int> front_patches(const PatchMesh& mesh, std::size_t facet_count) {
-  std::vector<int> front(facet_count, -1);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int p = mesh.patch[e];
-    const auto facet = static_cast<std::size_t>(mesh.facet[e]);
-    if (!mesh.is_back[p] && facet < facet_count) front[facet] = p;
-  }
-  return front;
-}
-
 }  // namespace
-
-Eigen::Vector3d emitter_point(const Emitter& emitter, double u, double v) {
-  const auto at = std::upper_bound(emitter.area_cdf.begin(), emitter.area_cdf.end() - 1, u);
-  const auto i = static_cast<std::size_t>(at - emitter.area_cdf.begin());
-  const double low = i == 0 ? 0.0 : emitter.area_cdf[i - 1];
-  const double within = std::clamp((u - low) / (emitter.area_cdf[i] - low), 0.0, 1.0);
-  const Eigen::Vector3d w = triangle_point(static_cast<float>(within), static_cast<float>(v));
-  const auto& t = emitter.triangles[i];
-  return w[0] * t[0] + w[1] * t[1] + w[2] * t[2];
-}
-
-double approximate_kernel(const Emitter& emitter, const Eigen::Vector3d& from) {
-  const Eigen::Vector3d to = from - emitter.center;
-  const double distance2 = to.squaredNorm();
-  if (emitter.is_sphere) return 1.0 / std::max(distance2, emitter.radius * emitter.radius);
-  const double height = to.dot(emitter.normal);
-  if (!emitter.emits_both_sides && !(height > 0.0)) return 0.0;
-  const double size2 = emitter.area / std::numbers::pi;
-  return (std::abs(height) + 0.1 * std::sqrt(size2)) /
-         (std::sqrt(distance2 + size2) * (distance2 + size2));
-}
-
-Spectrum exitance_at(const Emitter& emitter, const Eigen::Vector3d& point) {
-  if (!emitter.picture) return emitter.exitance;
-  return emitter.picture_scale.head<3>() * emitter.picture->at(point);
-}
 
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
                          const DirectLight* like)
@@ -389,64 +150,11 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
   for (std::size_t f = 0; f < facets.size() && !channels.empty(); ++f) {
     first_column_[f] = bands_ * std::max(0, channels.of_surface[facets[f].surface]);
   }
-  double scene_area = 0.0;
-  const std::vector<EmittingFacet> emitting = emitting_facets(
-      scene, facets, like ? std::span<const Emitter>(like->emitters_) : std::span<const Emitter>(),
-      scene_area);
-  const std::vector<int> front = front_patches(mesh, facets.size());
-  const bool any_picture = std::ranges::any_of(emitting, [](auto& e) { return !!e.picture; });
-  BandArray mean_of_facet;
-  if (any_picture) mean_of_facet = facet_emission(mesh);
-  // Rays over the hemisphere find a large emitter in mirrors with less noise than rays of its own
-  // that meet the mirrors. Coats mirror little.
-  const bool has_mirrors = std::ranges::any_of(scene.materials, [](const Material& material) {
-    return material.is_specular() && !material.mirrors_by_coat();
-  });
-  double taken = 0.0;
-  std::size_t large = 0;
-  for (std::size_t i = 0; i < emitting.size();) {
-    std::size_t end = i;
-    double area = 0.0;
-    while (end < emitting.size() && emitting[end].exitance >= emitting[i].exitance * (1 - 1e-6f)) {
-      area += emitting[end++].area;
-    }
-    if (taken + area > largest_direct_area * scene_area) {
-      large += end - i;
-      if (has_mirrors || large > most_large_emitters) break;
-    } else {
-      taken += area;
-    }
-    for (; i < end; ++i) {
-      const FacetRef& ref = facets[emitting[i].facet];
-      const Surface& surface = scene.surfaces[ref.surface];
-      const Material& material = scene.materials[surface.material];
-      Emitter emitter{.facet = emitting[i].facet,
-                      .exitance = material.emission,
-                      .picture = emitting[i].picture,
-                      .area = emitting[i].area,
-                      .emits_both_sides = material.emits_both_sides};
-      if (const int p = front[emitter.facet]; p >= 0) {
-        emitter.exitance = emitter.picture ? Spectrum(mean_of_facet.row(emitter.facet).transpose())
-                                           : Spectrum(mesh.emission.row(p).transpose());
-      }
-      if (emitter.picture) {
-        const Spectrum mean = emitter.picture->mean();
-        emitter.picture_scale =
-            (mean > 0.0f).select(emitter.exitance / mean.max(least_light), 0.0f);
-      }
-      if (const auto* polygons = std::get_if<PolygonMesh>(&surface.shape)) {
-        const Facet& facet = polygons->facets[ref.facet];
-        emitter.normal = facet_normal(*polygons, facet);
-        emitter.loops = facet_loops(*polygons, facet);
-        tile(mesh, emitter);
-      } else {
-        emitter.is_sphere = true;
-        emitter.sphere = std::get<Sphere>(surface.shape);
-      }
-      measure(emitter);
-      owned_[emitter.facet] = emitter.is_sphere ? Owned::front : Owned::whole;
-      emitters_.push_back(std::move(emitter));
-    }
+  emitters_ =
+      find_emitters(scene, facets, mesh,
+                    like ? std::span<const Emitter>(like->emitters_) : std::span<const Emitter>());
+  for (const Emitter& emitter : emitters_) {
+    owned_[emitter.facet] = emitter.is_sphere ? Owned::front : Owned::whole;
   }
   exact_ = like ? like->exact_ : std::make_shared<const ExactShadows>(scene, mesh, emitters_);
 }

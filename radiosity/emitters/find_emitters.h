@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "mesh/patches/patch_mesh.h"
+#include "radiosity/emitters/direct_light.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// The emitting facets whose light is direct light (see DirectLight), as bright as in `mesh`, in
+/// order of falling exitance. `facets` are scene_facets(scene). Pictures of `known` emitters of the
+/// same scene are shared instead of made again.
+std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<FacetRef>& facets,
+                                   const PatchMesh& mesh, std::span<const Emitter> known = {});
+
+}  // namespace lightwell
