@@ -23,8 +23,8 @@ int rays_per_patch_for_parts(int patches);
 /// 3. These join the part that they exchange most with; without such, the largest:
 ///     * a part of fewer than four patches, or of less than 1/1024 of all area but the outside;
 ///     * a crack: the mean length of the rays within is below 1/32 of the root of the area;
-///     * a hollow, such as the inside of a drawer: area below 1/64, and mean length of the rays
-///       within below 1/8, of those of the largest part that is no outside.
+///     * a hollow, such as the inside of a drawer or a column: area below 1/20, and mean length of
+///       the rays within below 1/5, of those of the largest part that is no outside.
 ///
 ///    Patches that see nothing, such as those under a block that stands on them, join the largest.
 ///
