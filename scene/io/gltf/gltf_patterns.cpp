@@ -7,18 +7,12 @@
 
 #include "scene/io/glossy.h"
 #include "scene/io/gltf/gltf_materials.h"
+#include "scene/io/gltf/gltf_values.h"
 #include "scene/io/sheets.h"
 #include "scene/material_at.h"
 
 namespace lightwell {
-namespace {
-
-// A number of a file whose shares lie in [0,1].
-double share_or(const std::optional<GltfObject>& owner, const char* key, double otherwise) {
-  return std::clamp(owner ? owner->number_or(key, otherwise) : otherwise, 0.0, 1.0);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 std::optional<ShareTexture> GltfMaterials::share_picture(const std::optional<GltfObject>& owner,
                                                          const char* key, int number, float factor,
