@@ -179,8 +179,9 @@ TEST(FindParts, TheInsideOfATableLegIsNone) {
 }
 
 // A closed drawer of 0.4 m x 0.4 m x 0.1 m has 0.48 m2, 1/200 of the room's area, and rays of
-// 4 V / A = 0.13 m, 1/19 of those in the room. A booth in a low hall has 1/200 of the area as well,
-// but rays of 0.8 m, 1/4 of those in the hall.
+// 4 V / A = 0.13 m, 1/19 of those in the room. A column of 0.3 m x 0.3 m x 2.9 m has 1/26 of the
+// area, and rays of 0.29 m, 1/9 of those in the room. A booth in a low hall has 1/200 of the area
+// as well, but rays of 0.8 m, 1/4 of those in the hall.
 TEST(FindParts, AHollowIsNoneAndABoothIs) {
   const auto parts_of = [](const Eigen::Vector3d& room, const Eigen::Vector3d& body) {
     Scene scene;
@@ -191,6 +192,7 @@ TEST(FindParts, AHollowIsNoneAndABoothIs) {
     return found_in(scene).parts.count();
   };
   EXPECT_EQ(parts_of({4, 5, 3}, {0.4, 0.4, 0.1}), 1);
+  EXPECT_EQ(parts_of({4, 5, 3}, {0.3, 0.3, 2.9}), 1);
   EXPECT_EQ(parts_of({30, 30, 2.1}, {1, 1, 2}), 2);
 }
 
