@@ -49,10 +49,7 @@ Vector3d nearest_of(const Sphere& sphere, const Vector3d& point) {
 Vector3d nearest_of(const Frustum& frustum, const Vector3d& point) {
   ProfilePoint at = profile_point(frustum, point);
   if (at.outward.isZero()) at.outward = longitudes(frustum).zero;
-  const double rise = frustum.top_radius - frustum.base_radius, slant = slant_height(frustum);
-  const double along =
-      ((at.across - frustum.base_radius) * rise + at.height * frustum.height) / (slant * slant);
-  const double place = std::clamp(along, 0.0, 1.0);
+  const double place = std::clamp(place_along(frustum, point), 0.0, 1.0);
   return frustum.base + place * frustum.height * frustum.axis +
          radius_at(frustum, place) * at.outward;
 }
@@ -129,6 +126,12 @@ RoundShape moved(const RoundShape& shape, const Eigen::Isometry3d& pose) {
 
 double radius_at(const Frustum& frustum, double along) {
   return frustum.base_radius + along * (frustum.top_radius - frustum.base_radius);
+}
+
+double place_along(const Frustum& frustum, const Vector3d& point) {
+  const ProfilePoint at = profile_point(frustum, point);
+  const double rise = frustum.top_radius - frustum.base_radius, slant = slant_height(frustum);
+  return ((at.across - frustum.base_radius) * rise + at.height * frustum.height) / (slant * slant);
 }
 
 double slant_height(const Frustum& frustum) {

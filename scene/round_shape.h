@@ -38,8 +38,12 @@ Eigen::Vector3d front_normal(const RoundShape& shape, const Eigen::Vector3d& poi
 
 RoundShape moved(const RoundShape& shape, const Eigen::Isometry3d& pose);
 
-/// What a frustum has at the place `along`, [0,1] from its base to its top.
+/// Radius of a frustum, m, at the place `along`, [0,1] from its base to its top.
 double radius_at(const Frustum& frustum, double along);
+
+/// Place of the point of a frustum's generators that is nearest to `point`: 0 at the base, 1 at the
+/// top, outside of [0,1] beyond the rims.
+double place_along(const Frustum& frustum, const Eigen::Vector3d& point);
 
 /// Length of the generators of a frustum, m: the way from base to top on the surface.
 double slant_height(const Frustum& frustum);

@@ -78,11 +78,8 @@ struct FrustumGlobe {
   }
   std::pair<double, double> down_and_phi(const Vector3d& point) const {
     const Vector3d from_base = point - shape.base;
-    const double x = from_base.dot(frame.zero), y = from_base.dot(frame.quarter);
-    const double rise = shape.top_radius - shape.base_radius;
-    const double along =
-        (std::hypot(x, y) - shape.base_radius) * rise + from_base.dot(shape.axis) * shape.height;
-    return {1.0 - along / (meridian() * meridian()), std::atan2(y, x)};
+    return {1.0 - place_along(shape, point),
+            std::atan2(from_base.dot(frame.quarter), from_base.dot(frame.zero))};
   }
   /// Area grows as the square of the radius, and evenly where the radius is constant.
   Vector3d even_at(double north, double south, double phi, double v) const {
@@ -147,8 +144,8 @@ class Cutter {
   // Adds the patches between two parallels.
   void add_row(int north, int south) {
     const double widest = globe_.radius_between(down(north), down(south));
-    // As many whole sectors as fit into the width of a patch, but no fewer than elements along a
-    // patch edge.
+    // A patch takes the whole sectors that fit into its width, but no fewer than the elements along
+    // its edge.
     const double sector_width = 2.0 * pi / out_.sectors * widest;
     const int fit = std::max(size_.elements_per_edge,
                              static_cast<int>(size_.patch_size / sector_width * (1.0 + 1e-9)));
