@@ -1,4 +1,5 @@
 #include "radiosity/reconstruct.h"
+#include "radiosity/gather/caustic_irradiance.h"
 
 #include <algorithm>
 #include <cmath>

@@ -110,17 +110,6 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
                                const RadiositySolution& solution);
 
-/// Irradiance at every vertex (vertices x columns, W/m^2) from the lights of DirectLight through
-/// mirrors and glass. The rays of each light leave their power on the elements where they end
-/// (after Heckbert 1990), and a vertex takes the power of the elements around it over their area.
-/// A light casts `rays` times the root of its share of its channel's power, at least 4096 if `rays`
-/// are more.
-/// Light straight through ClearPanes is left out, since it is direct light, and so is that of the
-/// sky's dome. Empty if the scene has no mirrors or glass. Throws Interrupted when progress says
-/// stop.
-BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
-                             const RunControl& run = {});
-
 /// A gather point for every vertex: 2 % of the way from the vertex to the centre of one of its
 /// elements, so that the point lies on no edge, with the facet and the normal of that element. On
 /// round shapes the point lies on the surface. If the vertex is shared by facets that meet

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/build_patches.h"
+#include "radiosity/gather/caustic_irradiance.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/paths/specular_targets.h"
 #include "tests/radiosity/test_scenes.h"

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
+#include "radiosity/gather/caustic_irradiance.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/paths/caustic_photons.h"
 #include "radiosity/solution/relight.h"

@@ -1,0 +1,249 @@
+#include "radiosity/gather/hemisphere_gather.h"
+
+#include <algorithm>
+#include <numbers>
+
+#include "scene/random_purpose.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int gather_batch = 128;
+
+int ray_count(const GatherPoint& at, const GatherOptions& options) {
+  return at.rays > 0 ? at.rays : std::max(1, options.rays);
+}
+
+}  // namespace
+
+HemisphereGather::HemisphereGather(const LitScene& lit, const BandArray& radiosity,
+                                   const GatherOptions& options, const GatherPoints& points)
+    : mesh_(lit.mesh()),
+      caster_(lit.caster),
+      radiosity_(radiosity),
+      paths_(lit.scene, lit.caster, options.max_specular_depth),
+      options_(options),
+      bands_(lit.scene.bands.count()),
+      bright_(lit.scene, lit.caster, radiosity),
+      gaps_(lit, radiosity, paths_) {
+  if (const FreeSource* dome = lit.direct_light.dome()) {
+    dome_ = dome->light;
+    if (lit.direct_light.column_count() == radiosity.cols()) dome_column_ = dome->channel * bands_;
+  }
+  for (int i = 0; i < points.size(); ++i) {
+    const int rays = ray_count(points[i], options);
+    if (!sets_.contains(rays)) sets_.emplace(rays, HemisphereSets(rays));
+    if (!bright_.is_empty() && !aims_.contains(rays)) {
+      aims_.emplace(rays, SobolPoints(bright_.aimed(rays)));
+    }
+    if (options.portals && !portal_aims_.contains(rays)) {
+      portal_aims_.emplace(rays, SobolPoints(Portals::aimed(rays)));
+    }
+  }
+}
+
+void HemisphereGather::gather(const GatherPoint& at, std::uint64_t key, float* irradiance,
+                              float& variance) const {
+  const Eigen::Index columns = radiosity_.cols();
+  std::array<Eigen::ArrayXd, 2> sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
+  const HemisphereSets& set = sets_.at(ray_count(at, options_));
+  const HemisphereSets::Draw draw = set.draw(random_key(key, RandomPurpose::gather_rays));
+  const Eigen::Matrix3d frame = draw.frame(at.normal);
+  const int count = set.count();
+  Place place{.at = at, .key = key, .rays = count};
+  if (!bright_.is_empty()) place.bright = bright_.view(at.position, at.normal, count);
+  if (options_.portals) place.portals = options_.portals->view(at.position, at.normal, count);
+  std::array<Ray, gather_batch> ray;
+  std::array<ElementHit, gather_batch> hit;
+  for (int begin = 0; begin < set.count(); begin += gather_batch) {
+    const auto points =
+        draw.all().subspan(static_cast<std::size_t>(begin),
+                           static_cast<std::size_t>(std::min(gather_batch, set.count() - begin)));
+    const std::size_t n = points.size();
+    for (std::size_t r = 0; r < n; ++r) {
+      ray[r] = {.origin = at.position,
+                .direction = frame * Eigen::Vector3d(points[r].x, points[r].y, points[r].z),
+                .origin_group = at.facet};
+    }
+    caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+    for (std::size_t r = 0; r < n; ++r) {
+      const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;
+      const int rank = begin / HemisphereSets::block * HemisphereSets::block + points[r].rank;
+      add(place, ray[r], hit[r], index, aimed_density(place, ray[r], hit[r]),
+          sum[rank < count / 2 ? 0 : 1]);
+    }
+  }
+  if (!place.bright.is_empty()) aim_at_bright(place, sum);
+  if (!place.portals.is_empty()) aim_at_portals(place, sum);
+  Eigen::Map<Eigen::ArrayXf>(irradiance, columns) = ((sum[0] + sum[1]) / set.count()).cast<float>();
+  variance = half_difference(sum, set.count());
+}
+
+// Number times density, 1/sr, of rays aimed at the portals that the ray passes.
+double HemisphereGather::aimed_density(const Place& place, const Ray& ray,
+                                       const ElementHit& hit) const {
+  if (place.portals.is_empty()) return 0.0;
+  return Portals::aimed(place.rays) *
+         options_.portals->density(place.portals, ray.origin, ray.direction, hit.t);
+}
+
+// Adds rays towards bright patches; each counts only the light straight from its own element.
+void HemisphereGather::aim_at_bright(const Place& place, std::array<Eigen::ArrayXd, 2>& sum) const {
+  const GatherPoint& at = place.at;
+  const SobolPoints& aims = aims_.at(place.rays);
+  std::array<Ray, gather_batch> ray;
+  std::array<ElementHit, gather_batch> hit;
+  std::array<int, gather_batch> element;
+  for (int begin = 0; begin < aims.count(); begin += gather_batch) {
+    const auto n = static_cast<std::size_t>(std::min(gather_batch, aims.count() - begin));
+    for (std::size_t r = 0; r < n; ++r) {
+      const Eigen::Array4d u =
+          aims.point(begin + static_cast<int>(r), random_key(place.key, RandomPurpose::gather_aims))
+              .cast<double>();
+      const BrightPatches::Aim aim = bright_.draw(place.bright, u[0], u[1], u[2]);
+      element[r] = aim.element;
+      ray[r] = {.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
+    }
+    caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+    for (std::size_t r = 0; r < n; ++r) {
+      if (hit[r].element != element[r] || !paths_.is_diffuse(hit[r].facet)) continue;
+      if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
+      if (is_near_portal(place, ray[r], hit[r])) continue;
+      const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
+      const double share = bright_.share(place.bright, at.normal.dot(ray[r].direction), place.rays,
+                                         ray[r], hit[r], aimed_density(place, ray[r], hit[r]));
+      add_radiosity(hit[r], share * paths_.base_factor(ray[r], hit[r]), sum[is_first ? 0 : 1]);
+    }
+  }
+}
+
+// Adds rays towards portals. Each counts whatever it finds, if it passes a portal.
+void HemisphereGather::aim_at_portals(const Place& place,
+                                      std::array<Eigen::ArrayXd, 2>& sum) const {
+  const GatherPoint& at = place.at;
+  const SobolPoints& aims = portal_aims_.at(place.rays);
+  const std::uint64_t key = random_key(place.key, RandomPurpose::gather_portals);
+  std::array<Ray, gather_batch> ray;
+  std::array<ElementHit, gather_batch> hit;
+  for (int begin = 0; begin < aims.count(); begin += gather_batch) {
+    const auto n = static_cast<std::size_t>(std::min(gather_batch, aims.count() - begin));
+    for (std::size_t r = 0; r < n; ++r) {
+      const Eigen::Array4d u = aims.point(begin + static_cast<int>(r), key).cast<double>();
+      ray[r] = {.origin = at.position,
+                .direction = options_.portals->draw(place.portals, at.position, u[0], u[1], u[2]),
+                .origin_group = at.facet};
+    }
+    caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+    for (std::size_t r = 0; r < n; ++r) {
+      const double density = aimed_density(place, ray[r], hit[r]);
+      if (!(density > 0.0) || !(at.normal.dot(ray[r].direction) > 0.0)) continue;
+      const std::size_t index = static_cast<std::size_t>(begin) + r;
+      const bool is_first = index < static_cast<std::size_t>(aims.count() / 2);
+      add(place, ray[r], hit[r], static_cast<std::uint64_t>(place.rays) + index, density,
+          sum[is_first ? 0 : 1]);
+    }
+  }
+}
+
+// Adds what a ray finds, by the balance heuristic. `aimed` is aimed_density(); `index` numbers
+// the rays of the place. Bright patches are not aimed at through mirrors and glass.
+void HemisphereGather::add(const Place& place, const Ray& ray, const ElementHit& hit,
+                           std::uint64_t index, double aimed, Eigen::ArrayXd& sum) const {
+  if (hit.facet < 0) return;
+  const GatherPoint& at = place.at;
+  const double by_cosine =
+      place.rays * std::max(at.normal.dot(ray.direction), 0.0) * std::numbers::inv_pi;
+  const double share = aimed > 0.0 ? by_cosine / (by_cosine + aimed) : 1.0;
+  const bool in_gap = (at.facet >= 0 && gaps_.is_gap(at.normal, ray, hit)) ||
+                      (aimed > 0.0 && gaps_.is_narrow(caster_, ray, hit));
+  if (in_gap) {
+    add_of_gap(ray, hit, random_key(place.key, RandomPurpose::gap_rays, index), share, sum);
+    return;
+  }
+  if (is_near_portal(place, ray, hit)) {
+    Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+    gaps_.add_near_portal(caster_, *options_.portals, ray, hit,
+                          random_key(place.key, RandomPurpose::gap_rays, index), found);
+    sum += share * found;
+    return;
+  }
+  if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
+    const double straight = place.bright.is_empty()
+                                ? share
+                                : bright_.share(place.bright, at.normal.dot(ray.direction),
+                                                place.rays, ray, hit, aimed);
+    add_radiosity(hit, straight * paths_.base_factor(ray, hit), sum);
+  }
+  if (paths_.is_specular(hit.facet)) {
+    add_path(ray, hit, random_key(place.key, RandomPurpose::gather_paths, index), share, sum);
+  }
+}
+
+void HemisphereGather::add_of_gap(const Ray& ray, const ElementHit& hit, std::uint64_t key,
+                                  double share, Eigen::ArrayXd& sum) const {
+  if (share == 1.0) {
+    gaps_.add(caster_, ray, hit, key, sum);
+    return;
+  }
+  Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+  gaps_.add(caster_, ray, hit, key, found);
+  sum += share * found;
+}
+
+bool HemisphereGather::is_near_portal(const Place& place, const Ray& ray,
+                                      const ElementHit& hit) const {
+  return !place.portals.is_empty() && gaps_.is_near_portal(*options_.portals, ray, hit);
+}
+
+// Adds light that arrives through mirrors and glass.
+void HemisphereGather::add_path(const Ray& ray, const ElementHit& hit, std::uint64_t key,
+                                double share, Eigen::ArrayXd& sum) const {
+  const auto weight = static_cast<float>(share);
+  const PathLosses losses =
+      paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+        add_throughput(end, weight * throughput, sum);
+      });
+  if (losses.sky.size() == 0 || dome_.size() == 0) return;
+  sum.segment(dome_column_, bands_) +=
+      (std::numbers::pi_v<float> * weight * dome_ * losses.sky).cast<double>();
+}
+
+// `throughput` has bands, and the columns are those of one channel after the other.
+void HemisphereGather::add_throughput(const ElementHit& hit, const Spectrum& throughput,
+                                      Eigen::ArrayXd& sum) const {
+  if (hit.element < 0) return;
+  const Eigen::Index bands = throughput.size();
+  const auto& corners = mesh_.corners[hit.element];
+  for (Eigen::Index k = 0; k < sum.size(); k += bands) {
+    Spectrum B = Spectrum::Zero(bands);
+    for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
+      B += hit.weights[c] * radiosity_.row(corners[c]).segment(k, bands).transpose();
+    }
+    sum.segment(k, bands) += (throughput * B).cast<double>();
+  }
+}
+
+void HemisphereGather::add_radiosity(const ElementHit& hit, double share,
+                                     Eigen::ArrayXd& sum) const {
+  const auto& corners = mesh_.corners[hit.element];
+  for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
+    const float* B = radiosity_.data() + corners[c] * radiosity_.cols();
+    for (Eigen::Index k = 0; k < sum.size(); ++k) {
+      sum[k] += share * static_cast<double>(hit.weights[c] * B[k]);
+    }
+  }
+}
+
+// The square of half the difference between the halves' means.
+float HemisphereGather::half_difference(const std::array<Eigen::ArrayXd, 2>& sum, int count) const {
+  const int first = count / 2, second = count - first;
+  const Eigen::ArrayXd by_column =
+      0.5 * (first > 0 ? Eigen::ArrayXd(sum[1] / second - sum[0] / first) : 2.0 * sum[1]);
+  Eigen::ArrayXd difference = Eigen::ArrayXd::Zero(bands_);
+  for (Eigen::Index k = 0; k < by_column.size(); k += bands_) {
+    difference += by_column.segment(k, bands_);
+  }
+  return static_cast<float>(difference.square().mean());
+}
+
+}  // namespace lightwell

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <map>
+
+#include "radiosity/gather/bright_patches.h"
+#include "radiosity/gather/final_gather.h"
+#include "radiosity/gather/gap_light.h"
+#include "radiosity/openings/portals.h"
+#include "radiosity/paths/light_path.h"
+#include "scene/hemisphere_sets.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+
+/// Indirect irradiance at points by rays over the hemisphere, for gather_irradiance(), whose
+/// arguments these are.
+class HemisphereGather {
+ public:
+  /// `points` give the numbers of rays to prepare for. Keeps references to all but `points`.
+  HemisphereGather(const LitScene& lit, const BandArray& radiosity, const GatherOptions& options,
+                   const GatherPoints& points);
+
+  /// E = (1/N) sum B over N cosine-distributed rays and, if there are bright patches or portals,
+  /// rays aimed at them besides; B of all kinds is weighted by the balance heuristic. Writes the
+  /// columns of `irradiance`, W/m^2, and the variance of the mean of the bands, (W/m^2)^2. The
+  /// first and the second half of the rays are each stratified.
+  void gather(const GatherPoint& at, std::uint64_t key, float* irradiance, float& variance) const;
+
+ private:
+  // A gather point, and the bright patches and portals that are seen from there.
+  struct Place {
+    const GatherPoint& at;
+    std::uint64_t key = 0;
+    int rays = 0;  // cosine-distributed
+    BrightPatches::View bright{};
+    Portals::View portals{};
+  };
+
+  double aimed_density(const Place& place, const Ray& ray, const ElementHit& hit) const;
+
+  void aim_at_bright(const Place& place, std::array<Eigen::ArrayXd, 2>& sum) const;
+
+  void aim_at_portals(const Place& place, std::array<Eigen::ArrayXd, 2>& sum) const;
+
+  void add(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
+           double aimed, Eigen::ArrayXd& sum) const;
+
+  void add_of_gap(const Ray& ray, const ElementHit& hit, std::uint64_t key, double share,
+                  Eigen::ArrayXd& sum) const;
+
+  bool is_near_portal(const Place& place, const Ray& ray, const ElementHit& hit) const;
+
+  void add_path(const Ray& ray, const ElementHit& hit, std::uint64_t key, double share,
+                Eigen::ArrayXd& sum) const;
+
+  void add_throughput(const ElementHit& hit, const Spectrum& throughput, Eigen::ArrayXd& sum) const;
+
+  void add_radiosity(const ElementHit& hit, double share, Eigen::ArrayXd& sum) const;
+
+  float half_difference(const std::array<Eigen::ArrayXd, 2>& sum, int count) const;
+
+  const PatchMesh& mesh_;
+  const ElementCaster& caster_;
+  const BandArray& radiosity_;
+  LightPaths paths_;
+  const GatherOptions& options_;
+  Eigen::Index bands_;
+  Spectrum dome_{};  // scale of the sky's light per band; empty without a sky
+  Eigen::Index dome_column_ = 0;
+  std::map<int, HemisphereSets> sets_;  // by number of rays
+  BrightPatches bright_;
+  GapLight gaps_;
+  // Of rays aimed at bright patches and at portals, by the number of rays in sets_.
+  std::map<int, SobolPoints> aims_, portal_aims_;
+};
+
+}  // namespace lightwell
