@@ -52,6 +52,7 @@ double radiance(const TracedScene& lit, const Ray& ray, std::uint64_t key = 1) {
 // at every angle. The lobe mirrors Fresnel's share at each sampled microfacet of the part that is
 // coated, with a standard deviation of up to 0.06 between rays at 80 degrees and 0.03 elsewhere:
 // 6400 rays leave 0.06 / 80 = 7.5e-4 and 4e-4, and the tables of the base are 2e-4 from the lobes.
+// One such error suffices, as the rays are spread evenly.
 TEST(PatternInAFurnace, WhiteIsInvisible) {
   Material white = lacquer(1.0f, 0.0f);
   SurfacePattern pattern = pattern_of(white);
@@ -89,9 +90,12 @@ TEST(PatternInAFurnace, WhiteIsInvisible) {
 
 // Each square of a checkerboard of two lacquers shows what a surface of that lacquer alone shows:
 // the same rays, whose numbers differ by the rounding of texels. The roughness is that of steps of
-// the tables, so that nothing is interpolated.
+// the tables, so that nothing is interpolated. Their square-root codes are 16383.75 and 32767.5
+// before rounding: either is off by 3.1e-5 of itself. The lobe's density and its masking lie
+// between the powers -4 and 4 of the roughness.
 TEST(Patterns, SquaresShowTheMaterialOfTheirNumbers) {
   constexpr float fine = 0.0625f, coarse = 0.25f;
+  constexpr double of_texels = 4.0 * 3.1e-5;
   Material board = lacquer(0.5f, fine);
   SurfacePattern pattern = pattern_of(board);
   pattern.base = pattern.behind_base = grey(0.5f);
@@ -120,7 +124,7 @@ TEST(Patterns, SquaresShowTheMaterialOfTheirNumbers) {
       const Ray ray{.origin = at + from, .direction = -from.normalized()};
       const auto key = static_cast<std::uint64_t>(i);
       const double alone = radiance(is_fine ? shiny : dull, ray, key);
-      EXPECT_NEAR(radiance(pictured, ray, key), alone, 2e-3 * alone) << i << is_left;
+      EXPECT_NEAR(radiance(pictured, ray, key), alone, of_texels * alone) << i << is_left;
     }
   }
 }
@@ -148,9 +152,11 @@ TEST(Patterns, AreFilteredOverThePixel) {
   const auto paint = static_cast<double>(tree.trace(ray, 1, 1.0f, {}).radiance[0]);
   const Ray beside{.origin = ray.origin + Eigen::Vector3d(2.0 / 64, 0, 0), .direction = -up};
   const auto metal = static_cast<double>(tree.trace(beside, 1, 1.0f, {}).radiance[0]);
-  // The picture's coarse levels are means to 16 bits, of which those of a half are 3e-5 apart.
-  EXPECT_NEAR(static_cast<double>(far.radiance[0]), 0.5 * (paint + metal), 1e-4);
-  EXPECT_GT(std::abs(paint - metal), 0.1);
+  // Each of six coarser levels of 64 texels is a mean to half a step of the square-root code,
+  // sqrt(1/2) / 65535, of what metal and paint differ by, less than 1.
+  constexpr double of_levels = 6 * 0.70711 / 65535;  // 6.5e-5
+  EXPECT_NEAR(static_cast<double>(far.radiance[0]), 0.5 * (paint + metal), of_levels);
+  EXPECT_GT(std::abs(paint - metal), 0.1) << "of a difference of 0.3 in reflectance";
 }
 
 }  // namespace

@@ -37,28 +37,33 @@ TEST(RgbBasis, GivesBackColoursUnderDaylight) {
 }
 
 // White is white and grey is grey in every band; no band reflects more than the largest share or
-// less than the smallest. The sum of three floats rounds by 1e-7.
+// less than the smallest. Three functions that add up to 1, their products with the colour and the
+// sum of these: five roundings of half of epsilon.
 TEST(RgbBasis, KeepsGreyAndBounds) {
+  constexpr float rounding = 5 * 0x1p-24f;  // 2.98e-7
   for (const Bands& bands : {spectral_bands(400.0, 700.0, 76), spectral_bands(400.0, 700.0, 3),
                              spectral_bands(360.0, 830.0, 20), spectral_bands(500.0, 600.0, 1)}) {
     const RgbBasis basis(bands);
     for (const float grey : {1.0f, 0.3f}) {
-      EXPECT_LT((basis.reflectance(Eigen::Array3f::Constant(grey)) - grey).abs().maxCoeff(), 3e-7f);
+      EXPECT_LT((basis.reflectance(Eigen::Array3f::Constant(grey)) - grey).abs().maxCoeff(),
+                rounding);
     }
     for (const Eigen::Array3f& rgb : colours) {
       const Spectrum rho = basis.reflectance(rgb);
-      EXPECT_LE(rho.maxCoeff(), rgb.maxCoeff() + 3e-7f);
-      EXPECT_GE(rho.minCoeff(), rgb.minCoeff() - 3e-7f);
+      EXPECT_LE(rho.maxCoeff(), rgb.maxCoeff() + rounding);
+      EXPECT_GE(rho.minCoeff(), rgb.minCoeff() - rounding);
     }
   }
 }
 
-// Steps between neighbours of 10 nm are less than a third: no spikes.
+// No spikes: bands of 10 nm step by no more than samples do, of which the largest step is that of
+// red from 580 to 590 nm. Colours are mixtures of the three functions.
 TEST(RgbBasis, IsSmooth) {
+  constexpr float largest_step = 0.48214f - 0.19811f;
   const RgbBasis basis(spectral_bands(375.0, 735.0, 36));
   for (const Eigen::Array3f& rgb : colours) {
     const Spectrum rho = basis.reflectance(rgb);
-    EXPECT_LT((rho.tail(35) - rho.head(35)).abs().maxCoeff(), 0.3f);
+    EXPECT_LT((rho.tail(35) - rho.head(35)).abs().maxCoeff(), largest_step);
   }
 }
 
@@ -80,9 +85,11 @@ TEST_F(SpectralPictures, AreReflectancesOfTheBands) {
       "polygon = [[0,0,0],[2,0,0],[2,1,0],[0,1,0]]\nuv = [[0,1],[1,1],[1,0],[0,0]]\n");
   const FacetTextures textures(scene);
   EXPECT_EQ(scene.materials[0].reflectance.size(), 10);
-  EXPECT_LT((scene.materials[0].reflectance - 0.4f).abs().maxCoeff(), 1e-6f);
-  EXPECT_LT((textures.reflectance(0, {0.5, 0.5, 0.0}) - 0.8f).abs().maxCoeff(), 1e-6f);
-  EXPECT_LT(textures.reflectance(0, {1.5, 0.5, 0.0}).abs().maxCoeff(), 1e-6f);
+  // Texels of 0 and 1 are exact; five roundings as above and three of factors.
+  constexpr float rounding = 8 * 0x1p-24f;
+  EXPECT_LT((scene.materials[0].reflectance - 0.4f).abs().maxCoeff(), rounding);
+  EXPECT_LT((textures.reflectance(0, {0.5, 0.5, 0.0}) - 0.8f).abs().maxCoeff(), rounding);
+  EXPECT_EQ(textures.reflectance(0, {1.5, 0.5, 0.0}).abs().maxCoeff(), 0.0f);
 }
 
 }  // namespace

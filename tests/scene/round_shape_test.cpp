@@ -14,7 +14,11 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double rounding = 1e-14;
+// A few products and roots of doubles, as a share of the result.
+constexpr double rounding = 16 * 0x1p-53;  // 1.8e-15
+
+// Sixteen roundings of coordinates below 4 m.
+constexpr double place_rounding = 16 * 0x1p-53 * 4.0;  // 7.1e-15 m
 
 Frustum turned_cone() {
   return {.base = {1, 2, 3},
@@ -52,8 +56,9 @@ TEST(RoundShape, ReachIsThatOfItsFarthestPoint) {
           farthest = std::max(farthest, way.dot(point_on(f, 2.0 * pi * i / steps, along)));
         }
       }
-      // Half a step of 1.7e-3 rad lies below the top of a circle by r (1 - cos), 2e-7.
-      EXPECT_NEAR(reach(f, way), farthest, 3e-7);
+      // Half a step of 1.7e-3 rad lies below the top of a circle by r (1 - cos), 1.9e-7.
+      const double below_top = f.base_radius * (1.0 - std::cos(pi / steps));
+      EXPECT_NEAR(reach(f, way), farthest, below_top + place_rounding);
     }
   }
 }
@@ -67,7 +72,7 @@ TEST(RoundShape, NearestPointLiesAlongTheNormal) {
         const Vector3d on = point_on(f, phi, along), normal = front_normal(f, on);
         EXPECT_NEAR(normal.norm(), 1.0, rounding);
         for (const double off : {-0.05, 0.05}) {
-          EXPECT_NEAR((nearest_on(f, on + off * normal) - on).norm(), 0.0, 1e-14);
+          EXPECT_NEAR((nearest_on(f, on + off * normal) - on).norm(), 0.0, place_rounding);
         }
         // The front is away from the axis unless turned inward.
         const Vector3d from_axis = (on - f.base) - (on - f.base).dot(f.axis) * f.axis;

@@ -218,6 +218,11 @@ TEST(ContactLines, WallStandingOnASmoothEdgeStopsSharingThere) {
   EXPECT_EQ(at_edge.size(), 21u + 8u);
 }
 
+// Elements of the floor of 2 m x 2 m below. An element's area is a sum of products of coordinates,
+// each rounded by up to 2^-53 of 4 m^2.
+constexpr int most_elements = 1000;
+constexpr double area_rounding = most_elements * 0x1p-53 * 4.0;  // 4.4e-13 m^2
+
 // Area of the floor's elements that lie inside of a curve; all others lie outside. Chords, on which
 // vertices may lie, come nearer to the middle than the curve by cos(pi / n), n > 18 chords.
 double covered_area(const Frustum& frustum,
@@ -227,6 +232,9 @@ double covered_area(const Frustum& frustum,
   scene.surfaces.push_back({.name = "column", .shape = frustum});
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.2});
   expect_consistent(mesh);
+  EXPECT_LE(elements_of(mesh, 0).size(), std::size_t{most_elements});
+  // Twenty roundings of coordinates up to 2 m, as shares of the least radius, 0.3 m.
+  constexpr double on_curve = 1.0 + 20 * 0x1p-53 * 2.0 / 0.3;
   double covered = 0.0;
   for (const int e : elements_of(mesh, 0)) {
     double nearest = INFINITY, farthest = 0.0;
@@ -236,8 +244,8 @@ double covered_area(const Frustum& frustum,
       farthest = std::max(farthest, share);
     }
     const double dip = std::cos(std::numbers::pi / 18);
-    EXPECT_TRUE(farthest < 1 + 1e-9 || nearest > dip) << nearest << " " << farthest;
-    if (farthest < 1 + 1e-9) covered += mesh.element_area[e];
+    EXPECT_TRUE(farthest < on_curve || nearest > dip) << nearest << " " << farthest;
+    if (farthest < on_curve) covered += mesh.element_area[e];
   }
   return covered;
 }
@@ -253,7 +261,7 @@ TEST(ContactLines, AColumnCutsItsCircleOutOfTheFloor) {
   // Standing on the floor, hanging down to it, and through it.
   for (const double low : {0.0, -1.0, -0.4}) {
     const Frustum column{.base = {0.9, 1.1, low}, .height = 1.0, .base_radius = r, .top_radius = r};
-    EXPECT_NEAR(covered_area(column, share), polygon_in_circle(r, 0.1), 1e-12) << low;
+    EXPECT_NEAR(covered_area(column, share), polygon_in_circle(r, 0.1), area_rounding) << low;
   }
 }
 
@@ -262,7 +270,7 @@ TEST(ContactLines, ACutConeLeavesTheCircleAtItsHeight) {
       .base = {0.9, 1.1, -0.5}, .height = 1.0, .base_radius = 0.8, .top_radius = 0.0};
   const auto share = [&](const Vector3d& p) { return std::hypot(p.x() - 0.9, p.y() - 1.1) / 0.4; };
   // The chords are those of the base: an angle of 0.1 / 0.8.
-  EXPECT_NEAR(covered_area(cone, share), 0.25 * polygon_in_circle(0.8, 0.1), 1e-12);
+  EXPECT_NEAR(covered_area(cone, share), 0.25 * polygon_in_circle(0.8, 0.1), area_rounding);
 }
 
 TEST(ContactLines, ALeaningColumnCutsAnEllipse) {
@@ -276,7 +284,8 @@ TEST(ContactLines, ALeaningColumnCutsAnEllipse) {
   const auto share = [&](const Vector3d& p) {
     return std::hypot((p.x() - 0.9) * std::cos(lean), p.y() - 1.1) / r;
   };
-  EXPECT_NEAR(covered_area(column, share), polygon_in_circle(r, 0.1) / std::cos(lean), 1e-12);
+  EXPECT_NEAR(covered_area(column, share), polygon_in_circle(r, 0.1) / std::cos(lean),
+              area_rounding);
 }
 
 TEST(ContactLines, HalfSunkSphereCutsItsCircleOutOfTheFloor) {

@@ -209,7 +209,8 @@ TEST(DirectLight, OneLightStandsForAllInTheMean) {
   // Four standard errors, which independent numbers exceed once in 16 000 times.
   EXPECT_NEAR(mean, all, 4.0 * std::sqrt(variance / count));
   // Draws in proportion to the light would have no variance at all; even ones over six lights, of
-  // which one gives most, would have five times the square of the mean.
+  // which one gives most, would have five times the square of the mean. Below one, a draw errs by
+  // less than the light.
   EXPECT_LT(variance, all * all);
 }
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "raytrace/shading/shade.h"
@@ -32,9 +33,11 @@ TEST(RoundShapes, ARodOfGlassFocusesAsSnellSays) {
     const double theta = std::asin(b / r), inside = std::asin(b / (r * n));
     const double turn = 2.0 * (theta - inside);
     const double crossing = b / std::sin(turn);
-    // Paraxially the focal length is n r / (2 (n - 1)).
+    // Paraxially the focal length is n r / (2 (n - 1)). The next term of the series in b / r is
+    // less than (b / r)^2 of it.
     if (b == 0.01) {
-      EXPECT_NEAR(crossing, n * r / (2.0 * (n - 1.0)), 1e-3);
+      constexpr double focal = n * r / (2.0 * (n - 1.0)), next = 0.02 * 0.02 * focal;
+      EXPECT_NEAR(crossing, focal, next);
     }
     // The lamp lies a metre behind the crossing on the ray, which runs down from y = b.
     const Vector3d way(std::cos(turn), -std::sin(turn), 0);
@@ -48,14 +51,18 @@ TEST(RoundShapes, ARodOfGlassFocusesAsSnellSays) {
     const auto seen_at = [&](double off) {
       return radiance(lit, {.origin = {-2, b, off * size}, .direction = {1, 0, 0}});
     };
-    EXPECT_GT(seen_at(0.0), 0.5) << b << ": two surfaces pass more than half of the light";
-    EXPECT_GT(seen_at(0.9), 0.5) << b;
+    // A surface mirrors 0.065 at the steepest, 53 degrees (Fresnel), so two pass 0.87 or more.
+    EXPECT_GT(seen_at(0.0), 0.87) << b;
+    EXPECT_GT(seen_at(0.9), 0.87) << b;
     EXPECT_EQ(seen_at(1.1), 0.0) << b;
     EXPECT_EQ(seen_at(-1.1), 0.0) << b;
   }
 }
 
-/// As GlassSphereInAUniformWorldIsInvisible: a closed body of a cylinder, a cone and a disc.
+/// A closed body of a cylinder, a cone and a disc. After k internal reflections the share of the
+/// deepest branch is (1 - R) R^k < 1 / (e k) for any R, as in
+/// GlassSphereInAUniformWorldIsInvisible. Branches of less than 1e-6 are cut off, a hundred of them
+/// at most.
 TEST(RoundShapes, AGlassBodyInAUniformWorldIsInvisible) {
   constexpr int depth = 500;
   const Paint glass{.index_of_refraction = 1.5f};
@@ -84,7 +91,7 @@ TEST(RoundShapes, AGlassBodyInAUniformWorldIsInvisible) {
     for (const Vector3d& way : {Vector3d(0, 0, -1), Vector3d(-0.6, 0, -0.8)}) {
       const Ray ray{.origin = Vector3d(off, 0.1, 0) - 2.4 * way, .direction = way};
       EXPECT_NEAR(radiance(lit, ray, {.max_depth = depth, .min_contribution = 1e-6f}), 1.0,
-                  1.0 / (std::numbers::e * depth) + 1e-4)
+                  1.0 / (std::numbers::e * depth) + 100 * 1e-6)
           << off << " " << way.transpose();
     }
   }
@@ -102,7 +109,9 @@ TEST(RoundShapes, AMirrorConeReflectsAboutItsNormal) {
   constexpr double size = 1e-3;
   const TracedScene lit(
       SceneBuilder().add({.specular = 1.0f}, cone).sphere({.exitance = pi_f}, lamp, size).build());
-  EXPECT_NEAR(radiance(lit, {.origin = eye, .direction = in}), 1.0, 1e-5);
+  // The product of a few floats.
+  constexpr double rounding = 4 * double{std::numeric_limits<float>::epsilon()};
+  EXPECT_NEAR(radiance(lit, {.origin = eye, .direction = in}), 1.0, rounding);
 }
 
 }  // namespace

@@ -71,6 +71,9 @@ float seen(const Scene& scene, const Eigen::Vector3d& from, const Eigen::Vector3
 // The furnace's solution converges to 1e-3 of its light.
 constexpr float converged = 1e-3f;
 
+// Products and quotients of a few floats, as a share of the result.
+constexpr float rounding = 4 * std::numeric_limits<float>::epsilon();
+
 TEST(VisibleLamps, BodiesReflectHalfOfAFurnace) {
   const Scene scene = furnace();
   const float body = 0.5f * 2.0f * inv_pi;
@@ -104,8 +107,9 @@ TEST(VisibleLamps, OpeningsAreSeenBeforeTheirBody) {
       ASSERT_TRUE(below);
       EXPECT_FALSE(below->is_body);
       const auto expected = static_cast<float>(8.0 / (-0.16 * down.normalized().z()));
-      EXPECT_NEAR(below->radiance[0], expected, 1e-5f * expected) << "rounding";
-      EXPECT_NEAR(below->t, down.norm(), 1e-4 * down.norm() + 1e-5);
+      EXPECT_NEAR(below->radiance[0], expected, rounding * expected);
+      // Rays meet in floats: eight roundings of the way and of coordinates up to 4 m.
+      EXPECT_NEAR(below->t, down.norm(), double{2 * rounding} * (down.norm() + 4.0));
       const Eigen::Vector3d up(0, 0, 0.2 + away);
       const auto above = lamps.first({.origin = to + up, .direction = -up.normalized()}, end);
       ASSERT_TRUE(above);
@@ -127,8 +131,8 @@ TEST(VisibleLamps, BothEndsOfABodyShine) {
     const auto seen = lamps.first({.origin = middle - way, .direction = way}, 10.0);
     ASSERT_TRUE(seen);
     EXPECT_FALSE(seen->is_body);
-    EXPECT_NEAR(seen->t, 0.9, 1e-6);
-    EXPECT_NEAR(seen->radiance[0], 50.0f, 1e-4f) << "I / A";
+    EXPECT_NEAR(seen->t, 0.9, double{rounding} * 2.0);  // coordinates up to 2 m
+    EXPECT_NEAR(seen->radiance[0], 50.0f, rounding * 50.0f) << "I / A";
   }
 }
 
@@ -141,7 +145,8 @@ TEST(VisibleLamps, RoughMirrorsShowBodies) {
   scene.lamps[0].opening = {};
   const Image image = picture(scene, solved(scene), looking({2, 2, 1.4}, {2, 2, 0}));
   const float expected = inv_pi + 0.5f * inv_pi;
-  EXPECT_NEAR(image.radiance.mean(), expected, 0.01f * expected);
+  constexpr float shadowed = 5e-3f;
+  EXPECT_NEAR(image.radiance.mean(), expected, (shadowed + converged) * expected);
 }
 
 /// The highlight of a panel above a luminaire in a rough floor of a black room: the body adds its
@@ -162,8 +167,8 @@ TEST(VisibleLamps, BodiesDoNotHideHighlights) {
   const RenderOptions options{.sampling = {.most = 64, .least = 64}};
   const Image with = picture(scene, room, eye, options),
               without = picture(bare, room, eye, options);
-  constexpr float rounding = 1e-5f;
-  EXPECT_TRUE((with.radiance >= (1.0f - rounding) * without.radiance).all());
+  constexpr float of_sums = 64 * std::numeric_limits<float>::epsilon();  // 64 samples of a pixel
+  EXPECT_TRUE((with.radiance >= (1.0f - of_sums) * without.radiance).all());
   EXPECT_GT(without.radiance.mean(), 0.0f) << "the floor shows highlights alone";
 }
 
@@ -197,11 +202,11 @@ TEST(VisibleLamps, LayersShowBodies) {
     const auto at = std::find(names.begin(), names.end(), name) - names.begin();
     return image.layers.values(0, at);
   };
-  EXPECT_NEAR(value("albedo.G"), 0.5f, 1e-6f);
-  EXPECT_NEAR(value("normal.X"), -1.0f, 1e-6f);
-  EXPECT_NEAR(value("depth.Z"), 1.0f, 1e-6f);
+  EXPECT_NEAR(value("albedo.G"), 0.5f, rounding);
+  EXPECT_NEAR(value("normal.X"), -1.0f, rounding);
+  EXPECT_NEAR(value("depth.Z"), 1.0f, 2 * rounding);
   EXPECT_EQ(value("emission.G"), 0.0f);
-  EXPECT_NEAR(value("indirect.G"), image.radiance(0, 1), 1e-6f);
+  EXPECT_NEAR(value("indirect.G"), image.radiance(0, 1), rounding);
   EXPECT_EQ(value("patch.id"), -1.0f);
 }
 

@@ -25,15 +25,18 @@ RayCaster caster_of(const RoundShape& shape) {
 
 const Frustum tube{.base = {1, 0, 0}, .height = 2.0, .base_radius = 0.5, .top_radius = 0.5};
 
+// Ways up to 4 m of a few roundings each, which the root of 0.05 m^2 or more hardly amplifies.
+constexpr double rounding = 8 * 0x1p-53 * 4.0;  // 3.6e-15
+
 TEST(CastRoundShapes, ACylinderIsMetWhereItsCircleIs) {
   const RayCaster caster = caster_of(tube);
   // At the height 1 the cross-section is a circle of radius 0.5 about x = 1.
   for (double y = -0.45; y < 0.5; y += 0.1) {
     const Hit hit = closest(caster, {.origin = {-3, y, 1.0}, .direction = {2, 0, 0}});
-    EXPECT_NEAR(hit.t, 0.5 * (4.0 - std::sqrt(0.25 - y * y)), 1e-14);
+    EXPECT_NEAR(hit.t, 0.5 * (4.0 - std::sqrt(0.25 - y * y)), rounding);
     EXPECT_FALSE(hit.from_back);
     const Hit from_within = closest(caster, {.origin = {1, y, 1.0}, .direction = {2, 0, 0}});
-    EXPECT_NEAR(from_within.t, 0.5 * std::sqrt(0.25 - y * y), 1e-14);
+    EXPECT_NEAR(from_within.t, 0.5 * std::sqrt(0.25 - y * y), rounding);
     EXPECT_TRUE(from_within.from_back);
   }
   // Over the rim and through the open ends.
@@ -50,7 +53,7 @@ TEST(CastRoundShapes, RaysLeaveTheirOwnOrigin) {
         closest(caster, {.origin = on, .direction = {1, 0.3, 0.2}, .origin_group = 0}).primitive,
         0);
     const Hit across = closest(caster, {.origin = on, .direction = {-1, 0, 0}, .origin_group = 0});
-    EXPECT_NEAR(across.t, 1.0, 1e-8);
+    EXPECT_NEAR(across.t, 1.0 + off, rounding);
     EXPECT_TRUE(across.from_back);
   }
 }
@@ -68,7 +71,10 @@ TEST(CastRoundShapes, ARingIsMetBetweenItsCircles) {
 }
 
 /// Rays in all directions against the same shape as 4096 quadrilaterals with corners on it, which
-/// lie within r (1 - cos(pi / 4096)) = 3e-7 r of it. Few rays pass an edge within this distance.
+/// lie within r (1 - cos(pi / 4096)) = 3e-7 r of it. Rays that pass a rim within 1e-6 m, this and
+/// the rounding of floats, are 4 pi 1e-6 of a cross-section of 2 m^2 or more: a tenth of a ray, and
+/// more than two with a probability of 2e-4. A shape as flat as a disc covers half of the ball
+/// around it on average (Cauchy), of which two thirds are asked for.
 void expect_as_finely_cut(const Frustum& f, const Vector3d& shift) {
   constexpr int sides = 4096;
   Frustum moved = f;
@@ -108,10 +114,11 @@ void expect_as_finely_cut(const Frustum& f, const Vector3d& shift) {
     ++met;
     EXPECT_EQ(a.from_back, b.from_back);
     const Vector3d at = ray.origin + a.t * ray.direction;
-    EXPECT_LT((nearest_on(moved, at) - at).norm(), 1e-12 * (1.0 + shift.norm()));
+    // Thirty roundings of coordinates up to the shift and the shape's own 4 m.
+    EXPECT_LT((nearest_on(moved, at) - at).norm(), 30 * 0x1p-53 * (4.0 + shift.norm()));
   }
-  EXPECT_GT(met, rays / 10);
-  EXPECT_LT(differ, rays / 1000);
+  EXPECT_GT(met, rays / 3);
+  EXPECT_LE(differ, 2);
 }
 
 TEST(CastRoundShapes, FrustumsAreMetWhereFineFacetsAre) {

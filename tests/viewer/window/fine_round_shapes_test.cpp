@@ -119,7 +119,9 @@ TEST(FineRoundShapes, OutlinesAreRound) {
   EXPECT_NEAR(std::sqrt(shown / pi), radius, 0.03);
 }
 
-/// 128 chords around lose 1 - sinc(pi / 128), 1e-4, of the area.
+/// 128 chords around lose 1 - sinc(pi / 128), 1.0e-4, of the area. Faces of a cone lie nearer to
+/// the axis than its generators by 1 - cos(pi / 128), which shortens the slant of one of radius 1
+/// and height 2 by a fifth of this, 0.6e-4.
 TEST(FineRoundShapes, FacesOfFrustumsCoverBothSides) {
   for (const double top : {0.0, 0.5, 1.0}) {
     const Frustum frustum{.height = 2.0, .top_radius = top};
@@ -140,7 +142,7 @@ TEST(FineRoundShapes, FacesOfFrustumsCoverBothSides) {
       covered += 0.5 * twice.norm();
       EXPECT_GT(twice.dot(at(0).normal), 0.0);
     }
-    EXPECT_NEAR(covered, 2.0 * area(frustum), 2.0 * area(frustum) * 2e-4) << top;
+    EXPECT_NEAR(covered, 2.0 * area(frustum), 2.0 * area(frustum) * 1.7e-4) << top;
   }
 }
 
