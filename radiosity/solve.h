@@ -26,7 +26,7 @@ struct SolveOptions {
   /// not kept. Of the options of form factors and solver only `form_factors.max_specular_depth`
   /// then counts. Empty: all form factors are kept, and a solver reads them.
   std::optional<ProgressiveOptions> progressive{};
-  /// With `rays` 0 they are rays_by_default() or fewer (see rays_worth()).
+  /// Effort of the final gather. `rays` 0 stands for rays_by_default, or fewer (see rays_worth()).
   GatherOptions gather{.rays = 0, .shadows = {.min_rays = 32, .max_rays = 256, .sky_rays = 1024}};
   RefineOptions refine{};
   /// The error to reach. Chooses the rays of `gather` and, if `refine` has a tolerance, that
@@ -34,8 +34,8 @@ struct SolveOptions {
   /// elements, the limit is a million or four times the elements at the start, whichever is more.
   /// An accuracy that is out of reach gives Outcome::accuracy_missed.
   std::optional<Accuracy> accuracy{};
-  /// Of a light that is alone in its channel, cast if the scene has mirrors or glass; others cast
-  /// that times the root of their share of the channel's power.
+  /// Rays of a light that is alone in its channel, cast if the scene has mirrors or glass; other
+  /// lights cast that times the root of their share of the channel's power.
   int caustic_rays = 1 << 19;
   int free_rays = 1 << 20;  ///< of all lamps together to the patches, see cast_free_light
   /// Channels of emitters whose light is kept apart, so that relight() can dim each.

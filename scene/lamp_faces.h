@@ -14,7 +14,7 @@ struct LampFace {
   /// Mean radiance of an opening over Lamp::intensity, 1/m^2: its flux over pi times its area. 0:
   /// the face is of the body.
   double shine = 0.0;
-  /// Of an opening: its distance behind the lamp's position along the axis, m. The outline lies a
+  /// Distance of an opening behind the lamp's position along the axis, m. The outline lies a
   /// little before it, so that a depth buffer tells it from the body and from a ceiling.
   double place = 0.0;
 };

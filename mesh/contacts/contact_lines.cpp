@@ -157,7 +157,7 @@ struct HeightOnFrustum {
   LongitudeFrame frame;
 };
 
-// Where the height on a rim is 0 between two longitudes at whose ends it differs in sign.
+// Longitude at which the height on a rim is 0, between two at which it differs in sign.
 double crossing_on_rim(const HeightOnFrustum& height, double from, double to, double along) {
   const bool rises = height(from, along) <= 0.0;
   constexpr int halvings = 50;

@@ -114,7 +114,7 @@ struct PatchMesh {
   std::vector<RoundGrid> round_grids{};
   /// The textures of the scene; rays pass through their holes. Null: nothing varies over facets.
   std::shared_ptr<const FacetTextures> textures{};
-  /// What the patterns of patches mirror. Null: no facet has a pattern.
+  /// Shares of light that patches with patterns mirror and pass. Null: no facet has a pattern.
   std::shared_ptr<const PatchPatterns> patterns{};
   std::vector<std::string> notes{};  ///< what meshing had to leave out, a sentence each
 

@@ -19,8 +19,8 @@ class PatchPatterns {
 
   /// True if a part of the patch shows a pattern.
   bool is_given(int patch) const { return row_[static_cast<std::size_t>(patch)] >= 0; }
-  /// What mirrors, passes straight on and refracts, of the material of a patch with a pattern: the
-  /// shares are the patch's means, and so is the roughness.
+  /// The part of a material that mirrors, refracts and passes light straight on, as a patch with a
+  /// pattern has it: shares and roughness are the patch's means.
   Material mirror_of(const Material& material, int patch) const;
   /// The coated base of a patch with a pattern; empty: the patch has no coat.
   std::optional<CoatedBase> base_of(int patch) const;
