@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "radiosity/refine/error_reference.h"
+
 namespace lightwell {
 namespace {
 
@@ -36,15 +38,27 @@ bool is_even_over(const PatchMesh& mesh, const BandArray& E, int element) {
   return most > 0.0f && most - least <= DomeOnMesh::even * most;
 }
 
+// Mean of the corners and the bands, W/m^2.
+double mean_over(const PatchMesh& mesh, const BandArray& E, int element) {
+  const int n = mesh.corner_count(element);
+  double sum = 0.0;
+  for (int c = 0; c < n; ++c) sum += E.row(mesh.corners[element][c]).cast<double>().mean();
+  return sum / n;
+}
+
+// RMS error of the light of a patch's part, relative to its mean irradiance, up to `most_error`.
+double error_of_part(const RadiositySolution& solution, int patch) {
+  const auto part = static_cast<std::size_t>(solution.parts.judged_with(patch));
+  const double estimate = part < solution.parts.parts.size()
+                              ? solution.parts.parts[part].error_estimate
+                              : solution.error_estimate;
+  return std::clamp(estimate, 0.0, double{DomeOnMesh::most_error});
+}
+
 /// Power that arrives on all elements, W, mean of the bands, of irradiance at the vertices.
 double arriving_power(const PatchMesh& mesh, const BandArray& E) {
-  const Eigen::ArrayXf at = E.rowwise().mean();
   double sum = 0.0;
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    double corners = 0.0;
-    for (int c = 0; c < mesh.corner_count(e); ++c) corners += double{at[mesh.corners[e][c]]};
-    sum += mesh.element_area[e] * corners / mesh.corner_count(e);
-  }
+  for (int e = 0; e < mesh.element_count(); ++e) sum += mesh.element_area[e] * mean_over(mesh, E, e);
   return sum;
 }
 
@@ -71,13 +85,15 @@ DomeOnMesh dome_on_mesh(const PatchMesh& mesh, const DirectLight& direct_light,
   DomeOnMesh dome{.irradiance = irradiance_of_dome(mesh, direct_light, solution)};
   if (dome.irradiance.size() == 0) return {};
   const float growth = growth_of_error(mesh, solution, direct_light.dome()->number);
-  dome.fine.resize(static_cast<std::size_t>(mesh.element_count()));
+  const BandArray irradiance = solution.irradiance();
+  const Eigen::ArrayXd reference = error_references(mesh, irradiance, solution.parts);
+  dome.excess.resize(static_cast<std::size_t>(mesh.element_count()));
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const float error = growth * solution.interpolation_error[e];
-    const bool is_fine =
-        error <= DomeOnMesh::small_error ||
-        (error <= DomeOnMesh::most_error && is_even_over(mesh, dome.irradiance, e));
-    dome.fine[static_cast<std::size_t>(e)] = is_fine ? 1 : 0;
+    const double own = mean_over(mesh, irradiance, e);
+    const double as_good = error_of_part(solution, mesh.patch[e]) * own / reference[e];
+    float allowed = std::max(DomeOnMesh::small_error, static_cast<float>(as_good));
+    if (is_even_over(mesh, dome.irradiance, e)) allowed = std::max(allowed, DomeOnMesh::most_error);
+    dome.excess[static_cast<std::size_t>(e)] = growth * solution.interpolation_error[e] / allowed;
   }
   return dome;
 }

@@ -221,7 +221,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   if (state.number) shadows.max_rays = shadows.min_rays;
   Arriving E;
   const ShadowOrigin from = shadow_origin(hit, at);
-  const bool has_dome = !relief && dome_.is_fine(hit.element);
+  const bool has_dome = !relief && dome_.serves(hit.element, branch.weight.maxCoeff());
   LightQuery query{.at = {from.position, normal, from.facet},
                    .key = random_key(state.key, branch.node, RandomPurpose::ray_tree_shadows),
                    .shadows = shadows,
