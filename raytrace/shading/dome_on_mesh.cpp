@@ -58,7 +58,8 @@ double error_of_part(const RadiositySolution& solution, int patch) {
 /// Power that arrives on all elements, W, mean of the bands, of irradiance at the vertices.
 double arriving_power(const PatchMesh& mesh, const BandArray& E) {
   double sum = 0.0;
-  for (int e = 0; e < mesh.element_count(); ++e) sum += mesh.element_area[e] * mean_over(mesh, E, e);
+  for (int e = 0; e < mesh.element_count(); ++e)
+    sum += mesh.element_area[e] * mean_over(mesh, E, e);
   return sum;
 }
 

@@ -20,8 +20,8 @@ struct DomeOnMesh {
   ///   part's mean, up to `most_error`: indirect light at the same place is no better;
   /// - `most_error` of the reference where the dome's light reaches the corners and hardly differs
   ///   between them, since the error is then mostly one of other light.
-  /// The estimates are those of the light as solved. After relight() they are taken as errors of the
-  /// dome's light alone, relative to the mean irradiance as relit.
+  /// The estimates are those of the light as solved. After relight() they are taken as errors of
+  /// the dome's light alone, relative to the mean irradiance as relit.
   std::vector<float> excess{};
 
   /// Relative RMS errors: about the noise of the shadow rays of a pixel, and one that is seen.

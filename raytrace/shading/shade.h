@@ -120,8 +120,8 @@ struct SpecularSegment {
 ///
 /// Behind a coat that mirrors less than a quarter of the light, or blurs it, diffuse surfaces show
 /// the solution's irradiance: shadow rays there would cost more than those of the coated surface.
-/// Surfaces behind a rough surface do so too whose lobe spreads their light over an element of the mesh
-/// or more, since nothing is seen of what the mesh lacks there.
+/// Surfaces behind a rough surface do so too whose lobe spreads their light over an element of the
+/// mesh or more, since nothing is seen of what the mesh lacks there.
 ///
 /// A surface whose shares vary by a pattern has at each hit the numbers of the place (see
 /// material_at()).
