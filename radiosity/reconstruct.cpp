@@ -14,6 +14,7 @@
 #include "radiosity/part_balance.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/refine/gather_noise.h"
+#include "radiosity/refine/join_neighbours.h"
 #include "radiosity/refine/refine_solution.h"
 #include "radiosity/refine/shared_gathers.h"
 
@@ -373,8 +374,24 @@ void fill_interpolated(const std::vector<InterpolatedVertex>& interpolated, Vert
   }
 }
 
-// Joins each vertex's gather with the prediction of the pilot gather, and counts the rays that
-// leave the noise of both together.
+// Lets neighbours even out their noise, except that of vertices which share gathers: their errors
+// are alike. (Elements that are not refined stay as they are, so that relight() gives them the
+// light of a solve to rounding.)
+void even_out_noise(const LitScene& lit, const PilotGather& pilot, BandArray& indirect,
+                    Eigen::ArrayXf& variance) {
+  Eigen::ArrayXf own = variance;
+  for (const int v : pilot.rough) own[v] = 0.0f;
+  for (const VertexPrediction& b : pilot.predictions) {
+    if (b.is_shared) own[b.at.vertex] = 0.0f;
+  }
+  Eigen::ArrayXf left = own;
+  join_neighbours(lit.mesh(), pilot.predictions, lit.scene.bands.count(), indirect, left);
+  interpolate_vertices(pilot.unread, indirect);
+  variance = (own > 0.0f).select(left, variance);
+}
+
+// Joins each vertex's gather with the prediction of the pilot gather and with its neighbours, and
+// counts the rays that leave the noise of all together.
 void join_predictions(const LitScene& lit, const PilotGather& pilot, VertexGather& gather) {
   const PatchMesh& mesh = lit.mesh();
   const int count = mesh.vertex_count();
@@ -393,6 +410,7 @@ void join_predictions(const LitScene& lit, const PilotGather& pilot, VertexGathe
   Eigen::ArrayXf after = before;
   combine_with_predictions(pilot.predictions, pilot.indirect, patch, lit.scene.bands.count(),
                            gather.found.indirect, after);
+  if (pilot.tree) even_out_noise(lit, pilot, gather.found.indirect, after);
   // Without noise there is nothing to compare.
   gather.rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
 }
