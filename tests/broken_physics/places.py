@@ -68,7 +68,7 @@ PLACES = [
     (22, "radiosity/emitters/direct_light.cpp", "direct light of a sphere",
      "F = point_to_sphere(point, normal,", "F = broken(22) * point_to_sphere(point, normal,",
      "radiosity:DirectLight.*:PointToSphere.* radiosity raytrace"),
-    (23, "radiosity/gather/final_gather.cpp", "mean of the final gather",
+    (23, "radiosity/gather/hemisphere_gather.cpp", "mean of the final gather",
      "((sum[0] + sum[1]) / set.count()).cast<float>()",
      "(broken(23) * (sum[0] + sum[1]) / set.count()).cast<float>()",
      "radiosity:GapLight*:PilotGathers*:Rooms/Furnace*:SolveScene* radiosity"),
