@@ -73,7 +73,7 @@ class HemisphereGather {
   std::map<int, HemisphereSets> sets_;  // by number of rays
   BrightPatches bright_;
   GapLight gaps_;
-  // Of rays aimed at bright patches and at portals, by the number of rays in sets_.
+  // Points of rays aimed at bright patches and at portals, by the number of rays in sets_.
   std::map<int, SobolPoints> aims_, portal_aims_;
 };
 

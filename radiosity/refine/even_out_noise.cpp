@@ -1,4 +1,4 @@
-#include "radiosity/refine/join_neighbours.h"
+#include "radiosity/refine/even_out_noise.h"
 
 #include <algorithm>
 #include <cmath>
@@ -182,7 +182,6 @@ class NoiseExchange {
       std::vector<double> around;
       for (int v = begin; v < end; ++v) median[v] = median_around(v, around);
     });
-    constexpr double least_difference = 0.01;
     parallel_for(count, grain, [&](int begin, int end) {
       for (int v = begin; v < end; ++v) {
         const std::span<const int> around = neighbours_.of(v);
@@ -190,10 +189,8 @@ class NoiseExchange {
         double sum = median[v];
         for (const int u : around) sum += median[u];
         const double mean = sum / static_cast<double>(around.size() + 1);
-        const double own = mean_square(values_.row(v).matrix(), bands_);
-        const double difference = std::max(mean, least_difference * least_difference * own);
         const double noise = double{variance_[v]};
-        share_[v] = noise / (noise + mean_noise_[v] + difference);
+        share_[v] = noise / (noise + mean_noise_[v] + std::max(mean, 0.0));
       }
     });
   }
@@ -210,8 +207,8 @@ class NoiseExchange {
 
 }  // namespace
 
-void join_neighbours(const PatchMesh& mesh, std::span<const VertexPrediction> predictions,
-                     int bands, BandArray& values, Eigen::ArrayXf& variance) {
+void even_out_noise(const PatchMesh& mesh, std::span<const VertexPrediction> predictions, int bands,
+                    BandArray& values, Eigen::ArrayXf& variance) {
   BandArray evened = values;
   Eigen::ArrayXf left = variance;
   NoiseExchange(mesh, predictions, bands, values, variance).apply(evened, left);

@@ -5,10 +5,10 @@
 #include <random>
 
 #include "mesh/build_patches.h"
-#include "radiosity/refine/join_neighbours.h"
+#include "radiosity/refine/even_out_noise.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell::join_neighbours_test {
+namespace lightwell::even_out_noise_test {
 namespace {
 
 // A square of 2 m whose elements are squares of 1/16 m.
@@ -50,14 +50,14 @@ double rms_error(const PatchMesh& mesh, const BandArray& E, const Light& of_plac
 // Sums of floats: each of 33 x 33 vertices is rounded by up to 2^-24 of its value a few times.
 constexpr double sum_rounding = 8 * 0x1p-24;
 
-TEST(JoinNeighbours, NoiseFallsAndThePowerStays) {
+TEST(EvenOutNoise, NoiseFallsAndThePowerStays) {
   const PatchMesh mesh = square();
   const auto slope = [](const Eigen::Vector3d& at) { return 1.0 + 0.2 * at.x(); };
   constexpr double noise = 0.1;
   const BandArray before = noisy(mesh, slope, noise);
   BandArray after = before;
   Eigen::ArrayXf variance = Eigen::ArrayXf::Constant(mesh.vertex_count(), noise * noise);
-  join_neighbours(mesh, {}, 3, after, variance);
+  even_out_noise(mesh, {}, 3, after, variance);
   EXPECT_NEAR(power(mesh, after), power(mesh, before), sum_rounding * power(mesh, before));
   // Without any doubt the share s is 8/9 and leaves 1/3 of the noise. Doubts of the median, which
   // is that of 9 squares, are of the size of the noise for some vertices and nothing for most.
@@ -70,13 +70,13 @@ TEST(JoinNeighbours, NoiseFallsAndThePowerStays) {
   EXPECT_NEAR(double{variance.mean()}, left * left, 0.3 * left * left);
 }
 
-TEST(JoinNeighbours, EdgesOfLightStay) {
+TEST(EvenOutNoise, EdgesOfLightStay) {
   const PatchMesh mesh = square();
   const auto step = [](const Eigen::Vector3d& at) { return at.x() < 1.0 ? 1.0 : 3.0; };
   constexpr double noise = 0.02;
   BandArray E = noisy(mesh, step, noise);
   Eigen::ArrayXf variance = Eigen::ArrayXf::Constant(mesh.vertex_count(), noise * noise);
-  join_neighbours(mesh, {}, 3, E, variance);
+  even_out_noise(mesh, {}, 3, E, variance);
   // Differences across the edge are a hundred times the noise. No vertex beside it moves by as much
   // as its noise, three standard errors of which may have been there before.
   for (int v = 0; v < mesh.vertex_count(); ++v) {
@@ -84,7 +84,7 @@ TEST(JoinNeighbours, EdgesOfLightStay) {
   }
 }
 
-TEST(JoinNeighbours, AnOutlierIsSpreadAndNotLost) {
+TEST(EvenOutNoise, AnOutlierIsSpreadAndNotLost) {
   const PatchMesh mesh = square();
   const auto even = [](const Eigen::Vector3d&) { return 1.0; };
   constexpr double noise = 0.1;
@@ -96,7 +96,7 @@ TEST(JoinNeighbours, AnOutlierIsSpreadAndNotLost) {
   E.row(middle) = 2.0f;
   const double before = power(mesh, E);
   Eigen::ArrayXf variance = Eigen::ArrayXf::Constant(mesh.vertex_count(), noise * noise);
-  join_neighbours(mesh, {}, 3, E, variance);
+  even_out_noise(mesh, {}, 3, E, variance);
   EXPECT_NEAR(power(mesh, E), before, sum_rounding * before);
   // Without any doubt the outlier keeps a ninth of its excess. Its own square makes the neighbours
   // doubtful: (10 noise / 8)^2 / 0.455 = 3.4 noise^2 beyond their own, which leaves a share of 1 /
@@ -105,19 +105,19 @@ TEST(JoinNeighbours, AnOutlierIsSpreadAndNotLost) {
   EXPECT_LT(E(middle, 0), 2.0f - 0.22f);
 }
 
-TEST(JoinNeighbours, WhatHasNoNoiseStays) {
+TEST(EvenOutNoise, WhatHasNoNoiseStays) {
   const PatchMesh mesh = square();
   const auto even = [](const Eigen::Vector3d&) { return 1.0; };
   const BandArray before = noisy(mesh, even, 0.1);
   BandArray after = before;
   Eigen::ArrayXf variance = Eigen::ArrayXf::Zero(mesh.vertex_count());
-  join_neighbours(mesh, {}, 3, after, variance);
+  even_out_noise(mesh, {}, 3, after, variance);
   EXPECT_TRUE((after == before).all());
   EXPECT_TRUE((variance == 0.0f).all());
 }
 
 // An interpolated vertex between two ends has their mean, and its area counts for them.
-TEST(JoinNeighbours, InterpolatedVerticesFollowTheirEnds) {
+TEST(EvenOutNoise, InterpolatedVerticesFollowTheirEnds) {
   const PatchMesh mesh = square();
   const auto even = [](const Eigen::Vector3d&) { return 1.0; };
   BandArray E = noisy(mesh, even, 0.1);
@@ -128,10 +128,10 @@ TEST(JoinNeighbours, InterpolatedVerticesFollowTheirEnds) {
   interpolate_vertices({&between.at, 1}, E);
   const double before = power(mesh, E);
   Eigen::ArrayXf variance = Eigen::ArrayXf::Constant(mesh.vertex_count(), 0.01f);
-  join_neighbours(mesh, {&between, 1}, 3, E, variance);
+  even_out_noise(mesh, {&between, 1}, 3, E, variance);
   EXPECT_NEAR(power(mesh, E), before, sum_rounding * before);
   EXPECT_FLOAT_EQ(E(corners[0], 0), 0.5f * (E(corners[1], 0) + E(corners[3], 0)));
 }
 
 }  // namespace
-}  // namespace lightwell::join_neighbours_test
+}  // namespace lightwell::even_out_noise_test

@@ -1,0 +1,88 @@
+#include "radiosity/patch_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "radiosity/gather/patch_power.h"
+
+namespace lightwell {
+namespace {
+
+// Patch radiosities without the emission that `direct_light` owns, patches x columns.
+BandArray without_owned_emission(const PatchMesh& mesh, const DirectLight& direct_light,
+                                 const BandArray& patch_radiosity) {
+  BandArray B = patch_radiosity;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches lie on one facet each
+    if (!direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
+    B.row(p).segment(direct_light.first_column(facet), mesh.emission.cols()) -=
+        mesh.emission.row(p);
+  }
+  return B;
+}
+
+}  // namespace
+
+BandArray unscaled_radiosity(const RadiositySolution& solution) {
+  if (solution.channels.empty()) return solution.patch_radiosity;
+  return side_by_side(solution.channels, &LightChannel::patch_radiosity);
+}
+
+BandArray to_vertices(const PatchMesh& mesh, const BandArray& of_patches) {
+  BandArray sum = BandArray::Zero(mesh.vertex_count(), of_patches.cols());
+  Eigen::ArrayXf weight = Eigen::ArrayXf::Zero(mesh.vertex_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto area = static_cast<float>(mesh.element_area[e]);
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      sum.row(mesh.corners[e][c]) += area * of_patches.row(mesh.patch[e]);
+      weight[mesh.corners[e][c]] += area;
+    }
+  }
+  return sum.colwise() / weight.max(1e-30f);
+}
+
+BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,
+                          const BandArray& patch_radiosity) {
+  return to_vertices(mesh, without_owned_emission(mesh, direct_light, patch_radiosity));
+}
+
+void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
+                const BandArray& patch_radiosity, BandArray& radiosity) {
+  const Eigen::Index bands = mesh.reflectance.cols();
+  const BandArray balanced = channel_sum(
+      without_owned_emission(mesh, direct_light, patch_radiosity), static_cast<int>(bands));
+  const BandArray read = channel_sum(radiosity, static_cast<int>(bands));
+  Eigen::ArrayXXd wanted(mesh.patch_count(), bands);  // W
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    wanted.row(p) = mesh.area[p] * balanced.row(p).cast<double>();
+  }
+  const Eigen::ArrayXXd found = patch_integral(mesh, read);
+  constexpr double most = 1.25;  // a larger factor means that elements are too large to trust it
+  const auto ratio = [most](const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) -> Eigen::ArrayXd {
+    return (b > 0.0).select(a / b.max(1e-300), 1.0).max(1.0 / most).min(most);
+  };
+  const double least = notable_share(mesh) * wanted.sum();
+  const auto is_peak = [&](int p) {
+    return std::abs(wanted.row(p).sum() - found.row(p).sum()) > least;
+  };
+  Eigen::ArrayXd other_wanted = Eigen::ArrayXd::Zero(bands), other_found = other_wanted;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (is_peak(p)) continue;
+    other_wanted += wanted.row(p).transpose();
+    other_found += found.row(p).transpose();
+  }
+  const Eigen::ArrayXf of_others = ratio(other_wanted, other_found).cast<float>();
+  BandArray factor(mesh.patch_count(), bands);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    factor.row(p) = of_others.transpose();
+    if (!is_peak(p)) continue;
+    factor.row(p) =
+        ratio(wanted.row(p).transpose(), found.row(p).transpose()).cast<float>().transpose();
+  }
+  const BandArray at_vertices = to_vertices(mesh, factor);
+  for (Eigen::Index k = 0; k < radiosity.cols(); k += bands) {
+    radiosity.middleCols(k, bands) *= at_vertices;
+  }
+}
+
+}  // namespace lightwell

@@ -1,0 +1,37 @@
+#pragma once
+
+#include "mesh/patches/patch_mesh.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/solution/solution.h"
+
+namespace lightwell {
+
+/// Patch radiosities, W/m^2, patches x columns of every channel at full scale.
+BandArray unscaled_radiosity(const RadiositySolution& solution);
+
+/// The mean of the patches around each vertex, weighted by the area of their elements there:
+/// vertices x columns of `of_patches`.
+BandArray to_vertices(const PatchMesh& mesh, const BandArray& of_patches);
+
+/// The radiosity that the first gather reads, W/m^2, vertices x columns: that of patches, smoothed
+/// to vertices, without the emission that `direct_light` owns.
+BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,
+                          const BandArray& patch_radiosity);
+
+/// Scales the radiosity that gathers read (W/m^2, vertices x columns) to the power that the
+/// patches' equations balanced. Interpolation between vertices that are far apart cuts peaks off,
+/// and their power would be lost at each reflection.
+///
+/// - One factor per band serves the whole scene. A factor for each patch would be worse: in corners
+///   and beside objects that stand on a patch, the error of the patch's own value exceeds the power
+///   that the factor restores.
+/// - A patch whose power is off by a notable share of the scene's light (see notable_share), such
+/// as
+///   the place that a spotlight falls on, has a factor of its own. Its light would otherwise be
+///   spread over all other surfaces.
+///
+/// The factors follow from all channels together, so that channels still add up.
+void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
+                const BandArray& patch_radiosity, BandArray& radiosity);
+
+}  // namespace lightwell

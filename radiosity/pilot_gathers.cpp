@@ -1,0 +1,175 @@
+#include "radiosity/pilot_gathers.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "radiosity/accuracy.h"
+#include "radiosity/even_caustics.h"
+#include "radiosity/gather/patch_power.h"
+#include "radiosity/patch_light.h"
+#include "radiosity/refine/refine_solution.h"
+#include "radiosity/refine/shared_gathers.h"
+#include "radiosity/vertex_points.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::uint64_t pilot_replica = 1000;
+
+// Indirect light at all vertices where rays read it; elsewhere 0.
+BandArray read_indirect(const LitScene& lit, const BandArray& radiosity,
+                        const GatherOptions& options) {
+  const GatherPoints all = vertex_points(lit.caster);
+  const std::vector<char> unread = unread_patches(lit.scene, lit.mesh());
+  const std::vector<int> patch = vertex_patches(lit.mesh());
+  std::vector<int> vertices;
+  for (int v = 0; v < all.size(); ++v) {
+    if (unread[patch[v]] == 0) vertices.push_back(v);
+  }
+  return spread_rows(
+      gather_indirect(lit, radiosity, points_of_vertices(all, vertices), options).indirect,
+      vertices, all.size());
+}
+
+}  // namespace
+
+GatherOptions gather_options(const SolveOptions& options) {
+  GatherOptions gather = options.gather;
+  gather.run = options.run;
+  return gather;
+}
+
+std::vector<int> rays_by_part(const SolveOptions& options) {
+  std::vector<int> rays(static_cast<std::size_t>(options.refine.parts.judged_count()),
+                        options.gather.rays);
+  for (std::size_t p = 0; p < options.refine.efforts.size(); ++p) {
+    rays[p] = options.refine.efforts[p].rays;
+  }
+  return rays;
+}
+
+struct PilotGathers::Impl {
+  Impl(const Scene& of, PatchMesh mesh, const DirectLight& direct)
+      : scene(of), base(std::move(mesh)), caster(base), direct_light(direct) {}
+
+  PilotGather unrefined(const SolveOptions& options);
+  PilotGather at_patches(const SolveOptions& options);
+  void prepare(const SolveOptions& options);
+  PilotGather refined(const SolveOptions& options);
+
+  const Scene& scene;
+  PatchMesh base;
+  ElementCaster caster;
+  const DirectLight& direct_light;
+  BandArray radiosity{};     // at the base's vertices, with columns of every channel
+  BandArray of_all_light{};  // the sum of all channels; empty if light is not kept apart
+  BandArray caustic{};       // at the base's vertices
+  std::optional<DirectLight> all_light{};  // empty if light is not kept apart
+  std::optional<RefinedElements> elements{};
+  std::optional<EvenCaustics> even_caustics{};
+  std::optional<SolutionRefinement> refinement{};
+};
+
+PilotGathers::PilotGathers(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
+                           const RadiositySolution& solution)
+    : impl_(new Impl(scene, std::move(base), direct_light)) {
+  const PatchMesh& mesh = impl_->base;
+  impl_->radiosity = patch_to_vertex(mesh, direct_light, unscaled_radiosity(solution));
+  if (direct_light.channel_count() == 1) return;
+  impl_->all_light.emplace(scene, mesh, EmitterChannels{}, &direct_light);
+  impl_->of_all_light = patch_to_vertex(mesh, *impl_->all_light, solution.patch_radiosity);
+}
+
+PilotGathers::~PilotGathers() = default;
+
+PatchMesh& PilotGathers::base() {
+  return impl_->base;
+}
+
+PilotGather PilotGathers::gather(const SolveOptions& options) {
+  return options.refine.tolerance > 0.0 ? impl_->refined(options) : impl_->unrefined(options);
+}
+
+PilotGather PilotGathers::gather_at_patches(const SolveOptions& options) {
+  return impl_->at_patches(options);
+}
+
+ElementCaster PilotGathers::caster(const PatchMesh& mesh, const PilotGather& pilot) const {
+  return {mesh, impl_->caster, pilot.tree};
+}
+
+PilotGather PilotGathers::Impl::unrefined(const SolveOptions& options) {
+  const LitScene lit{scene, caster, direct_light};
+  GatherOptions gather = gather_options(options);
+  PilotGather pilot{.shadows = gather.shadows, .gather_rays = rays_by_part(options)};
+  SharedGathers shared = find_shared_gathers(scene, base);
+  pilot.unread = std::move(shared.unread);
+  pilot.rough = std::move(shared.rough);
+  pilot.interpolated = pilot.unread;
+  pilot.direct = direct_beside(lit, pilot.unread, gather);
+  gather.rays = std::max(1, gather.rays / 4);
+  gather.replica += pilot_replica;
+  pilot.indirect = read_indirect(lit, radiosity, gather);
+  pilot.caustic = caustics({scene, caster, direct_light}, options);
+  return pilot;
+}
+
+PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
+  // 1/sqrt(32) = 18 % of the spread of light among rays, as rough as one point of a patch is.
+  constexpr int few_rays = 32;
+  GatherOptions gather = gather_options(options);
+  gather.rays = std::min(few_rays, gather.rays);
+  gather.shadows = Effort{.gather_rays = gather.rays}.shadows();
+  gather.replica += pilot_replica;
+  std::vector<int> patches(static_cast<std::size_t>(base.patch_count()));
+  std::iota(patches.begin(), patches.end(), 0);
+  const GatheredIrradiance found = gather_irradiance({scene, caster, direct_light}, radiosity,
+                                                     points_on_patches(base, patches), gather);
+  return {.direct = to_vertices(base, found.direct),
+          .indirect = to_vertices(base, found.indirect),
+          .shadows = gather.shadows,
+          .gather_rays = rays_by_part(options)};
+}
+
+void PilotGathers::Impl::prepare(const SolveOptions& options) {
+  report(options.run.progress, "refine", 0.0);
+  elements.emplace(base);
+  report(options.run.progress, "refine", 0.0);
+  even_caustics.emplace(scene, direct_light, options, *elements);
+  std::vector<int> base_vertices(static_cast<std::size_t>(base.vertex_count()));
+  std::iota(base_vertices.begin(), base_vertices.end(), 0);
+  caustic = even_caustics->at(*elements, base_vertices);
+  const GatherOptions gather = gather_options(options);
+  if (all_light) {
+    refinement.emplace(LitScene{scene, caster, *all_light}, of_all_light,
+                       channel_sum(caustic, scene.bands.count()), *elements, gather,
+                       options.refine);
+  } else {
+    refinement.emplace(LitScene{scene, caster, direct_light}, radiosity, caustic, *elements, gather,
+                       options.refine);
+  }
+}
+
+PilotGather PilotGathers::Impl::refined(const SolveOptions& options) {
+  if (!refinement) prepare(options);
+  const ChannelLight by_channel{direct_light, radiosity, caustic};
+  RefinedSolution found = refinement->refine(options.refine, all_light ? &by_channel : nullptr);
+  BandArray at_vertices = even_caustics->at(*elements, found.refined.vertex);
+  return {.refined = std::move(found.refined.mesh),
+          .tree = std::move(found.refined.tree),
+          .direct = std::move(found.pilot.direct),
+          .indirect = std::move(found.pilot.indirect),
+          .caustic = std::move(at_vertices),
+          .lacks_unread = true,
+          .interpolation_error = std::move(found.error),
+          .refinement = found.report,
+          .interpolated = std::move(found.interpolated),
+          .predictions = std::move(found.predictions),
+          .unread = std::move(found.unread),
+          .rough = std::move(found.rough),
+          .number = std::move(found.refined.vertex),
+          .gather_rays = found.gather_rays};
+}
+
+}  // namespace lightwell
