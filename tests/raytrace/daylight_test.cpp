@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <limits>
 #include <numbers>
 
+#include "radiosity/refine/error_reference.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solve.h"
 #include "raytrace/render.h"
@@ -208,6 +210,65 @@ TEST(DaylightPictures, ErrorsOfTheSkyFollowTheLightAsRelit) {
   EXPECT_LE(std::abs(fine(0.5f, 0.5f) - as_solved), as_solved / 100) << "roundings at the limit";
   EXPECT_LT(fine(1.0f, 0.0f), as_solved);
   EXPECT_GE(fine(0.1f, 1.0f), as_solved);
+}
+
+// A mesh and its solution, with errors and light of one's own.
+struct WithErrors {
+  WithErrors() { solution.channels.clear(); }
+
+  // Excess of element 0 when its error is `error`, the part's `of_part`, and the element's light
+  // `share` of the reference.
+  float excess(float error, double of_part, double share) {
+    Scene dome = scene;
+    dome.lamps.clear();
+    RadiositySolution changed = solution;
+    changed.interpolation_error.setZero();
+    changed.interpolation_error[0] = error;
+    changed.error_estimate = of_part;
+    for (ScenePart& part : changed.parts.parts) part.error_estimate = of_part;
+    // All elements but the first shine on with what makes its light the `share`. Its corners
+    // differ, so that it is not even.
+    changed.indirect_irradiance.setZero();
+    changed.direct_irradiance.setConstant(1.0f);
+    const int n = mesh.corner_count(0);
+    for (int c = 0; c < n; ++c) {
+      const double of_corner = c == 0 ? 0.0 : share * n / (n - 1);
+      changed.direct_irradiance.row(mesh.corners[0][c]) = static_cast<float>(of_corner);
+    }
+    const Eigen::ArrayXd reference =
+        error_references(mesh, changed.direct_irradiance, changed.parts);
+    own_over_reference = share / reference[0];
+    return dome_on_mesh(mesh, DirectLight(dome, mesh), changed).excess[0];
+  }
+
+  Scene scene = room_under_a_sky();
+  SolvedScene solved = solve_scene(scene, {.gather = {.rays = 64}, .refine = {.tolerance = 0.05}});
+  PatchMesh& mesh = solved.mesh;
+  RadiositySolution& solution = solved.solution;
+  double own_over_reference = 0.0;
+};
+
+// Quotients of a few floats.
+constexpr float of_quotients = 8 * std::numeric_limits<float>::epsilon();
+
+TEST(DaylightPictures, ElementsAsGoodAsTheirPartShowTheSky) {
+  WithErrors with;
+  // A part off by 5 %: as much is allowed, as a share of the element's own light.
+  const float of_part = with.excess(0.05f, 0.05, 1.0);
+  EXPECT_NEAR(of_part, 1.0 / with.own_over_reference, of_quotients * of_part);
+  // A dim element: the share of its own light is less than 2 % of the reference, which is allowed.
+  const float dim = with.excess(0.05f, 0.05, 0.1);
+  EXPECT_NEAR(dim, 0.05f / DomeOnMesh::small_error, of_quotients * dim);
+  // A part off by half is no reason to show more than 10 %.
+  const float rough = with.excess(0.05f, 0.5, 1.0);
+  EXPECT_NEAR(rough, 0.5 / with.own_over_reference, of_quotients * rough);
+}
+
+TEST(DaylightPictures, WeakReflectionsMayShowWeakErrors) {
+  const DomeOnMesh dome{.excess = {4.0f}};
+  EXPECT_FALSE(dome.serves(0, 1.0f));
+  EXPECT_TRUE(dome.serves(0, 0.25f));
+  EXPECT_FALSE(DomeOnMesh{}.serves(0, 0.01f)) << "nothing is known";
 }
 
 }  // namespace
