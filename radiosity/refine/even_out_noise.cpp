@@ -11,52 +11,70 @@ namespace {
 
 constexpr int grain = 256;
 
-// The entry of each interpolated vertex; null for the others.
-using InterpolatedEntries = std::vector<const InterpolatedVertex*>;
+// Sorts and removes duplicates.
+void make_unique(std::vector<int>& numbers) {
+  std::ranges::sort(numbers);
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+}
 
-InterpolatedEntries interpolated_entries(const PatchMesh& mesh,
-                                         std::span<const VertexPrediction> predictions) {
-  InterpolatedEntries entries(static_cast<std::size_t>(mesh.vertex_count()), nullptr);
-  for (const VertexPrediction& b : predictions) {
-    if (b.is_interpolated) entries[static_cast<std::size_t>(b.at.vertex)] = &b.at;
+// The gathered vertices with noise that each vertex stands for: itself, or, if it is interpolated,
+// those that its ends stand for.
+class StandsFor {
+ public:
+  // Precondition: the ends of an interpolated vertex come before it in `predictions`.
+  StandsFor(std::span<const VertexPrediction> predictions, const Eigen::ArrayXf& variance)
+      : variance_(variance), list_(static_cast<std::size_t>(variance.size()), -1) {
+    for (const VertexPrediction& b : predictions) {
+      if (!b.is_interpolated) continue;
+      std::vector<int> gathered;
+      for (int i = 0; i < b.at.end_count(); ++i) add(b.at.ends[i], gathered);
+      make_unique(gathered);
+      list_[static_cast<std::size_t>(b.at.vertex)] = static_cast<int>(lists_.size());
+      lists_.push_back(std::move(gathered));
+    }
   }
-  return entries;
-}
 
-// Calls visit(vertex) for a vertex, or, if it is interpolated, for the ends that it stands for.
-template <class Visit>
-void for_each_gathered(const InterpolatedEntries& interpolated, int v, const Visit& visit) {
-  const InterpolatedVertex* at = interpolated[static_cast<std::size_t>(v)];
-  if (!at) return visit(v);
-  for (int i = 0; i < at->end_count(); ++i) for_each_gathered(interpolated, at->ends[i], visit);
-}
+  // Appends the vertices that `v` stands for.
+  void add(int v, std::vector<int>& to) const {
+    const int list = list_[static_cast<std::size_t>(v)];
+    if (list >= 0) {
+      const std::vector<int>& gathered = lists_[static_cast<std::size_t>(list)];
+      to.insert(to.end(), gathered.begin(), gathered.end());
+    } else if (variance_[v] > 0.0f) {
+      to.push_back(v);
+    }
+  }
+
+ private:
+  const Eigen::ArrayXf& variance_;
+  std::vector<int> list_;  // of each vertex: index into lists_; -1: the vertex is gathered
+  std::vector<std::vector<int>> lists_{};
+};
 
 // The neighbours of each vertex, in rising order, one list after another.
 class Neighbours {
  public:
-  Neighbours(const PatchMesh& mesh, const InterpolatedEntries& interpolated,
-             const Eigen::ArrayXf& variance) {
+  Neighbours(const PatchMesh& mesh, const StandsFor& stands_for) {
     const auto count = static_cast<std::size_t>(mesh.vertex_count());
     std::vector<std::vector<int>> lists(count);
+    std::vector<std::size_t> most(count, 0);  // numbers in a list before duplicates are removed
     std::vector<int> corners;
     for (int e = 0; e < mesh.element_count(); ++e) {
       corners.clear();
-      for (int c = 0; c < mesh.corner_count(e); ++c) {
-        for_each_gathered(interpolated, mesh.corners[e][c], [&](int v) {
-          if (variance[v] > 0.0f) corners.push_back(v);
-        });
-      }
+      for (int c = 0; c < mesh.corner_count(e); ++c) stands_for.add(mesh.corners[e][c], corners);
+      make_unique(corners);
       for (const int v : corners) {
+        std::vector<int>& list = lists[static_cast<std::size_t>(v)];
         for (const int u : corners) {
-          if (u != v) lists[static_cast<std::size_t>(v)].push_back(u);
+          if (u != v) list.push_back(u);
         }
+        keep_short(list, most[static_cast<std::size_t>(v)]);
       }
     }
     first_.reserve(count + 1);
     for (std::vector<int>& list : lists) {
       first_.push_back(vertex_.size());
-      std::ranges::sort(list);
-      list.erase(std::unique(list.begin(), list.end()), list.end());
+      make_unique(list);
       vertex_.insert(vertex_.end(), list.begin(), list.end());
       std::vector<int>().swap(list);
     }
@@ -69,6 +87,15 @@ class Neighbours {
   }
 
  private:
+  // Removes duplicates once a list is twice as long as it was without them. Thousands of elements
+  // between the same gathered vertices name the same neighbours.
+  static void keep_short(std::vector<int>& list, std::size_t& most) {
+    constexpr std::size_t least = 64;
+    if (list.size() <= std::max(most, least)) return;
+    make_unique(list);
+    most = 2 * list.size();
+  }
+
   std::vector<std::size_t> first_{};  // of each vertex, and the end
   std::vector<int> vertex_{};
 };
@@ -106,7 +133,7 @@ class NoiseExchange {
  public:
   NoiseExchange(const PatchMesh& mesh, std::span<const VertexPrediction> predictions, int bands,
                 const BandArray& values, const Eigen::ArrayXf& variance)
-      : neighbours_(mesh, interpolated_entries(mesh, predictions), variance),
+      : neighbours_(mesh, StandsFor(predictions, variance)),
         area_(areas_per_neighbour(mesh, predictions, neighbours_)),
         bands_(bands),
         values_(values),

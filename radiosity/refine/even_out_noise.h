@@ -22,7 +22,7 @@ namespace lightwell {
 /// `values`, (W/m^2)^2, mean of the bands, channels added, and becomes the remaining one. Vertices
 /// without variance have no gather and take no part. Vertices of `predictions` that are
 /// interpolated get the mean of their ends afterwards; their ends are neighbours in their place,
-/// and share their area.
+/// and share their area. Each entry must come after the entries of its ends.
 void even_out_noise(const PatchMesh& mesh, std::span<const VertexPrediction> predictions, int bands,
                     BandArray& values, Eigen::ArrayXf& variance);
 

@@ -133,5 +133,22 @@ TEST(EvenOutNoise, InterpolatedVerticesFollowTheirEnds) {
   EXPECT_FLOAT_EQ(E(corners[0], 0), 0.5f * (E(corners[1], 0) + E(corners[3], 0)));
 }
 
+// Each vertex lies between the two before it, so that vertex i has as many paths to the first two
+// as Fibonacci's number i. All of them stand for these two.
+TEST(EvenOutNoise, LongChainsOfInterpolatedVerticesAreShort) {
+  const PatchMesh mesh = square();
+  const auto even = [](const Eigen::Vector3d&) { return 1.0; };
+  BandArray E = noisy(mesh, even, 0.1);
+  std::vector<VertexPrediction> chain;
+  for (int v = 2; v < mesh.vertex_count(); ++v) {
+    chain.push_back({.at = {.vertex = v, .ends = {v - 1, v - 2, -1, -1}}, .is_interpolated = true});
+    interpolate_vertices({&chain.back().at, 1}, E);
+  }
+  const double before = power(mesh, E);
+  Eigen::ArrayXf variance = Eigen::ArrayXf::Constant(mesh.vertex_count(), 0.01f);
+  even_out_noise(mesh, chain, 3, E, variance);
+  EXPECT_NEAR(power(mesh, E), before, sum_rounding * before);
+}
+
 }  // namespace
 }  // namespace lightwell::even_out_noise_test
