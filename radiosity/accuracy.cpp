@@ -120,8 +120,11 @@ Effort first_effort(double target, bool refines) {
           .gather_rays = rays_for_noise(rays_for_one_percent, 0.01, target)};
 }
 
-std::optional<Effort> next_effort(const Effort& spent, double target, double error, double noise,
-                                  const RefineReport& refinement, int attempt) {
+std::optional<Effort> next_effort(const Effort& spent, double target, double error,
+                                  double noise_estimate, const RefineReport& refinement,
+                                  int attempt) {
+  // A few vertices that hardly any ray leaves may claim many times the noise that there is.
+  const double noise = std::min(noise_estimate, error);
   const bool can_split = refinement.outcome == RefineOutcome::tolerance_reached;
   if (attempt + 1 >= most_attempts || (!can_split && refinement.estimate >= target)) {
     return std::nullopt;
@@ -135,10 +138,16 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
   };
   Effort next = spent;
   const double noise_goal = can_split ? share_of_gather_noise * target : beside(without);
-  constexpr int most_times = 16;  // the estimate of the noise may be far too high by chance
+  // An attempt repeats the gather and the estimate whole, so that a small step costs nearly as much
+  // as a large one; and the noise is known by its estimate alone.
+  constexpr double least_times = 1.5;
+  constexpr int most_times = 16;
   if (noise > noise_goal) {
-    next.gather_rays = std::min(rays_for_noise(spent.gather_rays, noise, noise_goal),
-                                most_times * spent.gather_rays);
+    const int wanted = rays_for_noise(spent.gather_rays, noise, noise_goal);
+    if (wanted > spent.gather_rays) {
+      next.gather_rays = std::clamp(wanted, static_cast<int>(least_times * spent.gather_rays),
+                                    most_times * spent.gather_rays);
+    }
   }
   const double goal = beside(std::min(noise, noise_goal));
   if (can_split && without > goal) {
@@ -150,7 +159,7 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
     const double besides = std::sqrt(std::max(without * without - reached * reached, 0.0));
     const double left = std::sqrt(std::max(goal * goal - besides * besides, 0.0));
     const double wanted = besides > 0.0 ? left : 0.95 * goal / without * reached;
-    constexpr double largest_step = 0.6, smallest_step = 0.9;
+    constexpr double largest_step = 0.6, smallest_step = 0.8;
     next.refine_tolerance = std::clamp(wanted, largest_step * reached, smallest_step * reached);
   }
   const bool is_more =

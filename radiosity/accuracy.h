@@ -63,12 +63,13 @@ inline constexpr int rays_by_default = 1024;
 /// power of two from 256 on. More would not show.
 int rays_worth(double left);
 
-/// The effort of the next attempt, after `spent` left an `error` of which `noise` is that of rays
-/// (both gathers of the error estimate); all relative to the mean irradiance. Empty if more would
-/// not help. Noise falls with the number of rays, the error of interpolation with the tolerance of
-/// refinement, as long as `refinement` has reached its tolerance and not a limit of elements.
-/// `attempt` counts from 0; there are six at most.
-std::optional<Effort> next_effort(const Effort& spent, double target, double error, double noise,
-                                  const RefineReport& refinement, int attempt);
+/// The effort of the next attempt, after `spent` left an `error` of which `noise_estimate` is that
+/// of rays (both gathers of the error estimate); all relative to the mean irradiance. Empty if more
+/// would not help. Noise falls with the number of rays, the error of interpolation with the
+/// tolerance of refinement, as long as `refinement` has reached its tolerance and not a limit of
+/// elements. `attempt` counts from 0; there are six at most.
+std::optional<Effort> next_effort(const Effort& spent, double target, double error,
+                                  double noise_estimate, const RefineReport& refinement,
+                                  int attempt);
 
 }  // namespace lightwell

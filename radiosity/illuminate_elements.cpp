@@ -244,11 +244,15 @@ class GatherAttempts {
                            of_elements, batch, wanted);
   }
 
-  // True if the target of a part lies between the ends of its estimate.
+  // True if the target of a part is missed, and if either
+  // - it lies between the ends of the estimate, or
+  // - the ends are too far apart to say how much effort is missing.
   bool is_undecided(std::size_t part) const {
+    constexpr double far_apart = 0.1;  // a share of the target
     const ErrorEstimate& estimate = estimates_[part];
-    return estimate.batches > 0 && estimate.least() < targets_[part] &&
-           targets_[part] < estimate.error();
+    const double least = estimate.least(), error = estimate.error(), target = targets_[part];
+    return estimate.batches > 0 && target < error &&
+           (least < target || error - least > far_apart * target);
   }
 
   void estimate() {
@@ -260,9 +264,9 @@ class GatherAttempts {
     for (std::size_t p = 0; p < first.size(); ++p) {
       if (raised_[p] != 0) estimates_[p] = first[p];
     }
-    // If the target lies between the ends of the estimate, more sample points cost less than
-    // another attempt: a single point may hold a fifth of the squared error. Four batches halve the
-    // standard error of one.
+    // Where the estimate is undecided, more sample points cost less than an attempt too many, or
+    // than one that splits far too much: a single point may hold a fifth of the squared error. Four
+    // batches halve the standard error of one.
     constexpr int most_batches = 4;
     for (int batch = 1; batch < most_batches; ++batch) {
       std::vector<char> wanted(estimates_.size(), 0);
@@ -337,8 +341,9 @@ class GatherAttempts {
     auto next =
         next_effort(spent, targets_[part], estimate.error(), estimate.noise, refined, attempt_);
     // Few of the rays in a dim room find the opening that its light comes from. The noise then has
-    // a long tail, is larger than its estimate, and no splitting reduces it.
-    constexpr double large = 0.5;
+    // a long tail, is larger than its estimate, and no splitting reduces it. Rays come first where
+    // the noise has more than half of the squared error.
+    constexpr double large = 0.7;
     const bool is_noisy = efforts_.size() > 1 && estimate.noise > large * estimate.error();
     if (next && is_noisy && next->gather_rays > spent.gather_rays) {
       next->refine_tolerance = spent.refine_tolerance;

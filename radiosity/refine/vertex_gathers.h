@@ -19,13 +19,16 @@ struct ChannelLight;
 /// Pilot gathers at the vertices of refined elements, each made at most once.
 ///
 /// - Direct light is gathered as for the final solution.
-/// - Indirect light is gathered twice, independently. Each gather casts an eighth of the final
-///   gather's rays (a sixteenth if the noise of that has a goal, or if there are more than 32 768
-///   vertices at the start), rounded up to a power of two, and
-///   down to a quarter of that at the smallest elements of the start (an eighth at vertices of
-///   SharedGathers::read). The rays take the same
-///   directions all over a side of a surface, so that most of the noise is alike at neighbours and
-///   not in the difference between them.
+/// - Indirect light is gathered twice, independently. Each gather casts a share of the final
+///   gather's rays, rounded up to a power of two:
+///     * an eighth;
+///     * a sixteenth, but 64 at least, if the noise of the final gather has a goal;
+///     * a sixteenth if there are more than 32 768 vertices at the start;
+///     * down to a quarter of that at the smallest elements of the start, and down to an eighth at
+///       vertices of SharedGathers::read.
+///
+///   The rays take the same directions all over a side of a surface, so that most of the noise is
+///   alike at neighbours and not in the difference between them.
 /// - The rays read the light at the base's vertices, which a gather of the same kind has sharpened
 ///   before.
 /// - On unread_patches() no indirect light is gathered, and direct light of crumbs at records
@@ -92,6 +95,7 @@ class VertexGathers {
  private:
   bool is_unread(int vertex) const;
   void gather_direct_at_base();
+  int pilot_rays(int rays) const;
   void share_pilot_rays();
   NoiseGoal sky_noise_at(int vertex) const;
   void sharpen_radiosity(const BandArray& caustic);

@@ -213,6 +213,32 @@ TEST(Accuracy, EffortFollowsTheError) {
   EXPECT_FALSE(next_effort(first, 0.01, 0.02, 0.013, reached, 20));
 }
 
+// An attempt repeats much of the one before, so that rays or elements rise by half or more: noise
+// by 2/3 of 1.5 at least, the tolerance to 80 % at most.
+TEST(Accuracy, EachAttemptIsWorthItsTime) {
+  const Effort first = first_effort(0.02, true);
+  RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.012};
+  // Noise of 0.0111 where 0.011 is allowed takes 1.4 % more rays.
+  const auto noisy = next_effort(first, 0.02, 0.0201, 0.0111, reached, 0);
+  ASSERT_TRUE(noisy);
+  EXPECT_GE(noisy->gather_rays, 1.5 * first.gather_rays);
+  // 1 % of error too much, none of it noise.
+  const auto coarse = next_effort(first, 0.02, 0.0192, 0.0, reached, 0);
+  ASSERT_TRUE(coarse);
+  EXPECT_LE(coarse->refine_tolerance, 0.8 * reached.estimate);
+}
+
+// The error contains the noise of both gathers, so an estimate of the noise above it is too high.
+TEST(Accuracy, NoiseIsNoMoreThanTheError) {
+  const Effort first = first_effort(0.05, true);
+  RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.03};
+  const auto as_error = next_effort(first, 0.05, 0.06, 0.06, reached, 0);
+  const auto beyond = next_effort(first, 0.05, 0.06, 700.0, reached, 0);
+  ASSERT_TRUE(as_error && beyond);
+  EXPECT_EQ(beyond->gather_rays, as_error->gather_rays);
+  EXPECT_EQ(beyond->refine_tolerance, as_error->refine_tolerance);
+}
+
 // More rays do not reduce the error of interpolation if elements may not be split.
 TEST(Accuracy, RaysAreNotCastWhereElementsAreTooLarge) {
   const Effort first = first_effort(0.03, false);
