@@ -23,16 +23,19 @@ bool crosses_facet_alone(const Eigen::Vector3d& direction, const Eigen::Vector3d
 
 }  // namespace
 
-// Number of directions of a rough surface's lobe. A coat gets all of them where it mirrors an
-// eighth of the light; fewer than four would not limit each other's light of lamps, and more than
-// four times as many are worth it for no share. (A picture sees a coat once, a rough mirror in many
-// samples.)
+// Number of directions of a rough surface's lobe. A coat gets as many as a mirror where it mirrors
+// 1/32 of the light; fewer than four would not limit each other's light of lamps, and more than
+// sixteen times as many are worth it for no share. (A picture sees a coat once, a rough mirror in
+// many samples.) On a varnished floor below windows a quarter of these left twice the noise, and
+// saved a quarter of the picture's time. The number does not follow the light that the first
+// directions find: where they miss a window by chance, few directions would do by their own
+// judgement, and a picture came out 6 % too dark (Kirk & Arvo 1991).
 int RayTree::lobe_samples(const SurfaceInteraction& interaction, const Branch& branch,
                           const TreeState& state) const {
   const double of_mirrors = double{state.effort} * options_.glossy_rays;
   double wanted = of_mirrors;
   if (interaction.material.mirrors_by_coat()) {
-    constexpr double fewest = 4.0, most = 4.0, whole_share = 1.0 / 8.0;
+    constexpr double fewest = 4.0, most = 16.0, whole_share = 1.0 / 32.0;
     const double share = double{branch.weight.maxCoeff()} * double{mirrored_share(interaction)};
     wanted =
         std::clamp(share / whole_share * of_mirrors, fewest, std::max(fewest, most * of_mirrors));

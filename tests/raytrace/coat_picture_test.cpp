@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -200,6 +201,48 @@ TEST(Metal, AbsorbsWhatItDoesNotMirror) {
   options.caustic_rays = 1 << 14;
   const EnergyBalance energy = solve_scene(scene, options).solution.energy;
   EXPECT_NEAR(energy.absorbed / expected, 1.0, 0.01);
+}
+
+// A black lacquer under a ceiling that is bright in one corner, which a few percent of the lobe's
+// directions meet. Directions that miss the corner by chance must not end the search for it: means
+// of few and of many directions differ by no more than their noise, of which four standard errors
+// are allowed.
+TEST(Coat, MeansDoNotDependOnTheNumberOfDirections) {
+  Scene scene = SceneBuilder()
+                    .square({.coat = 1.5f}, {0, 0, 0}, up, 2.0)
+                    .square({.reflectance = 0.9f}, {0, 0, 2}, -up, 2.0)
+                    .build();
+  scene.materials[0].specular_roughness = 0.3f;
+  TracedScene lit(std::move(scene));
+  lit.set_indirect([](const Eigen::Vector3d& at) {
+    return at.z() > 1.0 && at.x() > 0.7 && at.y() > 0.7 ? 100.0f : 1.0f;
+  });
+  struct Mean {
+    double value = 0.0, square = 0.0;
+    int count = 0;
+    double variance() const { return (square / count - std::pow(value / count, 2)) / count; }
+  };
+  const auto mean_of = [&](int directions) {
+    RenderOptions options;
+    options.glossy_rays = directions;
+    const RayTree tree(lit.scene, lit.caster, lit.direct_light, lit.solution, options);
+    Mean mean;
+    for (mean.count = 0; mean.count < 4000; ++mean.count) {
+      const Ray ray{.origin = {-1.0, 0.0, 1.0},
+                    .direction = Eigen::Vector3d(1, 0, -1).normalized()};
+      const auto key = static_cast<std::uint64_t>(mean.count);
+      const auto L = static_cast<double>(tree.trace(ray, key).radiance[0]);
+      mean.value += L;
+      mean.square += L * L;
+    }
+    return mean;
+  };
+  const Mean few = mean_of(1), many = mean_of(32);
+  const double a = few.value / few.count, b = many.value / many.count;
+  const double noise = std::sqrt(few.variance() + many.variance());
+  std::printf("few directions %.5f, many %.5f, standard error %.5f\n", a, b, noise);
+  EXPECT_NEAR(a, b, 4.0 * noise);
+  EXPECT_LT(noise, 0.05 * b);
 }
 
 // A black lacquer below a lamp, whose highlight a thin pane in between dims by what both of its
