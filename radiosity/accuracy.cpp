@@ -139,9 +139,9 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
   Effort next = spent;
   const double noise_goal = can_split ? share_of_gather_noise * target : beside(without);
   // An attempt repeats the gather and the estimate whole, so that a small step costs nearly as much
-  // as a large one; and the noise is known by its estimate alone.
+  // as a large one. Half more rays leave 1.5^(-2/3) = 76 % of the noise.
   constexpr double least_times = 1.5;
-  constexpr int most_times = 16;
+  constexpr int most_times = 16;  // the estimate of the noise may be far too high by chance
   if (noise > noise_goal) {
     const int wanted = rays_for_noise(spent.gather_rays, noise, noise_goal);
     if (wanted > spent.gather_rays) {
@@ -159,6 +159,8 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
     const double besides = std::sqrt(std::max(without * without - reached * reached, 0.0));
     const double left = std::sqrt(std::max(goal * goal - besides * besides, 0.0));
     const double wanted = besides > 0.0 ? left : 0.95 * goal / without * reached;
+    // 80 % of the error takes a quarter to a half more elements, as least_times does of rays: the
+    // error falls with 1/n in smooth light and n^(-1/2) at the edges of shadows.
     constexpr double largest_step = 0.6, smallest_step = 0.8;
     next.refine_tolerance = std::clamp(wanted, largest_step * reached, smallest_step * reached);
   }

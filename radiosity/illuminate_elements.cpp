@@ -248,7 +248,9 @@ class GatherAttempts {
   // - it lies between the ends of the estimate, or
   // - the ends are too far apart to say how much effort is missing.
   bool is_undecided(std::size_t part) const {
-    constexpr double far_apart = 0.1;  // a share of the target
+    // A share of the target. An error known to a tenth gives the tolerance that is missing to about
+    // a fifth, which is the smallest step of next_effort().
+    constexpr double far_apart = 0.1;
     const ErrorEstimate& estimate = estimates_[part];
     const double least = estimate.least(), error = estimate.error(), target = targets_[part];
     return estimate.batches > 0 && target < error &&
@@ -264,9 +266,9 @@ class GatherAttempts {
     for (std::size_t p = 0; p < first.size(); ++p) {
       if (raised_[p] != 0) estimates_[p] = first[p];
     }
-    // Where the estimate is undecided, more sample points cost less than an attempt too many, or
-    // than one that splits far too much: a single point may hold a fifth of the squared error. Four
-    // batches halve the standard error of one.
+    // More sample points for an undecided estimate cost less than an attempt too many, or than one
+    // that splits far too much: a single point may hold a fifth of the squared error. Four batches
+    // halve the standard error of one.
     constexpr int most_batches = 4;
     for (int batch = 1; batch < most_batches; ++batch) {
       std::vector<char> wanted(estimates_.size(), 0);

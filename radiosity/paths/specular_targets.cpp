@@ -68,7 +68,7 @@ void divide(std::span<std::pair<int, Box>> surfaces, int groups, int first,
 
 // Joins groups whose common sphere fills less solid angle than their spheres together, such as the
 // faces of a block, best pair first.
-void even_out_noise(std::vector<Box>& boxes, std::vector<int>& group) {
+void join_neighbours(std::vector<Box>& boxes, std::vector<int>& group) {
   for (;;) {
     double best = 1.0;
     std::pair<std::size_t, std::size_t> pair{0, 0};
@@ -114,7 +114,7 @@ SpecularTargets::SpecularTargets(const Scene& scene) {
     if (boxes.size() <= g) boxes.resize(g + 1);
     boxes[g].add(box);
   }
-  even_out_noise(boxes, group);
+  join_neighbours(boxes, group);
   for (const Box& box : boxes) {
     targets_.push_back({.center = box.center()});
   }

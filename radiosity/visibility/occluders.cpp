@@ -41,7 +41,7 @@ class Sheets {
     for (std::size_t f = 0; f < elements_.size(); ++f) {
       if (!elements_[f].empty()) plane_[f] = plane_through(elements_[f]);
     }
-    even_out_noise();
+    join_neighbours();
   }
 
   int facet_count() const { return static_cast<int>(elements_.size()); }
@@ -83,7 +83,7 @@ class Sheets {
     auto key() const { return std::tuple(low.x(), low.y(), low.z(), high.x(), high.y(), high.z()); }
   };
 
-  void even_out_noise() {
+  void join_neighbours() {
     std::vector<Edge> edges;
     for (int f = 0; f < facet_count(); ++f) {
       for (const int e : elements_[f]) {

@@ -213,16 +213,17 @@ TEST(Accuracy, EffortFollowsTheError) {
   EXPECT_FALSE(next_effort(first, 0.01, 0.02, 0.013, reached, 20));
 }
 
-// An attempt repeats much of the one before, so that rays or elements rise by half or more: noise
-// by 2/3 of 1.5 at least, the tolerance to 80 % at most.
+// An attempt repeats much of the one before, so that even the smallest excess takes half more rays,
+// or 80 % of the error that elements have, which is a quarter to a half more of them.
 TEST(Accuracy, EachAttemptIsWorthItsTime) {
   const Effort first = first_effort(0.02, true);
+  // Elements have well below the 0.019 that both errors together may have, and may be split.
   RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.012};
   // Noise of 0.0111 where 0.011 is allowed takes 1.4 % more rays.
   const auto noisy = next_effort(first, 0.02, 0.0201, 0.0111, reached, 0);
   ASSERT_TRUE(noisy);
   EXPECT_GE(noisy->gather_rays, 1.5 * first.gather_rays);
-  // 1 % of error too much, none of it noise.
+  // 1 % more than 0.019, none of it noise. The step is from the error that elements have.
   const auto coarse = next_effort(first, 0.02, 0.0192, 0.0, reached, 0);
   ASSERT_TRUE(coarse);
   EXPECT_LE(coarse->refine_tolerance, 0.8 * reached.estimate);
@@ -231,6 +232,7 @@ TEST(Accuracy, EachAttemptIsWorthItsTime) {
 // The error contains the noise of both gathers, so an estimate of the noise above it is too high.
 TEST(Accuracy, NoiseIsNoMoreThanTheError) {
   const Effort first = first_effort(0.05, true);
+  // Any error of the elements below the target serves: both calls get the same.
   RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.03};
   const auto as_error = next_effort(first, 0.05, 0.06, 0.06, reached, 0);
   const auto beyond = next_effort(first, 0.05, 0.06, 700.0, reached, 0);

@@ -242,7 +242,8 @@ TEST(Coat, MeansDoNotDependOnTheNumberOfDirections) {
   const double noise = std::sqrt(few.variance() + many.variance());
   std::printf("few directions %.5f, many %.5f, standard error %.5f\n", a, b, noise);
   EXPECT_NEAR(a, b, 4.0 * noise);
-  EXPECT_LT(noise, 0.05 * b);
+  // A search that ends early was off by 6 % and more in a room, which four standard errors show.
+  EXPECT_LT(4.0 * noise, 0.06 * b);
 }
 
 // A black lacquer below a lamp, whose highlight a thin pane in between dims by what both of its

@@ -242,6 +242,7 @@ struct WithErrors {
   }
 
   Scene scene = room_under_a_sky();
+  // Any solution with refined elements serves, since excess() sets its errors and its light.
   SolvedScene solved = solve_scene(scene, {.gather = {.rays = 64}, .refine = {.tolerance = 0.05}});
   PatchMesh& mesh = solved.mesh;
   RadiositySolution& solution = solved.solution;
@@ -251,15 +252,17 @@ struct WithErrors {
 // Quotients of a few floats.
 constexpr float of_quotients = 8 * std::numeric_limits<float>::epsilon();
 
+// The excess is an element's error over the error that is allowed, both relative to the reference.
 TEST(DaylightPictures, ElementsAsGoodAsTheirPartShowTheSky) {
   WithErrors with;
-  // A part off by 5 %: as much is allowed, as a share of the element's own light.
+  // A part off by 5 %: as much is allowed, as a share of the element's own light, 0.05 / (0.05 x).
   const float of_part = with.excess(0.05f, 0.05, 1.0);
   EXPECT_NEAR(of_part, 1.0 / with.own_over_reference, of_quotients * of_part);
-  // A dim element: the share of its own light is less than 2 % of the reference, which is allowed.
+  // A dim element: the share of its own light is less than the 2 % of the reference that are
+  // always allowed.
   const float dim = with.excess(0.05f, 0.05, 0.1);
   EXPECT_NEAR(dim, 0.05f / DomeOnMesh::small_error, of_quotients * dim);
-  // A part off by half is no reason to show more than 10 %.
+  // A part off by half is no reason to show more than 10 %: 0.05 / (0.1 x).
   const float rough = with.excess(0.05f, 0.5, 1.0);
   EXPECT_NEAR(rough, 0.5 / with.own_over_reference, of_quotients * rough);
 }
