@@ -627,14 +627,18 @@ void add_triangles(MeshBuilder& mesh, const Loop& loop, const UvLoop& uv, const 
   }
 }
 
-// Adds the convex pieces of a loop; false if these have no area.
-bool add_pieces(MeshBuilder& mesh, const Loop& loop, const UvLoop& uv, const NormalLoop& normals) {
-  const auto pieces = convex_pieces({loop});
+}  // namespace
+
+bool add_pieces(MeshBuilder& mesh, const Polygon& polygon, const UvLoop& uv,
+                const NormalLoop& normals) {
+  Loop all = polygon.boundary;
+  for (const Loop& hole : polygon.holes) all.insert(all.end(), hole.begin(), hole.end());
+  const auto pieces = convex_pieces(polygon);
   double area = 0.0;
-  for (const auto& piece : pieces) area += newell(values_of(piece, loop)).norm();
-  if (!has_area(area, loop)) return false;
+  for (const auto& piece : pieces) area += newell(values_of(piece, all)).norm();
+  if (!has_area(area, polygon.boundary)) return false;
   for (const auto& piece : pieces) {
-    const Loop corners = values_of(piece, loop);
+    const Loop corners = values_of(piece, all);
     const UvLoop of_corners = values_of(piece, uv);
     const NormalLoop normals_there = values_of(piece, normals);
     if (is_thin(corners)) continue;
@@ -646,8 +650,6 @@ bool add_pieces(MeshBuilder& mesh, const Loop& loop, const UvLoop& uv, const Nor
   }
   return true;
 }
-
-}  // namespace
 
 void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv, NormalLoop normals) {
   join_repeated(loop, uv, normals);
@@ -663,7 +665,7 @@ void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv, Nor
   // is no simple polygon, but ear clipping triangulates it.
   const auto triangles = thin ? std::vector<std::array<int, 3>>{} : split_into_triangles(loop);
   if (triangles.empty()) {
-    ++(add_pieces(mesh, loop, uv, normals) ? repairs.crossing : repairs.thin);
+    ++(add_pieces(mesh, {loop}, uv, normals) ? repairs.crossing : repairs.thin);
     return;
   }
   if (!is_sound(loop, {}, {})) ++repairs.split;

@@ -95,6 +95,11 @@ struct Repairs {
   std::vector<std::string> notes() const;
 };
 
+/// Adds the convex_pieces() of a polygon. `uv` and `normals` are given at all corners, of the
+/// boundary, then of the holes; or empty. False, with nothing added, if the pieces have no area.
+bool add_pieces(MeshBuilder& mesh, const Polygon& polygon, const UvLoop& uv = {},
+                const NormalLoop& normals = {});
+
 /// Adds a polygon of a mesh file, repaired where possible. A polygon is cut into triangles if it is
 /// not planar, if a bridge joins a hole to its boundary, or if its texture coordinates or normals
 /// are not linear; and into convex_pieces() if it crosses itself.

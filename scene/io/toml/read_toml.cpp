@@ -98,6 +98,9 @@ Scene read_toml(const std::filesystem::path& path) {
   TomlSurfaces read(scene);
   for (const auto& surface : surfaces->elements("surface")) read.add(surface, ++number);
   if (number == 0) surfaces->fail("is empty; add at least one [[surfaces]] table");
+  if (scene.surfaces.empty()) {
+    surfaces->fail("have no area, so that no light can fall on them: " + scene.losses.front());
+  }
   spread_power(materials, scene);
   drop_unused_uv(scene);
   Remarks remarks;

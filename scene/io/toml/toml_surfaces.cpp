@@ -13,6 +13,7 @@
 #include "scene/io/numbered_names.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
+#include "scene/io/remarks.h"
 #include "scene/io/round_facets.h"
 #include "scene/io/text_file.h"
 #include "scene/io/toml/toml_motions.h"
@@ -142,6 +143,8 @@ class TomlSurfaces::Reader {
     if (shape == "polygons") add_polygons(given, mesh);
     if (shape == "box") add_box(given, mesh);
     note_bent();
+    note_faulty();
+    if (mesh.empty()) return;
     add_surface(name_, material, mesh.mesh());
   }
 
@@ -258,7 +261,9 @@ class TomlSurfaces::Reader {
 
   void add_sound(const TomlValue& value, const Polygon& polygon, const UvLoop& uv,
                  MeshBuilder& mesh) {
-    if (const std::string what = fault(polygon); !what.empty()) value.fail(what);
+    if (const std::string what = fault(polygon); !what.empty()) {
+      return add_faulty(value, polygon, uv, what, mesh);
+    }
     const double deviation = deviation_from_plane(polygon);
     const bool is_planar = deviation <= flatness;
     const bool is_even = uv.empty() || uv_map_over(polygon.boundary, uv);
@@ -289,6 +294,38 @@ class TomlSurfaces::Reader {
     if (bent_++ == 0) first_bent_ = value.what();
     made_of_bent_ += triangles.size();
     farthest_ = std::max(farthest_, distance);
+  }
+
+  // Adds all that a polygon with a fault goes round, without its holes; nothing without an area.
+  void add_faulty(const TomlValue& value, const Polygon& polygon, UvLoop uv,
+                  const std::string& what, MeshBuilder& mesh) {
+    const auto is_short = [](const Loop& loop) { return loop.size() < 3; };
+    if (is_short(polygon.boundary) || std::ranges::any_of(polygon.holes, is_short))
+      value.fail(what);
+    if (!uv.empty() && !polygon.holes.empty()) {
+      const auto map = uv_map_over(polygon.boundary, uv);
+      if (!map) value.fail(what);
+      for (const Loop& hole : polygon.holes) {
+        for (const Eigen::Vector3d& corner : hole) uv.push_back(map->at(corner));
+      }
+    }
+    Faults& faults = add_pieces(mesh, polygon, uv) ? cut_ : left_out_;
+    if (faults.count++ == 0) faults.first = value.located(what);
+  }
+
+  // Adds a loss for all polygons of the surface with a fault that were cut into pieces, and one for
+  // all that were left out.
+  void note_faulty() const {
+    const auto note = [&](const Faults& faults, const char* one, const char* more) {
+      if (faults.count == 0) return;
+      const std::string others =
+          faults.count == 1 ? "" : fmt::format(", and {} more of the surface", faults.count - 1);
+      add_loss(scene_,
+               fmt::format("{}; it{} {}.", faults.first, others, faults.count == 1 ? one : more));
+    };
+    note(cut_, "was cut into pieces that do not overlap",
+         "were cut into pieces that do not overlap");
+    note(left_out_, "was left out", "were left out");
   }
 
   // Adds one note for all polygons of the surface that were split.
@@ -410,6 +447,11 @@ class TomlSurfaces::Reader {
   std::size_t made_of_bent_ = 0;
   std::string first_bent_{};
   double farthest_ = 0.0;  // of their vertices off the plane, in the file's unit
+  struct Faults {
+    int count = 0;
+    std::string first{};
+  };
+  Faults cut_{}, left_out_{};
   int motion_ = -1;
 };
 

@@ -43,9 +43,13 @@ std::string quoted_list(const std::vector<std::string>& words) {
 TomlValue::TomlValue(const std::filesystem::path& file, const toml::node& node, std::string what)
     : file_(&file), node_(&node), what_(std::move(what)) {}
 
+std::string TomlValue::located(std::string_view problem) const {
+  return lightwell::located(*file_, node_->source().begin,
+                            fmt::format("{}{}{}", what_, what_.empty() ? "" : " ", problem));
+}
+
 void TomlValue::fail(std::string_view problem) const {
-  throw InputError(located(*file_, node_->source().begin,
-                           fmt::format("{}{}{}", what_, what_.empty() ? "" : " ", problem)));
+  throw InputError(located(problem));
 }
 
 void TomlValue::wrong_type(std::string_view wanted) const {

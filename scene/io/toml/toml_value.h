@@ -51,7 +51,9 @@ class TomlValue {
   /// The same value with another description, for values whose name is part of their contents.
   TomlValue renamed(std::string what) const { return {*file_, *node_, std::move(what)}; }
 
-  /// Throws InputError "file:line:column: `what` `problem`".
+  /// "file:line:column: `what` `problem`"
+  std::string located(std::string_view problem) const;
+  /// Throws InputError with the sentence located() makes.
   [[noreturn]] void fail(std::string_view problem) const;
 
  private:

@@ -489,6 +489,95 @@ TEST(ReadToml, SaysInOneNoteWhatItSplits) {
   EXPECT_EQ(said, 1);
 }
 
+struct FaultyPolygon {
+  const char* shape;
+  const char* fault;
+  double area;
+};
+
+class FaultyPolygons : public testing::TestWithParam<FaultyPolygon> {};
+
+// A polygon of a [[surfaces]] table has all that its boundary goes round, without its holes, and
+// the loss names the file, the place and the fault. Areas by hand; the tolerance of 1e-9 is that of
+// convex_pieces() for points that become one, over polygons of a few metres.
+TEST_P(FaultyPolygons, AreCutIntoPieces) {
+  const Scene scene =
+      read_text(std::string("[materials.white]\nreflectance = 0.7\n[[surfaces]]\nname = \"floor\"\n"
+                            "material = \"white\"\n") +
+                GetParam().shape);
+  EXPECT_NEAR(area(mesh(scene, "floor")), GetParam().area, 1e-9);
+  ASSERT_EQ(scene.losses.size(), 1u);
+  for (const char* part :
+       {"text.toml:6:", "polygon of surface 'floor'", GetParam().fault, "pieces"}) {
+    EXPECT_NE(scene.losses.front().find(part), std::string::npos) << scene.losses.front();
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    ReadToml, FaultyPolygons,
+    testing::Values(
+        FaultyPolygon{"polygon = [[0, 0, 0], [1, 1, 0], [2, 0, 0], [0, 1, 0]]\n",
+                      "edges 1 and 3 that cross", 2.0 / 3.0},
+        FaultyPolygon{"polygon = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [1, 0, 0], [0, 1, 0]]\n",
+                      "vertex 2 and vertex 4", 0.5},
+        FaultyPolygon{"polygon = [[0, 0, 0], [3, 0, 0], [1, 0, 0], [1, 1, 0]]\n", "folds back",
+                      0.5},
+        FaultyPolygon{"polygon = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]\n"
+                      "holes = [[[5, 5, 0], [6, 5, 0], [6, 6, 0]]]\n",
+                      "hole 1, which lies outside", 16.0},
+        FaultyPolygon{"polygon = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]\n"
+                      "holes = [[[3, 3, 0], [6, 3, 0], [3, 3.5, 0]]]\n",
+                      "hole 1, which crosses", 16.0 - 5.0 / 12.0},
+        FaultyPolygon{"polygon = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]\n"
+                      "holes = [[[1, 1, 0], [2, 1, 0], [2, 2, 0]], "
+                      "[[1.5, 1.1, 0], [3, 1.1, 0], [3, 3, 0]]]\n",
+                      "hole 2, which meets hole 1", 16.0 - (0.5 + 1.425 - 0.95 / 6.0)}));
+
+// Texture coordinates hold on the pieces, at corners of holes too.
+TEST(ReadToml, PiecesOfAFaultyPolygonKeepTheirPicture) {
+  const Scene scene = read_text(R"([materials.white]
+reflectance = 0.7
+texture = ")" LIGHTWELL_TEST_DATA R"(/scene/two-pixels.png"
+[[surfaces]]
+name = "floor"
+material = "white"
+polygon = [[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]
+holes = [[[3, 3, 0], [6, 3, 0], [3, 3.5, 0]]]
+uv = [[0, 0], [1, 0], [1, 2], [0, 2]]
+)");
+  const PolygonMesh& floor = mesh(scene, "floor");
+  for (const Facet& facet : floor.facets) {
+    ASSERT_GE(facet.uv_map, 0);
+    for (const int v : facet.boundary) {
+      const Eigen::Vector3d& p = floor.vertices[static_cast<std::size_t>(v)];
+      const Eigen::Vector2d at = floor.uv_maps[static_cast<std::size_t>(facet.uv_map)].at(p);
+      EXPECT_NEAR((at - Eigen::Vector2d(p.x() / 4.0, p.y() / 2.0)).norm(), 0.0, 1e-9);
+    }
+  }
+}
+
+TEST(ReadToml, PolygonsWithoutAreaAreLeftOut) {
+  const Scene scene = read_text(R"([materials.white]
+reflectance = 0.7
+[[surfaces]]
+name = "line"
+material = "white"
+polygon = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
+[[surfaces]]
+name = "floor"
+material = "white"
+polygons = [[[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
+            [[0, 0, 0], [1, 1, 1], [2, 2, 2]],
+            [[0, 0, 0], [1, 0, 1], [2, 0, 2]]]
+)");
+  ASSERT_EQ(scene.surfaces.size(), 1u);
+  EXPECT_EQ(mesh(scene, "floor").facets.size(), 1u);
+  ASSERT_EQ(scene.losses.size(), 2u);
+  EXPECT_NE(scene.losses[0].find("surface 'line' has no area"), std::string::npos);
+  EXPECT_NE(scene.losses[1].find("and 1 more of the surface were left out"), std::string::npos)
+      << scene.losses[1];
+}
+
 TEST(ReadToml, MeshesComeWithTheirMaterialsUnlessReplaced) {
   const Scene& s = everything();
   EXPECT_EQ(material_of(s, "block").name, "door");
