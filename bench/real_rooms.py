@@ -11,8 +11,9 @@ stays, their gloss goes. (Mitsuba's rough plastics lose some percent of the ligh
 Errors are those of means over squares of 8 x 8 pixels, luminance, relative to the mean of the references: sqrt(mean (P - A)(P - B)), which the
 noise of the references A and B does not raise; and the median of |P / reference - 1|. Squares above eight times the median of the
 reference are left out: they show lamps. Mitsuba's own error is sqrt(mean (A - B)^2 / 2). `equal` is the processor time of Mitsuba to
-Lightwell's error over Lightwell's: a path tracer's error falls as 1 / sqrt(time). `its own picture` compares with TungstenRender.exr, if the
-scene's folder has one: bias and median of means over squares of a 32nd of the width.
+Lightwell's error over Lightwell's: a path tracer's error falls as 1 / sqrt(time). `mottle` is the error between 4 and 32 pixels, which eyes see
+as blotches: that of means over 4 x 4 pixels less the error of means over 32 x 32, `slope`, which eyes forgive. `its own picture` compares with
+TungstenRender.exr, if the scene's folder has one: bias and median of means over squares of a 32nd of the width.
 """
 import json
 import pathlib
@@ -68,11 +69,30 @@ def mitsuba_picture(mi, file, width, height, samples, seed):
     return np.array(picture, dtype=np.float64)[..., :3], seconds() - start
 
 
-def luminance_of_squares(picture):
-    """Luminance of means over squares of 8 x 8 pixels."""
-    height, width = picture.shape[0] // 8 * 8, picture.shape[1] // 8 * 8
-    squares = picture[:height, :width].reshape(height // 8, 8, width // 8, 8, 3).mean((1, 3))
-    return squares @ np.array([0.2126, 0.7152, 0.0722])
+def luminance_of_squares(picture, side=8):
+    """Luminance of means over squares of `side` pixels."""
+    return means_of_squares(picture @ np.array([0.2126, 0.7152, 0.0722]), side)
+
+
+def means_of_squares(values, side):
+    """Means over squares of `side` x `side` values; what is left at the lower and right ends is not used."""
+    height, width = values.shape[0] // side, values.shape[1] // side
+    return values[:height * side, :width * side].reshape(height, side, width, side).mean((1, 3))
+
+
+def mottle_and_slope(picture, references):
+    """Error between 4 and 32 pixels, and above, of the mean luminance. Each is the root of a product of two differences from two
+    references, whose noises are independent. Squares above eight times the median, lamps, count as right."""
+    p, a, b = (luminance_of_squares(of, 4) for of in (picture, *references))
+    shown = 0.5 * (a + b) < 8.0 * np.median(0.5 * (a + b))
+    coarse, fine = [], []
+    for reference in (a, b):
+        error = np.where(shown, p - reference, 0.0)
+        low = means_of_squares(error, 8)
+        coarse.append(low)
+        fine.append(error[:low.shape[0] * 8, :low.shape[1] * 8] - np.kron(low, np.ones((8, 8))))
+    mean = 0.5 * (a + b)[shown].mean()
+    return tuple(np.sqrt(max((x * y).mean(), 0.0)) / mean for x, y in (fine, coarse))
 
 
 def beside_its_own(mi, picture, file):
@@ -113,8 +133,8 @@ def main(arguments):
     import mitsuba as mi
     mi.set_variant("scalar_rgb")
     width, height = (int(n) for n in size.split("x"))
-    print("| scene | CPU s | MB | elements | bias | error | median | Mitsuba: CPU s | error | equal | its own picture |")
-    print("|---|---|---|---|---|---|---|---|---|---|---|")
+    print("| scene | CPU s | MB | elements | bias | error | median | mottle | slope | Mitsuba: CPU s | error | equal | its own picture |")
+    print("|---|---|---|---|---|---|---|---|---|---|---|---|---|")
     for scene in (pathlib.Path(s) for s in scenes):
         name = scene.parent.name
         home = pathlib.Path(folder) / name
@@ -128,10 +148,12 @@ def main(arguments):
         error = np.sqrt(max(((p - a) * (p - b))[shown].mean(), 0.0)) / mean
         theirs = np.sqrt((((a - b) ** 2)[shown] / 2.0).mean()) / mean
         median = np.median(np.abs(p / np.maximum(reference, 1e-12) - 1.0)[shown])
+        mottle, slope = mottle_and_slope(ours, [picture for picture, _ in pairs])
         their_seconds = 0.5 * (pairs[0][1] + pairs[1][1])
         equal = their_seconds * (theirs / max(error, 1e-12)) ** 2 / spent
         print(f"| {name} | {spent:.0f} | {report['peak_memory_mb']:.0f} | {report['elements']} | "
               f"{100.0 * (p[shown].mean() / mean - 1.0):+.1f} % | {100.0 * error:.1f} % | {100.0 * median:.1f} % | "
+              f"{100.0 * mottle:.1f} % | {100.0 * slope:.1f} % | "
               f"{their_seconds:.0f} | {100.0 * theirs:.1f} % | {equal:.2g} | "
               f"{beside_its_own(mi, ours, scene.parent / 'TungstenRender.exr')} |", flush=True)
 

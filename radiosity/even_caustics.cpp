@@ -25,16 +25,16 @@ BandArray caustics(const LitScene& lit, const SolveOptions& options) {
                             options.run);
 }
 
-EvenCaustics::EvenCaustics(const Scene& scene, const DirectLight& direct_light,
-                           const SolveOptions& options, RefinedElements& elements) {
-  const LightPaths paths(scene, ElementCaster(elements.base()), 1);
-  if (!paths.has_specular()) return;
+EvenCaustics::EvenCaustics(const LitScene& base, const SolveOptions& options,
+                           RefinedElements& elements) {
+  if (!LightPaths(base.scene, base.caster, 1).has_specular()) return;
   const std::vector<int> large = large_leaves(elements);
   if (starts_coarse(options) && options.mesh.elements_per_patch_edge > 1) elements.split(large);
   const RefinedMesh even = elements.mesh();
   elements.merge(large);
-  values_ = BandArray::Zero(elements.vertex_count(), direct_light.column_count());
-  const BandArray found = caustics({scene, ElementCaster(even.mesh), direct_light}, options);
+  values_ = BandArray::Zero(elements.vertex_count(), base.direct_light.column_count());
+  const ElementCaster caster(even.mesh, base.caster, even.tree);
+  const BandArray found = caustics({base.scene, caster, base.direct_light}, options);
   if (found.size() == 0) return;
   known_ = elements.vertex_count();
   for (std::size_t v = 0; v < even.vertex.size(); ++v) {

@@ -15,9 +15,9 @@ BandArray caustics(const LitScene& lit, const SolveOptions& options);
 /// elements would be too small for the number of rays, and so are those of crumbs.
 class EvenCaustics {
  public:
-  /// Casts the rays. `elements` are split and merged again.
-  EvenCaustics(const Scene& scene, const DirectLight& direct_light, const SolveOptions& options,
-               RefinedElements& elements);
+  /// Casts the rays. `base`: with a caster at the base of `elements`, which are split and merged
+  /// again.
+  EvenCaustics(const LitScene& base, const SolveOptions& options, RefinedElements& elements);
 
   /// Irradiance at vertices of the elements, W/m^2, vertices x columns of every channel; empty if
   /// the scene has no mirrors or glass.

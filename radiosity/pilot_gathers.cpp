@@ -136,7 +136,7 @@ void PilotGathers::Impl::prepare(const SolveOptions& options) {
   report(options.run.progress, "refine", 0.0);
   elements.emplace(base);
   report(options.run.progress, "refine", 0.0);
-  even_caustics.emplace(scene, direct_light, options, *elements);
+  even_caustics.emplace(LitScene{scene, caster, direct_light}, options, *elements);
   std::vector<int> base_vertices(static_cast<std::size_t>(base.vertex_count()));
   std::iota(base_vertices.begin(), base_vertices.end(), 0);
   caustic = even_caustics->at(*elements, base_vertices);
