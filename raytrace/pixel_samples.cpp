@@ -1,4 +1,6 @@
 #include "raytrace/pixel_samples.h"
+
+#include "raytrace/shading/found_by_chance.h"
 #include "scene/random_purpose.h"
 
 #include <algorithm>
@@ -67,6 +69,20 @@ void PixelSamples::take_more(int x, int y, bool is_beside_noise, PixelTally& tal
   }
 }
 
+RaySample PixelSamples::mean(const PixelTally& tally) const {
+  // Less than eyes see in one pixel among others of its noise.
+  constexpr float of_other_light = 0.1f;
+  RaySample mean = tally.sum;
+  if (!tally.by_chance.empty()) {
+    const float besides = of_other_light * mean.radiance.mean();
+    tree_.add_specular(limited_sum(tally.by_chance, tally.count, besides), mean);
+  }
+  const float share = 1.0f / static_cast<float>(tally.count);
+  mean.radiance *= share;
+  mean.layers *= share;
+  return mean;
+}
+
 RaySample PixelSamples::sample_at_time(Ray ray, double time, std::uint64_t key, int number,
                                        const PixelCone& cone) const {
   if (exposure_->camera) {
@@ -102,6 +118,7 @@ void PixelSamples::take(int x, int y, int until, PixelTally& tally) const {
     const auto light = static_cast<double>(sample.radiance.mean());
     tally.light += light;
     tally.square += light * light;
+    if (sample.by_chance.size() > 0) tally.by_chance.push_back(std::move(sample.by_chance));
     if (tally.count == 0) {
       tally.sum = std::move(sample);
       continue;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <optional>
+#include <vector>
 
 #include "raytrace/cameras/camera_ray.h"
 #include "raytrace/shading/shade.h"
@@ -25,13 +26,15 @@ class FilterSampler {
 
 /// Sums over the samples of one pixel.
 struct PixelTally {
-  RaySample sum{};  ///< sum over samples; the fingerprint has no meaning
+  /// Sum over samples, without what these found by chance; the fingerprint has no meaning.
+  RaySample sum{};
+  std::vector<Spectrum> by_chance{};  ///< RaySample::by_chance of the samples that have any
   int count = 0;
   double light = 0.0, square = 0.0;  ///< sums of the bands' mean radiance and of its square
 
-  /// Returns whether the standard error of the mean is at most the share `noise` of the mean; false
-  /// for `noise` 0 or fewer than two samples. The standard error is that of independent samples;
-  /// stratified samples have a smaller one.
+  /// Returns whether the standard error of the mean, without what is found by chance, is at most
+  /// the share `noise` of the mean; false for `noise` 0 or fewer than two samples. The standard
+  /// error is that of independent samples; stratified samples have a smaller one.
   bool is_good(float noise) const;
 };
 
@@ -61,6 +64,10 @@ class PixelSamples {
   /// four times SampleOptions::least samples are taken before the first test of the error, since
   /// the first samples may have missed something small and bright.
   void take_more(int x, int y, bool is_beside_noise, PixelTally& tally) const;
+
+  /// The mean of a pixel's samples: radiance and layers. Light found by chance counts in each
+  /// sample up to four times the mean of the other samples, or a tenth of the pixel's other light.
+  RaySample mean(const PixelTally& tally) const;
 
   const SampleOptions& options() const { return options_; }
 

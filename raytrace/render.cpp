@@ -309,7 +309,7 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
       if (sampled && pixel_mean.met_gloss()) {
         PixelTally tally = sampled->samples.first_samples(x, y);
         sampled->samples.take_more(x, y, true, tally);
-        set_pixel(tally, x, y, image, layers);
+        set_pixel(sampled->samples.mean(tally), x, y, image, layers);
         count_samples(tally, counters);
         continue;
       }

@@ -25,11 +25,10 @@ void for_each_pixel(int width, int first, int end, const Progress& progress, dou
 
 }  // namespace
 
-void set_pixel(const PixelTally& tally, int x, int y, Image& image, LayerFilm& layers) {
-  const float share = 1.0f / static_cast<float>(tally.count);
+void set_pixel(const RaySample& mean, int x, int y, Image& image, LayerFilm& layers) {
   const Eigen::Index pixel = Eigen::Index{y} * image.width + x;
-  image.radiance.row(pixel) = share * tally.sum.radiance.transpose();
-  layers.set_sampled(pixel, share * tally.sum.layers);
+  image.radiance.row(pixel) = mean.radiance.transpose();
+  layers.set_sampled(pixel, mean.layers);
 }
 
 SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
@@ -61,7 +60,7 @@ SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
     if (!is_sampled(x, y)) return;
     PixelTally& tally = tallies[slot(x, y)];
     samples.take_more(x, y, is_beside_noise(x, y), tally);
-    set_pixel(tally, x, y, image, layers);
+    set_pixel(samples.mean(tally), x, y, image, layers);
   });
   SampledRows result;
   for (int y = first_row; y < first_row + rows; ++y) {

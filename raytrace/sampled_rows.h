@@ -18,7 +18,7 @@ struct SampledRows {
 
 /// Sets a pixel, and its sampled layers, to the mean of its samples, of which there is at least
 /// one.
-void set_pixel(const PixelTally& tally, int x, int y, Image& image, LayerFilm& layers);
+void set_pixel(const RaySample& mean, int x, int y, Image& image, LayerFilm& layers);
 
 /// Fills `rows` rows of a picture from `first_row` on, and their sampled layers, by many samples
 /// per pixel. The result of a row does not depend on the other rows filled with it: the first

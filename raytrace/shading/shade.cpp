@@ -321,6 +321,7 @@ void RayTree::add_background(const Branch& branch, TreeState& state) const {
 // Adds radiance of something that no light of the scene falls on.
 void RayTree::add_seen(const Branch& branch, const Spectrum& L, TreeState& state) const {
   const Spectrum seen = branch.weight * L;
+  if (is_apart(branch, state)) return add_apart(seen, state);
   state.result.radiance += seen;
   if (!with_layers_) return;
   const Layer layer = branch.node == 1 ? Layer::emission : Layer::specular;
@@ -388,6 +389,8 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .turns = parent.turns,
                 .lobe_density = sample.density,
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
+                .is_hidden = parent.is_hidden || (!parent.is_sharp && !off_lobe &&
+                                                  !(sample.crosses && is_clear_pane(what))),
                 .sky = off_lobe || (sample.crosses && is_clear_pane(what)) ? parent.sky : nullptr,
                 .sky_lobe_density = off_lobe ? sample.density : parent.sky_lobe_density,
                 .behind_coat =

@@ -35,6 +35,9 @@ namespace lightwell {
 /// Result of tracing a ray.
 struct RaySample {
   Spectrum radiance{};  ///< W/(m^2 sr)
+  /// Radiance besides, W/(m^2 sr), that a rough surface of one of many samples found by chance (see
+  /// RayTree); empty: none.
+  Spectrum by_chance{};
   /// Layers that are averaged over a pixel; zero unless RenderOptions::layers has any of the
   /// sampled layers.
   SampledLayers layers = SampledLayers::Zero();
@@ -113,6 +116,10 @@ struct SpecularSegment {
 /// a few bright pixels. The light of lamps in one sample of the coat's lobe is limited to four
 /// times the mean of the other samples, and twice what the lobe finds besides.
 ///
+/// Rough mirrors and rough glass find by chance all that lies behind a further smooth surface:
+/// nothing is aimed through that. One of many samples has such light apart, in
+/// RaySample::by_chance, so that the mean of the pixel can limit it.
+///
 /// Openings and bodies of luminaires are seen as VisibleLamps says, by the eye and by way of
 /// mirrors and glass; bodies also by way of rough surfaces, which sample the lamps themselves. A
 /// body blocks no light: a rough surface mirrors the emitters and the sky behind it, which it
@@ -172,6 +179,9 @@ class RayTree {
   bool sees_gloss(const Ray& ray) const { return outline(ray, {}).sees_gloss; }
   /// The luminaires that rays of the tree meet beside the surfaces.
   const VisibleLamps& visible_lamps() const { return *visible_lamps_; }
+  /// Adds light that arrives from a mirror, glass or gloss to the radiance and the layers of a
+  /// sample.
+  void add_specular(const Spectrum& light, RaySample& sample) const;
 
  private:
   /// Geometry and material of a facet.
@@ -214,7 +224,8 @@ class RayTree {
     /// View by which the rough surface at the branch's origin aims at bright patches as well; null:
     /// no such rays.
     const BrightPatches::View* bright = nullptr;
-    bool is_aimed = false;  ///< aimed at a bright patch
+    bool is_aimed = false;   ///< aimed at a bright patch
+    bool is_hidden = false;  ///< behind a smooth surface that lies behind a rough one
     /// Site by which the rough surface at the start of the path aims at the sky as well, if nothing
     /// but clear panes followed; null: no such rays.
     const SkySites::Site* sky = nullptr;
@@ -293,6 +304,14 @@ class RayTree {
   static bool is_by_chance(const Branch& branch, const TreeState& state) {
     constexpr int straight_from_the_coat = 1;
     return state.by_chance && branch.behind_coat > straight_from_the_coat && !branch.is_sharp;
+  }
+  /// Returns whether light that a branch finds goes to RaySample::by_chance.
+  static bool is_apart(const Branch& branch, const TreeState& state) {
+    return branch.is_hidden && state.number.has_value();
+  }
+  static void add_apart(const Spectrum& seen, TreeState& state) {
+    Spectrum& sum = state.result.by_chance;
+    sum = sum.size() > 0 ? Spectrum(sum + seen) : seen;
   }
   void add_reflected(const Branch& branch, const Spectrum& seen, TreeState& state) const;
   void add_found_by_chance(const std::vector<Spectrum>& found, const Spectrum& other,

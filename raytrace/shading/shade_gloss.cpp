@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "radiosity/emitters/emitter_point.h"
+#include "raytrace/shading/found_by_chance.h"
 #include "raytrace/shading/shade.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
@@ -108,28 +109,21 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
   if (collects) add_found_by_chance(found, state.result.radiance - before, state);
 }
 
-// Adds the light of lamps that the samples of a coat's lobe found by chance, each limited by what
-// the others found. `other` is the light that the whole lobe found besides.
+// Adds the light of lamps that the samples of a coat's lobe found by chance. `other` is the light
+// that the whole lobe found besides.
 void RayTree::add_found_by_chance(const std::vector<Spectrum>& found, const Spectrum& other,
                                   TreeState& state) const {
-  // A highlight's edge, of which one sample in four finds the lamp, stays; a single bright sample
-  // of a dark lobe goes.
-  constexpr float of_the_others = 4.0f, of_other_light = 2.0f;
-  float all = 0.0f;
-  for (const Spectrum& light : found) all += light.mean();
-  if (!(all > 0.0f)) return;
-  Spectrum sum = Spectrum::Zero(other.size());
-  for (const Spectrum& light : found) {
-    const float own = light.mean();
-    const float mean_of_others = (all - own) / static_cast<float>(found.size() - 1);
-    const float most = of_the_others * mean_of_others + of_other_light * other.mean();
-    sum += own > most ? Spectrum(light * (most / own)) : light;
-  }
-  state.result.radiance += sum;
-  if (with_layers_) {
-    state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
-        linear_rgb(scene_.bands, sum);
-  }
+  // A single bright sample of a dark lobe goes.
+  constexpr float of_other_light = 2.0f;
+  add_specular(limited_sum(found, static_cast<int>(found.size()), of_other_light * other.mean()),
+               state.result);
+}
+
+void RayTree::add_specular(const Spectrum& light, RaySample& sample) const {
+  sample.radiance += light;
+  if (!with_layers_) return;
+  sample.layers.segment<3>(first_sampled_column(Layer::specular)) +=
+      linear_rgb(scene_.bands, light);
 }
 
 // Adds light of a lamp off a rough surface.
@@ -138,10 +132,7 @@ void RayTree::add_reflected(const Branch& branch, const Spectrum& seen, TreeStat
     *state.by_chance += seen;
     return;
   }
-  state.result.radiance += seen;
-  if (!with_layers_) return;
-  state.result.layers.segment<3>(first_sampled_column(Layer::specular)) +=
-      linear_rgb(scene_.bands, seen);
+  add_specular(seen, state.result);
 }
 
 const RoughLobe& RayTree::lobe(int material, bool from_back) const {

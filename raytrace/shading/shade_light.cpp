@@ -161,8 +161,9 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
     *state.by_chance += branch.weight * one_over_pi * M;
     M.setZero();
   }
-  state.result.radiance +=
-      branch.weight * one_over_pi * (M + scattered.direct + scattered.indirect);
+  const Spectrum seen = branch.weight * one_over_pi * (M + scattered.direct + scattered.indirect);
+  if (is_apart(branch, state)) return add_apart(seen, state);
+  state.result.radiance += seen;
   if (with_layers_) note_layers(branch, hit, M, rho, scattered, E, state);
 }
 

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
@@ -277,6 +278,29 @@ TEST(Eye, WithinAnOpaqueObjectSeesItsInside) {
   const Image behind = lit.render(camera_towards({3, 0, 0}, {4, 0, 0}, 60, 8));
   EXPECT_TRUE((within.radiance == 0.0f).all());  // no light gets in
   EXPECT_TRUE((behind.radiance == 0.0f).all());
+}
+
+// Rough metal under a dim ceiling, beside an upright mirror in which it finds a small bright lamp
+// by one direction in thousands. Such a direction would show as a dot hundreds of times as bright
+// as the metal around.
+TEST(Gloss, ShowsNoDotsOfLampsInMirrors) {
+  SceneBuilder room;
+  room.square({.specular = 0.8f, .roughness = 0.5f}, {0, 0, 0}, up, 1.0);
+  room.square({.specular = 1.0f}, {0, 1.5, 1}, {0, -1, 0}, 1.0);
+  room.square({.exitance = pi_f}, {0, 0, 4}, -up, 4.0);
+  room.square({.exitance = 1e5f * pi_f, .one_sided = true}, {0, -1.5, 2.25}, {0, 1, 0}, 0.01);
+  const TracedScene lit(room.build(), 0.5);
+  const Image image = lit.render(camera_towards({0, -1.6, 0.8}, {0, 0, 0}, 20, 48));
+  std::vector<float> light;
+  for (Eigen::Index i = 0; i < image.radiance.rows(); ++i) light.push_back(image.radiance(i, 0));
+  std::ranges::sort(light);
+  const float median = light[light.size() / 2];
+  std::printf("rough metal beside a mirror: median %.3f, brightest %.3f\n", double{median},
+              double{light.back()});
+  EXPECT_GT(median, 0.0f);
+  // A sample counts up to a tenth of the pixel's other light, and three in one pixel are rarer than
+  // one in 48 x 48 pixels; a fifth is left for what the metal varies by.
+  EXPECT_LT(light.back(), 1.5f * median);
 }
 
 // A black room with a rough mirror as its floor and a window in its ceiling, under a sky of
