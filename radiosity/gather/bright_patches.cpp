@@ -60,15 +60,15 @@ double least_brightness(const PatchMesh& mesh, const Eigen::ArrayXd& mean) {
   return 0.0;
 }
 
-// Share of a patch's cosine-distributed rays that meet no bright patch; at least that of one ray,
-// since points of the room may see a little of any patch.
-double openness_of(const ElementCaster& caster, const std::vector<char>& is_bright, int patch) {
+// Finds by rays from a bright patch what they meet.
+void look_around(const ElementCaster& caster, const std::vector<char>& is_bright,
+                 BrightPatch& bright) {
   // A share is known to a tenth by 32 rays, as well as the view's approximate form factors.
   constexpr int rays = 32;
-  const PatchSampler sampler(caster.mesh(), patch);
+  const PatchSampler sampler(caster.mesh(), bright.patch);
   const SobolPoints sobol(rays);
   const std::uint64_t key =
-      random_key(static_cast<std::uint64_t>(patch), RandomPurpose::bright_openness);
+      random_key(static_cast<std::uint64_t>(bright.patch), RandomPurpose::bright_openness);
   std::array<Ray, rays> ray;
   std::array<ElementHit, rays> hit;
   for (int i = 0; i < rays; ++i) {
@@ -82,18 +82,19 @@ double openness_of(const ElementCaster& caster, const std::vector<char>& is_brig
                                         .origin_group = caster.mesh().facet[at.element]};
   }
   caster.closest_elements(ray, hit);
-  const auto open = std::ranges::count_if(hit, [&](const ElementHit& h) {
-    return h.element < 0 ||
-           is_bright[static_cast<std::size_t>(caster.mesh().patch[h.element])] == 0;
-  });
-  return static_cast<double>(std::max<std::ptrdiff_t>(open, 1)) / rays;
+  int open = 0;
+  for (const ElementHit& h : hit) {
+    const int met = h.element < 0 ? -1 : caster.mesh().patch[h.element];
+    if (met >= 0 && is_bright[static_cast<std::size_t>(met)] != 0) {
+      bright.met.push_back(met);
+    } else {
+      ++open;
+    }
+  }
+  std::ranges::sort(bright.met);
+  bright.met.erase(std::unique(bright.met.begin(), bright.met.end()), bright.met.end());
+  bright.openness = static_cast<double>(std::max(open, 1)) / rays;
 }
-
-// A patch that rays are aimed at.
-struct BrightPatch {
-  int patch = -1;
-  double openness = 1.0;
-};
 
 // Patches whose RMS brightness is above `least`, in rising order; `square` is the mean square of
 // each. If there are more than BrightPatches::most, those with the largest mean square times area
@@ -113,8 +114,7 @@ std::vector<BrightPatch> choose_bright(const Scene& scene, const ElementCaster& 
   }
   parallel_for(static_cast<int>(bright.size()), 16, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      BrightPatch& at = bright[static_cast<std::size_t>(i)];
-      at.openness = openness_of(caster, is_bright, at.patch);
+      look_around(caster, is_bright, bright[static_cast<std::size_t>(i)]);
     }
   });
   if (bright.size() > static_cast<std::size_t>(most)) {
@@ -156,12 +156,19 @@ BrightPatches::BrightPatches(const Scene& scene, const ElementCaster& caster,
       choose_bright(scene, caster, square, least_brightness(mesh, mean));
   if (bright.empty()) return;
   of_element_.assign(of_element.size(), -1);
-  for (const BrightPatch& b : bright) add_patch(b.patch, of_element, b.openness);
+  cavities_ = find_cavities(caster, bright, of_element);
+  for (const BrightPatch& b : bright) add_patch(b, of_element);
 }
 
-void BrightPatches::add_patch(int p, const std::vector<double>& of_element, double openness) {
+void BrightPatches::add_patch(const BrightPatch& bright, const std::vector<double>& of_element) {
   const PatchMesh& mesh = *mesh_;
-  Patch patch{.openness = openness, .first = static_cast<int>(elements_.size())};
+  const int p = bright.patch;
+  Patch patch{.openness = bright.openness, .first = static_cast<int>(elements_.size())};
+  const auto& cavities = cavities_.cavities;
+  const auto own = std::ranges::find_if(cavities, [&](const BrightCavity& cavity) {
+    return std::ranges::binary_search(cavity.patches, p);
+  });
+  if (own != cavities.end()) patch.cavity = static_cast<int>(own - cavities.begin());
   const bool is_flat = mesh.facet_of(p) >= 0;
   if (is_flat) patch.normal = element_center(mesh, mesh.first_element[p]).normal;
   for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
@@ -193,17 +200,32 @@ void BrightPatches::add_patch(int p, const std::vector<double>& of_element, doub
   patches_.push_back(patch);
 }
 
+namespace {
+
+// Cosine-distributed rays that meet a patch or a cavity, from which number on they leave less noise
+// than aimed ones would.
+constexpr double few = 4.0;
+
+}  // namespace
+
 BrightPatches::View BrightPatches::view(const Eigen::Vector3d& from, const Eigen::Vector3d& normal,
                                         int rays) const {
-  // Cosine-distributed rays that meet a patch, from which number on they leave less noise than
-  // aimed ones would.
-  constexpr double few = 4.0;
   // Least height of the point above the patch's plane, as a share of the patch's radius. From lower
   // points the patch is seen edge-on.
   constexpr double least_height = 1e-4;
+  // Draws towards the patches themselves of a cavity, as a share of what they would be without a
+  // mouth: for what is seen beside the mouth. A ray that no draw stands for would be a blotch.
+  constexpr double beside_mouth = 0.25;
   View view;
   view.from_ = from;
-  view.up_to_.reserve(patches_.size());
+  view.up_to_.reserve(patches_.size() + cavities_.mouths.size());
+  std::vector<char> sees_mouth(cavities_.cavities.size(), 0);
+  for (std::size_t m = 0; m < cavities_.mouths.size(); ++m) {
+    const CavityMouth& mouth = cavities_.mouths[m];
+    if (!mouth.is_before(from)) continue;
+    view.mouths_.push_back(static_cast<int>(m));
+    sees_mouth[static_cast<std::size_t>(mouth.cavity)] = 1;
+  }
   double sum = 0.0;
   for (const Patch& patch : patches_) {
     const Eigen::Vector3d to = patch.center - from;
@@ -211,24 +233,55 @@ BrightPatches::View BrightPatches::view(const Eigen::Vector3d& from, const Eigen
                  radius = std::sqrt(patch.radius2);
     const double height = patch.normal.isZero() ? distance : -patch.normal.dot(to);
     const double rise = to.dot(normal) + radius;  // bound for the patch's highest point
+    const bool by_mouth =
+        patch.cavity >= 0 && sees_mouth[static_cast<std::size_t>(patch.cavity)] != 0;
     if (height > least_height * radius && rise > 0.0) {
       // Approximate solid angle, sr, and form factor from the point to the patch.
       const double solid = std::min(height + 0.1 * radius, distance + radius) * patch.area /
                            ((distance2 + patch.radius2) * (distance + radius));
       const double form_factor =
           std::min(rise / (distance + radius), 1.0) * solid * std::numbers::inv_pi;
-      sum += patch.openness * patch.power / patch.area * form_factor /
-             (1.0 + rays * form_factor / few);
+      sum += (by_mouth ? beside_mouth : 1.0) * patch.openness * patch.power / patch.area *
+             form_factor / (1.0 + rays * form_factor / few);
     }
     view.up_to_.push_back(static_cast<float>(sum));
   }
-  if (!(sum > 0.0)) {
-    view.up_to_.clear();
-    return view;
-  }
+  sum = add_mouths(normal, rays, sum, view);
+  if (!(sum > 0.0)) return {};
   for (float& up_to : view.up_to_) up_to = static_cast<float>(up_to / sum);
   view.up_to_.back() = 1.0f;
   return view;
+}
+
+// Adds what the mouths give that the point lies before. Returns the sum of what all give.
+double BrightPatches::add_mouths(const Eigen::Vector3d& normal, int rays, double sum,
+                                 View& view) const {
+  view.up_to_.resize(patches_.size() + cavities_.mouths.size());
+  for (std::size_t m = 0; m < cavities_.mouths.size(); ++m) {
+    const CavityMouth& mouth = cavities_.mouths[m];
+    const Eigen::Vector3d to = mouth.center - view.from_;
+    const double distance = to.norm(), rise = to.dot(normal) + mouth.radius;
+    if (mouth.is_before(view.from_) && rise > 0.0) {
+      const double slant = std::min(rise / (distance + mouth.radius), 1.0);
+      const double E = mouth.intensity(-to / distance) * slant /
+                       (distance * distance + mouth.radius * mouth.radius);
+      // Of what is bright.
+      const double form_factor =
+          E / cavities_.cavities[static_cast<std::size_t>(mouth.cavity)].brightness;
+      sum += E / (1.0 + rays * form_factor / few);
+    }
+    view.up_to_[patches_.size() + m] = static_cast<float>(sum);
+  }
+  return sum;
+}
+
+BrightPatches::Aim BrightPatches::through(const CavityMouth& mouth, const View& view, double u,
+                                          double v) const {
+  Eigen::Vector3d a, b;
+  tangent_frame(mouth.normal, a, b);
+  const double r = mouth.radius * std::sqrt(u), turn = 2.0 * std::numbers::pi * v;
+  const Eigen::Vector3d at = mouth.center + r * (std::cos(turn) * a + std::sin(turn) * b);
+  return {.direction = (at - view.from_).normalized()};
 }
 
 BrightPatches::Aim BrightPatches::draw(const View& view, double which, double u, double v) const {
@@ -237,6 +290,7 @@ BrightPatches::Aim BrightPatches::draw(const View& view, double which, double u,
       std::min<std::ptrdiff_t>(std::upper_bound(up_to.begin(), up_to.end(), which) - up_to.begin(),
                                static_cast<std::ptrdiff_t>(up_to.size()) - 1);
   const auto p = static_cast<std::size_t>(place);
+  if (p >= patches_.size()) return through(cavities_.mouths[p - patches_.size()], view, u, v);
   const double before = p > 0 ? up_to[p - 1] : 0.0;
   const double within = std::clamp((which - before) / (up_to[p] - before), 0.0, 1.0);
   const Patch& patch = patches_[p];
@@ -262,21 +316,31 @@ double BrightPatches::density(const View& view, int element, const Eigen::Vector
   if (number < 0) return 0.0;
   const Element& at = elements_[static_cast<std::size_t>(number)];
   const auto p = static_cast<std::size_t>(patch_of_[static_cast<std::size_t>(number)]);
-  const double chance = view.up_to_[p] - (p > 0 ? view.up_to_[p - 1] : 0.0f);
   const double cosine = std::abs(direction.dot(at.normal));
   // Bounds the density where the element is seen edge-on and has no solid angle.
   constexpr double grazing = 1e-9;
-  return chance * at.share_per_area * distance * distance / std::max(cosine, grazing);
+  double density =
+      view.chance(p) * at.share_per_area * distance * distance / std::max(cosine, grazing);
+  for (const int m : view.mouths_) {
+    const CavityMouth& mouth = cavities_.mouths[static_cast<std::size_t>(m)];
+    const double falling = -direction.dot(mouth.normal);
+    if (!(falling > grazing)) continue;
+    const double to_mouth = mouth.normal.dot(view.from_ - mouth.center) / falling;
+    const Eigen::Vector3d through = view.from_ + to_mouth * direction;
+    if ((through - mouth.center).squaredNorm() > mouth.radius * mouth.radius) continue;
+    density += view.chance(patches_.size() + static_cast<std::size_t>(m)) * to_mouth * to_mouth /
+               (falling * mouth.area());
+  }
+  return density;
 }
 
 double BrightPatches::share(const View& view, double cosine, int rays, const Ray& ray,
                             const ElementHit& hit, double others) const {
-  const bool is_bright = !view.is_empty() && hit.element >= 0 &&
-                         of_element_[static_cast<std::size_t>(hit.element)] >= 0;
-  if (!is_bright && !(others > 0.0)) return 1.0;
+  const bool counts = !view.is_empty() && hit.element >= 0 && is_bright(hit.element);
+  if (!counts && !(others > 0.0)) return 1.0;
   const double by_cosine = rays * std::max(cosine, 0.0) * std::numbers::inv_pi;
   double all = by_cosine + others;
-  if (is_bright) all += aimed(rays) * density(view, hit.element, ray.direction, hit.t);
+  if (counts) all += aimed(rays) * density(view, hit.element, ray.direction, hit.t);
   return all > 0.0 ? by_cosine / all : 0.0;
 }
 

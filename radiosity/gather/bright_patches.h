@@ -6,6 +6,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "mesh/patches/patch_mesh.h"
+#include "radiosity/gather/bright_cavities.h"
 
 namespace lightwell {
 
@@ -13,6 +14,10 @@ namespace lightwell {
 /// on or the inside of a lamp's shade. Rays over a hemisphere find small bright patches by chance,
 /// which leaves blotches. So a gather draws some directions towards them as well, and weighs both
 /// kinds of rays by the balance heuristic (Veach & Guibas 1995), which has no bias.
+///
+/// Directions go to points of the patches. Most of these are hidden if the patch lies in a
+/// BrightCavity, so points before a mouth of the cavity mostly draw directions through the mouth
+/// instead, which count for whatever bright patch they meet.
 class BrightPatches {
  public:
   /// Brightness from which on a patch is bright, over the median and the mean of the lit area.
@@ -31,6 +36,17 @@ class BrightPatches {
 
   bool is_empty() const { return patches_.empty(); }
 
+  struct Aim {
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+    int element = -1;                                      ///< see counts()
+  };
+  /// Returns whether a ray along `aim` counts that first hits an element, -1 for none: if that is
+  /// the aim's own element or, where the aim has none, one of any bright patch.
+  bool counts(const Aim& aim, int element) const {
+    if (element < 0) return false;
+    return aim.element >= 0 ? element == aim.element : is_bright(element);
+  }
+
   /// The probability of each bright patch in draws from one point.
   class View {
    public:
@@ -39,22 +55,23 @@ class BrightPatches {
    private:
     friend class BrightPatches;
     Eigen::Vector3d from_ = Eigen::Vector3d::Zero();
-    std::vector<float> up_to_{};  // running sum of probabilities, ends at 1; empty: none is seen
+    // Running sum of the probabilities of patches, then of mouths; ends at 1. Empty: none is seen.
+    std::vector<float> up_to_{};
+    std::vector<int> mouths_{};  // those that the point lies before
+    double chance(std::size_t place) const {
+      return up_to_[place] - (place > 0 ? up_to_[place - 1] : 0.0f);
+    }
   };
   /// The view from a point with unit normal `normal`, beside `rays` cosine-distributed rays. The
   /// probability of a patch is proportional to its approximate unoccluded irradiance, and falls
   /// with the number of those rays that meet the patch.
   View view(const Eigen::Vector3d& from, const Eigen::Vector3d& normal, int rays) const;
 
-  struct Aim {
-    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
-    int element = -1;  ///< the ray counts only if it hits this element first
-  };
-  /// A direction by three random numbers in [0,1): `which` picks patch and element, u and v a
-  /// point. The view must not be empty.
+  /// A direction by three random numbers in [0,1): `which` picks patch and element, or a mouth; u
+  /// and v a point. The view must not be empty.
   Aim draw(const View& view, double which, double u, double v) const;
   /// Probability density q of draw()'s directions, 1/sr, for a unit direction that hits `element`
-  /// at `distance` metres; 0 if the element is not part of a bright patch.
+  /// at `distance` metres and counts; 0 if the element is not part of a bright patch.
   double density(const View& view, int element, const Eigen::Vector3d& direction,
                  double distance) const;
 
@@ -75,7 +92,8 @@ class BrightPatches {
     double radius2 = 0.0;                              // m^2, of a sphere around the corners
     double area = 0.0;                                 // m^2
     double power = 0.0;                                // W, all columns
-    double openness = 1.0;                             // see add_patch()
+    double openness = 1.0;                             // see BrightPatch
+    int cavity = -1;                                   // of cavities_; -1: in none
     int first = 0, end = 0;                            // indices in elements_
   };
   struct Element {
@@ -85,15 +103,18 @@ class BrightPatches {
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   };
 
-  // `of_element`: brightness of every element of the mesh; `openness`: share of the patch's rays
-  // that meet no bright patch.
-  void add_patch(int p, const std::vector<double>& of_element, double openness);
+  // `of_element`: brightness of every element of the mesh.
+  void add_patch(const BrightPatch& bright, const std::vector<double>& of_element);
+  bool is_bright(int element) const { return of_element_[static_cast<std::size_t>(element)] >= 0; }
+  double add_mouths(const Eigen::Vector3d& normal, int rays, double sum, View& view) const;
+  Aim through(const CavityMouth& mouth, const View& view, double u, double v) const;
 
   const PatchMesh* mesh_ = nullptr;
   std::vector<Patch> patches_{};
   std::vector<Element> elements_{};
   std::vector<int> of_element_{};  // index in elements_ of each element of the mesh; -1: none
   std::vector<int> patch_of_{};    // index in patches_ of each of elements_
+  BrightCavities cavities_{};
 };
 
 }  // namespace lightwell

@@ -87,26 +87,25 @@ double HemisphereGather::aimed_density(const Place& place, const Ray& ray,
          options_.portals->density(place.portals, ray.origin, ray.direction, hit.t);
 }
 
-// Adds rays towards bright patches; each counts only the light straight from its own element.
+// Adds rays towards bright patches; each counts only the light straight from a bright element.
 void HemisphereGather::aim_at_bright(const Place& place, std::array<Eigen::ArrayXd, 2>& sum) const {
   const GatherPoint& at = place.at;
   const SobolPoints& aims = aims_.at(place.rays);
   std::array<Ray, gather_batch> ray;
   std::array<ElementHit, gather_batch> hit;
-  std::array<int, gather_batch> element;
+  std::array<BrightPatches::Aim, gather_batch> aim;
   for (int begin = 0; begin < aims.count(); begin += gather_batch) {
     const auto n = static_cast<std::size_t>(std::min(gather_batch, aims.count() - begin));
     for (std::size_t r = 0; r < n; ++r) {
       const Eigen::Array4d u =
           aims.point(begin + static_cast<int>(r), random_key(place.key, RandomPurpose::gather_aims))
               .cast<double>();
-      const BrightPatches::Aim aim = bright_.draw(place.bright, u[0], u[1], u[2]);
-      element[r] = aim.element;
-      ray[r] = {.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
+      aim[r] = bright_.draw(place.bright, u[0], u[1], u[2]);
+      ray[r] = {.origin = at.position, .direction = aim[r].direction, .origin_group = at.facet};
     }
     caster_.closest_hits({ray.data(), n}, {hit.data(), n});
     for (std::size_t r = 0; r < n; ++r) {
-      if (hit[r].element != element[r] || !paths_.is_diffuse(hit[r].facet)) continue;
+      if (!bright_.counts(aim[r], hit[r].element) || !paths_.is_diffuse(hit[r].facet)) continue;
       if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
       if (is_near_portal(place, ray[r], hit[r])) continue;
       const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;

@@ -124,8 +124,7 @@ double PixelGather::aimed_density(const Place& place, const Ray& ray, const Elem
          portals_->density(place.portals, ray.origin, ray.direction, hit.t);
 }
 
-// Adds light of bright patches by aimed rays. A ray counts only if the element it was aimed at is
-// its first hit.
+// Adds light of bright patches by aimed rays.
 void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
   const ShadingPoint& at = place.at;
   const std::uint64_t aim_key = random_key(place.key, RandomPurpose::pixel_gather_aims);
@@ -137,7 +136,7 @@ void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
     const Ray ray{.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
     ElementHit hit;
     place.caster.closest_hits({&ray, 1}, {&hit, 1});
-    if (hit.element != aim.element || !paths_.is_diffuse(hit.facet)) continue;
+    if (!bright_.counts(aim, hit.element) || !paths_.is_diffuse(hit.facet)) continue;
     if (gaps_.is_gap(at.normal, ray, hit)) continue;
     if (!place.portals.is_empty() && gaps_.is_near_portal(*portals_, ray, hit)) continue;
     double share =

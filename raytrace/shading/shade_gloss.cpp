@@ -283,7 +283,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   aimed.ray = {.origin = at.position, .direction = aim.direction, .origin_group = hit.facet};
   ElementHit met;
   state.caster->closest_hits({&aimed.ray, 1}, {&met, 1});
-  if (met.element != aim.element) return;
+  if (!bright_.counts(aim, met.element)) return;
   const ShadingPoint there = shading_point(aimed.ray, met, *state.caster);
   const double distance = (there.position - at.position).norm();
   // A luminaire's body hides what surfaces reflect, for the lobe's directions as for this one.
@@ -298,7 +298,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   if (!(aimed.weight > 0.0f).any()) return;
   aimed.depth = branch.depth + 1;
   aimed.node = random_key(branch.node, RandomPurpose::gloss_patches,
-                          static_cast<std::uint64_t>(aim.element));
+                          static_cast<std::uint64_t>(met.element));
   aimed.is_sharp = false;
   aimed.cone.start = cone_width(branch, at);
   aimed.blur = {.start = width_of(branch.blur, branch, at), .spread = spread_of_lobe(density)};

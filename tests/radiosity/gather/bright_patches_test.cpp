@@ -3,11 +3,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "mesh/build_patches.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/gather/final_gather.h"
 #include "scene/sampling.h"
@@ -157,6 +160,154 @@ TEST(BrightPatches, HaveDirectionsOfTheStatedDensity) {
   const double F = point_to_polygon(receiver, {0, 0, 1}, room.tile());
   // Stratified points err by a few times 1 / count of the summand's variation, which is about 1.
   EXPECT_NEAR(sum / aims.count(), F, 3e-3 * F);
+}
+
+// A room of 6 m with a shade below the middle of its ceiling: a square tube of 0.3 x 0.3 x 0.6 m,
+// its lid above, of which only the inside is bright.
+struct ShadedRoom {
+  Scene scene = [] {
+    Scene made;
+    const int grey = test::add_material(made, test::diffuse(made.bands, 0.5f));
+    test::add_box(made, {0, 0, 0}, {6, 6, 6}, {grey, grey, grey, grey, grey, grey}, true);
+    constexpr double a = 2.85, b = 3.15, low = 4.4, high = 5.0;
+    // All face inwards.
+    test::add_polygon(made, "lid", grey, {{a, a, high}, {a, b, high}, {b, b, high}, {b, a, high}});
+    test::add_polygon(made, "west", grey, {{a, a, low}, {a, b, low}, {a, b, high}, {a, a, high}});
+    test::add_polygon(made, "east", grey, {{b, b, low}, {b, a, low}, {b, a, high}, {b, b, high}});
+    test::add_polygon(made, "south", grey, {{b, a, low}, {a, a, low}, {a, a, high}, {b, a, high}});
+    test::add_polygon(made, "north", grey, {{a, b, low}, {b, b, low}, {b, b, high}, {a, b, high}});
+    return made;
+  }();
+  PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.3});
+  ElementCaster caster{mesh};
+  DirectLight direct_light{scene, mesh};
+
+  // Counter-clockwise, seen from below.
+  Loop mouth() const {
+    return {{2.85, 2.85, 4.4}, {2.85, 3.15, 4.4}, {3.15, 3.15, 4.4}, {3.15, 2.85, 4.4}};
+  }
+  // Radiosity at vertices, 1 but for the inside of the shade.
+  BandArray radiosity(float of_inside) const {
+    BandArray B = BandArray::Ones(mesh.vertex_count(), 3);
+    const Eigen::Vector3d middle(3, 3, 4.7);
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      const PatchPoint center = element_center(mesh, e);
+      if (mesh.facet[e] < 6 || center.normal.dot(middle - center.position) < 0.0) continue;
+      for (int c = 0; c < mesh.corner_count(e); ++c) B.row(mesh.corners[e][c]) = of_inside;
+    }
+    return B;
+  }
+};
+
+// An evenly bright inside looks as bright as its mouth would shine, whose form factor is known.
+TEST(BrightPatches, InACavityGiveWhatItsMouthWould) {
+  const ShadedRoom room;
+  constexpr float bright = 1000.0f;
+  const BandArray B = room.radiosity(bright);
+  for (const Eigen::Vector3d& receiver :
+       {Eigen::Vector3d(3.2, 2.5, 0), Eigen::Vector3d(4.5, 3, 0)}) {
+    const double F = point_to_polygon(receiver, {0, 0, 1}, room.mouth());
+    const double E = 1.0 + (bright - 1.0) * F;
+    const GatherPoint point{.position = receiver, .normal = {0, 0, 1}, .facet = 4};
+    double sum = 0.0, squares = 0.0;
+    constexpr int replicas = 200;
+    for (int i = 0; i < replicas; ++i) {
+      const double estimate =
+          gather_indirect({room.scene, room.caster, room.direct_light}, B, std::array{point},
+                          {.rays = 256, .replica = static_cast<std::uint64_t>(i)})
+              .indirect(0, 0);
+      sum += estimate / replicas;
+      squares += estimate * estimate / replicas;
+    }
+    const double deviation = std::sqrt(std::max(0.0, squares - sum * sum));
+    std::printf("F %.2e, E %.4f, gathered %.4f, deviation %.4f\n", F, E, sum, deviation);
+    EXPECT_NEAR(sum, E, 4.0 * deviation / std::sqrt(replicas));
+  }
+}
+
+// Draws through the mouth and towards the patches, as one density.
+TEST(BrightPatches, InACavityHaveDirectionsOfTheStatedDensity) {
+  const ShadedRoom room;
+  const BrightPatches bright(room.scene, room.caster, room.radiosity(1000.0f));
+  const Eigen::Vector3d receiver(5.8, 2.5, 1.0);
+  const BrightPatches::View view = bright.view(receiver, {0, 0, 1}, 64);
+  const SobolPoints aims(4096);
+  double sum = 0.0, squares = 0.0;
+  int counted = 0;
+  for (int i = 0; i < aims.count(); ++i) {
+    const Eigen::Array4d u = aims.point(i, 7).cast<double>();
+    const BrightPatches::Aim aim = bright.draw(view, u[0], u[1], u[2]);
+    const Ray ray{.origin = receiver, .direction = aim.direction, .origin_group = 4};
+    ElementHit hit;
+    room.caster.closest_hits({&ray, 1}, {&hit, 1});
+    if (!bright.counts(aim, hit.element)) continue;
+    ++counted;
+    const double value = aim.direction.z() * std::numbers::inv_pi /
+                         bright.density(view, hit.element, aim.direction, hit.t);
+    sum += value;
+    squares += value * value;
+  }
+  const double count = aims.count(), mean = sum / count,
+               error = std::sqrt((squares / count - mean * mean) / count);
+  const double F = point_to_polygon(receiver, {0, 0, 1}, room.mouth());
+  std::printf("F %.3e, by draws %.3e, counted %.2f\n", F, mean, counted / count);
+  EXPECT_NEAR(mean, F, 4.0 * error);
+  EXPECT_GT(mean, 20.0 * error);  // so that the line above can fail
+  // More than twice as many count as would of rays to random points on the inside.
+  std::vector<double> area{0.0};
+  std::vector<int> patches;
+  const BandArray B = room.radiosity(1000.0f);
+  for (int p = 0; p < room.mesh.patch_count(); ++p) {
+    if (!(B(room.mesh.corners[room.mesh.first_element[p]][0], 0) > 1.0f)) continue;
+    patches.push_back(p);
+    area.push_back(area.back() + room.mesh.area[p]);
+  }
+  int seen = 0;
+  for (int i = 0; i < aims.count(); ++i) {
+    const Eigen::Array4d u = aims.point(i, 8).cast<double>();
+    const auto drawn = std::upper_bound(area.begin() + 1, area.end() - 1, u[2] * area.back());
+    const int p = patches[static_cast<std::size_t>(drawn - area.begin() - 1)];
+    const PatchPoint point = PatchSampler(room.mesh, p).point(u[0], u[1]);
+    const Ray ray{.origin = receiver,
+                  .direction = (point.position - receiver).normalized(),
+                  .origin_group = 4};
+    ElementHit hit;
+    room.caster.closest_hits({&ray, 1}, {&hit, 1});
+    seen += hit.element == point.element ? 1 : 0;
+  }
+  std::printf("seen of random points %.2f\n", seen / count);
+  EXPECT_GT(seen, 0);
+  EXPECT_GT(counted, 2 * seen);
+}
+
+TEST(BrightCavities, HaveTheirMouthWhereLightLeaves) {
+  const ShadedRoom room;
+  const BandArray B = room.radiosity(1000.0f);
+  std::vector<double> of_element(static_cast<std::size_t>(room.mesh.element_count()), 0.0);
+  std::vector<BrightPatch> bright;
+  for (int p = 0; p < room.mesh.patch_count(); ++p) {
+    const int first = room.mesh.first_element[p];
+    if (!(B(room.mesh.corners[first][0], 0) > 1.0f)) continue;
+    bright.push_back({.patch = p, .openness = 0.2});
+    for (int e = first; e < room.mesh.first_element[p + 1]; ++e) of_element[e] = 1000.0;
+  }
+  for (BrightPatch& b : bright) {
+    for (const BrightPatch& other : bright) b.met.push_back(other.patch);
+  }
+  const BrightCavities found = find_cavities(room.caster, bright, of_element);
+  ASSERT_EQ(found.cavities.size(), 1u);
+  EXPECT_EQ(found.cavities[0].patches.size(), bright.size());
+  // Rounding of sums over a few hundred elements.
+  EXPECT_NEAR(found.cavities[0].brightness, 1000.0, 1e-12 * 1000.0);
+  ASSERT_EQ(found.mouths.size(), 1u);
+  const CavityMouth& mouth = found.mouths[0];
+  // Some 500 rays leave, which tell the middle of 0.3 m to 0.3 / sqrt(12 * 500), 4 mm.
+  EXPECT_NEAR((mouth.center - Eigen::Vector3d(3.0, 3.0, 4.4)).norm(), 0.0, 4.0 * 0.004);
+  EXPECT_LT(mouth.normal.z(), -0.99);
+  // Up to the corners of the mouth.
+  EXPECT_NEAR(mouth.radius, 0.15 * std::numbers::sqrt2, 0.02);
+  // No light leaves upwards: there is a tenth of the mean at least and no more.
+  EXPECT_GT(mouth.intensity(-Eigen::Vector3d::UnitZ()), 10.0 * mouth.intensity({0, 0, 1}));
 }
 
 TEST(BrightPatches, AreTheSameBitsAgain) {
