@@ -104,14 +104,10 @@ CavityRays cast_out(const ElementCaster& caster, const std::vector<double>& of_e
     const double wanted = SobolPoints::fifth(i, key) * power.back();
     const auto found = std::upper_bound(power.begin() + 1, power.end() - 1, wanted);
     const int e = elements[static_cast<std::size_t>(found - power.begin() - 1)];
-    const Eigen::Array4d u = sobol.point(i, key).cast<double>();
-    const PatchPoint at = PatchSampler(mesh, mesh.patch[e], e).point(u[0], u[1]);
-    Eigen::Vector3d a, b;
-    tangent_frame(at.normal, a, b);
-    const Eigen::Vector3d d = cosine_direction(static_cast<float>(u[2]), static_cast<float>(u[3]));
-    ray.push_back({.origin = at.position,
-                   .direction = (d.x() * a + d.y() * b + d.z() * at.normal).normalized(),
-                   .origin_group = mesh.facet[e]});
+    const Eigen::Array4f u = sobol.point(i, key);
+    const PatchPoint at = PatchSampler(mesh, mesh.patch[e], e).point(double{u[0]}, double{u[1]});
+    ray.push_back(cosine_ray(mesh, at, u[2], u[3]));
+    ray.back().direction.normalize();
   }
   std::vector<ElementHit> hit(ray.size());
   caster.closest_elements(ray, hit);

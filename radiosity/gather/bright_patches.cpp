@@ -72,14 +72,9 @@ void look_around(const ElementCaster& caster, const std::vector<char>& is_bright
   std::array<Ray, rays> ray;
   std::array<ElementHit, rays> hit;
   for (int i = 0; i < rays; ++i) {
-    const Eigen::Array4d u = sobol.point(i, key).cast<double>();
-    const PatchPoint at = sampler.point(u[0], u[1]);
-    Eigen::Vector3d a, b;
-    tangent_frame(at.normal, a, b);
-    const Eigen::Vector3d d = cosine_direction(static_cast<float>(u[2]), static_cast<float>(u[3]));
-    ray[static_cast<std::size_t>(i)] = {.origin = at.position,
-                                        .direction = d.x() * a + d.y() * b + d.z() * at.normal,
-                                        .origin_group = caster.mesh().facet[at.element]};
+    const Eigen::Array4f u = sobol.point(i, key);
+    const PatchPoint at = sampler.point(double{u[0]}, double{u[1]});
+    ray[static_cast<std::size_t>(i)] = cosine_ray(caster.mesh(), at, u[2], u[3]);
   }
   caster.closest_elements(ray, hit);
   int open = 0;
@@ -107,7 +102,7 @@ std::vector<BrightPatch> choose_bright(const Scene& scene, const ElementCaster& 
   std::vector<char> is_bright(static_cast<std::size_t>(mesh.patch_count()), 0);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const Surface& surface = scene.surfaces[static_cast<std::size_t>(mesh.surface[p])];
-    if (!std::holds_alternative<PolygonMesh>(surface.shape) || surface.motion >= 0) continue;
+    if (surface.motion >= 0) continue;
     if (!(std::sqrt(square[p]) > least)) continue;
     bright.push_back({p});
     is_bright[static_cast<std::size_t>(p)] = 1;
@@ -157,10 +152,11 @@ BrightPatches::BrightPatches(const Scene& scene, const ElementCaster& caster,
   if (bright.empty()) return;
   of_element_.assign(of_element.size(), -1);
   cavities_ = find_cavities(caster, bright, of_element);
-  for (const BrightPatch& b : bright) add_patch(b, of_element);
+  for (const BrightPatch& b : bright) add_patch(scene, b, of_element);
 }
 
-void BrightPatches::add_patch(const BrightPatch& bright, const std::vector<double>& of_element) {
+void BrightPatches::add_patch(const Scene& scene, const BrightPatch& bright,
+                              const std::vector<double>& of_element) {
   const PatchMesh& mesh = *mesh_;
   const int p = bright.patch;
   Patch patch{.openness = bright.openness, .first = static_cast<int>(elements_.size())};
@@ -169,11 +165,13 @@ void BrightPatches::add_patch(const BrightPatch& bright, const std::vector<doubl
     return std::ranges::binary_search(cavity.patches, p);
   });
   if (own != cavities.end()) patch.cavity = static_cast<int>(own - cavities.begin());
-  const bool is_flat = mesh.facet_of(p) >= 0;
+  const auto shape = round_shape(scene.surfaces[static_cast<std::size_t>(mesh.surface[p])]);
+  const bool is_flat = !shape && mesh.facet_of(p) >= 0;
   if (is_flat) patch.normal = element_center(mesh, mesh.first_element[p]).normal;
   for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
     const auto [first, second] = triangle_areas(mesh, e);
-    const double area = first + second, power = area * of_element[static_cast<std::size_t>(e)];
+    const double area = shape ? mesh.element_area[e] : first + second;
+    const double power = area * of_element[static_cast<std::size_t>(e)];
     patch.area += area;
     patch.center += area * element_center(mesh, e).position;
     if (!(power > 0.0)) continue;
@@ -183,7 +181,9 @@ void BrightPatches::add_patch(const BrightPatch& bright, const std::vector<doubl
     elements_.push_back({.number = e,
                          .up_to = patch.power,
                          .share_per_area = of_element[static_cast<std::size_t>(e)],
-                         .normal = element_center(mesh, e).normal});
+                         .normal = element_center(mesh, e).normal,
+                         .round = shape ? static_cast<int>(round_.size()) : -1});
+    if (shape) round_.push_back({*shape, PatchSampler(mesh, p, e)});
   }
   patch.center /= patch.area;
   for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
@@ -297,17 +297,43 @@ BrightPatches::Aim BrightPatches::draw(const View& view, double which, double u,
   const auto begin = elements_.begin() + patch.first, last = elements_.begin() + patch.end - 1;
   const auto found = std::upper_bound(
       begin, last, within, [](double x, const Element& element) { return x < element.up_to; });
-  const auto [first, second] = triangle_areas(*mesh_, found->number);
+  const Eigen::Vector3d to = point_on(*found, u, v) - view.from_;
+  const double distance = to.norm();
+  return {.direction = to / distance,
+          .element = found->number,
+          .distance = found->round >= 0 ? distance : 0.0};
+}
+
+bool BrightPatches::counts(const Aim& aim, const ElementHit& hit) const {
+  if (hit.element < 0) return false;
+  if (aim.element < 0) return is_bright(hit.element);
+  // A hundred times the rounding of a hit's distance.
+  constexpr double rounding = 1e-5;
+  return hit.element == aim.element &&
+         (aim.distance == 0.0 || std::abs(hit.t - aim.distance) <= rounding * aim.distance);
+}
+
+// A point uniform over the element's area.
+Eigen::Vector3d BrightPatches::point_on(const Element& element, double u, double v) const {
+  if (element.round >= 0) {
+    return round_[static_cast<std::size_t>(element.round)].points.position(u, v);
+  }
+  const auto [first, second] = triangle_areas(*mesh_, element.number);
   double along = v * (first + second);
   const bool is_second = along >= first;
   along = is_second ? (along - first) / second : along / first;
-  const auto& corners = mesh_->corners[found->number];
+  const auto& corners = mesh_->corners[element.number];
   const std::size_t i = is_second ? 2 : 1;
   const Eigen::Vector3d a = mesh_->position(corners[0]), b = mesh_->position(corners[i]),
                         c = mesh_->position(corners[i + 1]);
   const double s = std::sqrt(along);  // uniform over the triangle
-  const Eigen::Vector3d at = a + s * ((1.0 - u) * (b - a) + u * (c - a));
-  return {.direction = (at - view.from_).normalized(), .element = found->number};
+  return a + s * ((1.0 - u) * (b - a) + u * (c - a));
+}
+
+Eigen::Vector3d BrightPatches::normal_at(const Element& element,
+                                         const Eigen::Vector3d& point) const {
+  if (element.round < 0) return element.normal;
+  return front_normal(round_[static_cast<std::size_t>(element.round)].shape, point);
 }
 
 double BrightPatches::density(const View& view, int element, const Eigen::Vector3d& direction,
@@ -316,7 +342,7 @@ double BrightPatches::density(const View& view, int element, const Eigen::Vector
   if (number < 0) return 0.0;
   const Element& at = elements_[static_cast<std::size_t>(number)];
   const auto p = static_cast<std::size_t>(patch_of_[static_cast<std::size_t>(number)]);
-  const double cosine = std::abs(direction.dot(at.normal));
+  const double cosine = std::abs(direction.dot(normal_at(at, view.from_ + distance * direction)));
   // Bounds the density where the element is seen edge-on and has no solid angle.
   constexpr double grazing = 1e-9;
   double density =

@@ -6,7 +6,9 @@
 
 #include "mesh/elements/element_caster.h"
 #include "mesh/patches/patch_mesh.h"
+#include "mesh/patches/patch_sampler.h"
 #include "radiosity/gather/bright_cavities.h"
+#include "scene/round_shape.h"
 
 namespace lightwell {
 
@@ -29,7 +31,7 @@ class BrightPatches {
   /// No bright patches.
   BrightPatches() = default;
   /// `radiosity` is the light that rays read, vertices x columns, W/m^2. Moving surfaces are left
-  /// out, and so are round shapes, since rays hit the shape itself and not its elements. Patches
+  /// out. Patches
   /// whose rays mostly meet other bright patches, as within a lampshade, are drawn less often:
   /// points of the room hardly see them. Keeps a reference to the caster's mesh.
   BrightPatches(const Scene& scene, const ElementCaster& caster, const BandArray& radiosity);
@@ -39,13 +41,13 @@ class BrightPatches {
   struct Aim {
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
     int element = -1;                                      ///< see counts()
+    /// Of the point that is aimed at, m; 0: the element is flat, or -1.
+    double distance = 0.0;
   };
-  /// Returns whether a ray along `aim` counts that first hits an element, -1 for none: if that is
-  /// the aim's own element or, where the aim has none, one of any bright patch.
-  bool counts(const Aim& aim, int element) const {
-    if (element < 0) return false;
-    return aim.element >= 0 ? element == aim.element : is_bright(element);
-  }
+  /// Returns whether a ray along `aim` counts that meets `hit` first: at the point that is aimed at
+  /// or, where the aim has no element, on any bright patch. A ray to the far side of a ball may
+  /// meet the same element on the near side.
+  bool counts(const Aim& aim, const ElementHit& hit) const;
 
   /// The probability of each bright patch in draws from one point.
   class View {
@@ -100,11 +102,20 @@ class BrightPatches {
     int number = -1;
     double up_to = 0.0;           // running sum of shares of the patch's power
     double share_per_area = 0.0;  // 1/m^2
-    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  // of a polygon
+    int round = -1;                                     // in round_; -1: a polygon
+  };
+  // The exact shape of an element, which rays hit in place of the element.
+  struct RoundElement {
+    RoundShape shape;
+    PatchSampler points;
   };
 
   // `of_element`: brightness of every element of the mesh.
-  void add_patch(const BrightPatch& bright, const std::vector<double>& of_element);
+  void add_patch(const Scene& scene, const BrightPatch& bright,
+                 const std::vector<double>& of_element);
+  Eigen::Vector3d normal_at(const Element& element, const Eigen::Vector3d& point) const;
+  Eigen::Vector3d point_on(const Element& element, double u, double v) const;
   bool is_bright(int element) const { return of_element_[static_cast<std::size_t>(element)] >= 0; }
   double add_mouths(const Eigen::Vector3d& normal, int rays, double sum, View& view) const;
   Aim through(const CavityMouth& mouth, const View& view, double u, double v) const;
@@ -114,6 +125,7 @@ class BrightPatches {
   std::vector<Element> elements_{};
   std::vector<int> of_element_{};  // index in elements_ of each element of the mesh; -1: none
   std::vector<int> patch_of_{};    // index in patches_ of each of elements_
+  std::vector<RoundElement> round_{};
   BrightCavities cavities_{};
 };
 

@@ -105,7 +105,7 @@ void HemisphereGather::aim_at_bright(const Place& place, std::array<Eigen::Array
     }
     caster_.closest_hits({ray.data(), n}, {hit.data(), n});
     for (std::size_t r = 0; r < n; ++r) {
-      if (!bright_.counts(aim[r], hit[r].element) || !paths_.is_diffuse(hit[r].facet)) continue;
+      if (!bright_.counts(aim[r], hit[r]) || !paths_.is_diffuse(hit[r].facet)) continue;
       if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
       if (is_near_portal(place, ray[r], hit[r])) continue;
       const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;

@@ -136,7 +136,7 @@ void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
     const Ray ray{.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
     ElementHit hit;
     place.caster.closest_hits({&ray, 1}, {&hit, 1});
-    if (!bright_.counts(aim, hit.element) || !paths_.is_diffuse(hit.facet)) continue;
+    if (!bright_.counts(aim, hit) || !paths_.is_diffuse(hit.facet)) continue;
     if (gaps_.is_gap(at.normal, ray, hit)) continue;
     if (!place.portals.is_empty() && gaps_.is_near_portal(*portals_, ray, hit)) continue;
     double share =

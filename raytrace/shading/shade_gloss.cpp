@@ -283,7 +283,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   aimed.ray = {.origin = at.position, .direction = aim.direction, .origin_group = hit.facet};
   ElementHit met;
   state.caster->closest_hits({&aimed.ray, 1}, {&met, 1});
-  if (!bright_.counts(aim, met.element)) return;
+  if (!bright_.counts(aim, met)) return;
   const ShadingPoint there = shading_point(aimed.ray, met, *state.caster);
   const double distance = (there.position - at.position).norm();
   // A luminaire's body hides what surfaces reflect, for the lobe's directions as for this one.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <vector>
 
@@ -225,6 +226,92 @@ TEST(BrightPatches, InACavityGiveWhatItsMouthWould) {
   }
 }
 
+// Exact round shapes in a room of 6 m, with radiosity of `bright` on those elements that
+// `is_bright` holds for by their middle, and of 1 elsewhere.
+Statistics gathered_of_round(const std::vector<SurfaceShape>& shapes, float bright,
+                             const std::function<bool(const PatchPoint&)>& is_bright,
+                             const Eigen::Vector3d& receiver, int replicas) {
+  Scene scene;
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  test::add_box(scene, {0, 0, 0}, {6, 6, 6}, {grey, grey, grey, grey, grey, grey}, true);
+  for (const SurfaceShape& shape : shapes) {
+    scene.surfaces.push_back({.name = "round", .material = grey, .shape = shape});
+  }
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.3});
+  const ElementCaster caster(mesh);
+  const DirectLight direct_light(scene, mesh);
+  BandArray B = BandArray::Ones(mesh.vertex_count(), 3);
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (mesh.facet[e] < 6 || !is_bright(element_center(mesh, e))) continue;
+    for (int c = 0; c < mesh.corner_count(e); ++c) B.row(mesh.corners[e][c]) = bright;
+  }
+  const GatherPoint point{.position = receiver, .normal = {0, 0, 1}, .facet = 4};
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < replicas; ++i) {
+    const double E = gather_indirect({scene, caster, direct_light}, B, std::array{point},
+                                     {.rays = 256, .replica = static_cast<std::uint64_t>(i)})
+                         .indirect(0, 0);
+    sum += E / replicas;
+    squares += E * E / replicas;
+  }
+  return {sum, std::sqrt(std::max(0.0, squares - sum * sum))};
+}
+
+// A ball of radius r at the distance d: F = cos (r / d)^2 from a point that sees all of it (Howell,
+// "A catalog of radiation heat transfer configuration factors", B-37).
+TEST(BrightPatches, OnABallGiveWhatTheFormFactorSays) {
+  const Eigen::Vector3d center(3, 3, 4), receiver(2, 2.5, 0);
+  constexpr double radius = 0.1;
+  constexpr int replicas = 200;
+  constexpr float bright = 1000.0f;
+  const Statistics estimate = gathered_of_round(
+      {Sphere{.center = center, .radius = radius}}, bright, [](const PatchPoint&) { return true; },
+      receiver, replicas);
+  const Eigen::Vector3d to = center - receiver;
+  const double F = to.normalized().z() * radius * radius / to.squaredNorm();
+  const double E = 1.0 + (bright - 1.0) * F;
+  std::printf("ball: E %.4f, gathered %.4f, deviation %.4f\n", E, estimate.mean,
+              estimate.deviation);
+  EXPECT_NEAR(estimate.mean, E, 4.0 * estimate.deviation / std::sqrt(replicas));
+  // Half of the aimed rays are for the far side; 64 independent ones would leave an eighth.
+  EXPECT_LT(estimate.deviation, 0.125 * (E - 1.0));
+}
+
+// A tube under a lid, bright inside: the mouth's form factor is that of a disc, here a polygon of
+// 720 corners, whose area is smaller by 1.3e-5.
+TEST(BrightPatches, InARoundShadeGiveWhatItsMouthWould) {
+  const Eigen::Vector3d base(3, 3, 4.4), up = Eigen::Vector3d::UnitZ(), receiver(4.5, 3, 0);
+  constexpr double radius = 0.15, height = 0.6;
+  constexpr int replicas = 200;
+  constexpr float bright = 1000.0f;
+  const Eigen::Vector3d middle = base + 0.5 * height * up;
+  const Statistics estimate = gathered_of_round(
+      {Frustum{.base = base,
+               .axis = up,
+               .height = height,
+               .base_radius = radius,
+               .top_radius = radius,
+               .inward = true},
+       Frustum{.base = base + height * up,
+               .axis = -up,
+               .height = 0.0,
+               .base_radius = radius,
+               .top_radius = 0.0}},
+      bright, [&](const PatchPoint& at) { return at.normal.dot(middle - at.position) > 0.0; },
+      receiver, replicas);
+  Loop mouth;
+  constexpr int corners = 720;
+  for (int i = 0; i < corners; ++i) {
+    const double turn = -2.0 * std::numbers::pi * i / corners;
+    mouth.push_back(base + radius * Eigen::Vector3d(std::cos(turn), std::sin(turn), 0.0));
+  }
+  const double E = 1.0 + (bright - 1.0) * point_to_polygon(receiver, {0, 0, 1}, mouth);
+  std::printf("round shade: E %.4f, gathered %.4f, deviation %.4f\n", E, estimate.mean,
+              estimate.deviation);
+  EXPECT_NEAR(estimate.mean, E, 4.0 * estimate.deviation / std::sqrt(replicas));
+  EXPECT_LT(estimate.deviation, 0.125 * (E - 1.0));  // as above
+}
+
 // Draws through the mouth and towards the patches, as one density.
 TEST(BrightPatches, InACavityHaveDirectionsOfTheStatedDensity) {
   const ShadedRoom room;
@@ -240,7 +327,7 @@ TEST(BrightPatches, InACavityHaveDirectionsOfTheStatedDensity) {
     const Ray ray{.origin = receiver, .direction = aim.direction, .origin_group = 4};
     ElementHit hit;
     room.caster.closest_hits({&ray, 1}, {&hit, 1});
-    if (!bright.counts(aim, hit.element)) continue;
+    if (!bright.counts(aim, hit)) continue;
     ++counted;
     const double value = aim.direction.z() * std::numbers::inv_pi /
                          bright.density(view, hit.element, aim.direction, hit.t);
