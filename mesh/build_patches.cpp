@@ -11,6 +11,7 @@
 #include "mesh/discontinuity/critical_lines.h"
 #include "mesh/geometry/facet_plane.h"
 #include "mesh/patch_builder.h"
+#include "mesh/patches/near_emitters.h"
 #include "mesh/patches/patch_textures.h"
 #include "scene/parallel.h"
 #include "scene/round_shape.h"
@@ -312,11 +313,13 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Pr
   PatchBuilder builder(scene, options.smooth_angle_degrees,
                        {.patch_size = size, .angle_degrees = options.curve_angle_degrees});
   const std::vector<FacetRef> facets = scene_facets(scene);
+  const NearEmitters near_emitters(scene);
   int plane = 0;
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
     const Surface& surface = scene.surfaces[facets[f].surface];
     if (const auto shape = round_shape(surface)) {
-      builder.add_round(f, facets[f].surface, *shape, round_elements(*shape, round_cut));
+      const CutSize size_here = near_emitters.cut(*shape, facets[f].surface, round_cut);
+      builder.add_round(f, facets[f].surface, *shape, round_elements(*shape, size_here));
       continue;
     }
     FacetMesh& mesh = facet_meshes.meshes[plane];

@@ -73,6 +73,24 @@ struct CavityRays {
   double power = 0.0;      // of each ray, W
 };
 
+// A ball around the patches.
+Sphere ball_around(const PatchMesh& mesh, const std::vector<int>& patches) {
+  Eigen::AlignedBox3d box;
+  const auto for_each_corner = [&](const auto& body) {
+    for (const int p : patches) {
+      for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+        for (int c = 0; c < mesh.corner_count(e); ++c) body(mesh.position(mesh.corners[e][c]));
+      }
+    }
+  };
+  for_each_corner([&](const Eigen::Vector3d& at) { box.extend(at); });
+  Sphere ball{.center = box.center(), .radius = 0.0};
+  for_each_corner([&](const Eigen::Vector3d& at) {
+    ball.radius = std::max(ball.radius, (at - ball.center).norm());
+  });
+  return ball;
+}
+
 bool stays(const PatchMesh& mesh, const BrightCavity& cavity, const ElementHit& hit) {
   return hit.element >= 0 && std::ranges::binary_search(cavity.patches, mesh.patch[hit.element]);
 }
@@ -112,8 +130,12 @@ CavityRays cast_out(const ElementCaster& caster, const std::vector<double>& of_e
   std::vector<ElementHit> hit(ray.size());
   caster.closest_elements(ray, hit);
   CavityRays found{.power = power.back() / rays};
+  const Sphere ball = ball_around(mesh, cavity.patches);
   for (std::size_t i = 0; i < ray.size(); ++i) {
-    if (!stays(mesh, cavity, hit[i])) found.out.push_back(ray[i]);
+    // A ray may end on the bulb within.
+    const Eigen::Vector3d end = ray[i].origin + hit[i].t * ray[i].direction;
+    const bool is_out = hit[i].facet < 0 || (end - ball.center).norm() > ball.radius;
+    if (is_out && !stays(mesh, cavity, hit[i])) found.out.push_back(ray[i]);
   }
   return found;
 }

@@ -166,7 +166,8 @@ TEST(BrightPatches, HaveDirectionsOfTheStatedDensity) {
 // A room of 6 m with a shade below the middle of its ceiling: a square tube of 0.3 x 0.3 x 0.6 m,
 // its lid above, of which only the inside is bright.
 struct ShadedRoom {
-  Scene scene = [] {
+  bool with_bulb = false;
+  Scene scene = [this] {
     Scene made;
     const int grey = test::add_material(made, test::diffuse(made.bands, 0.5f));
     test::add_box(made, {0, 0, 0}, {6, 6, 6}, {grey, grey, grey, grey, grey, grey}, true);
@@ -177,6 +178,12 @@ struct ShadedRoom {
     test::add_polygon(made, "east", grey, {{b, b, low}, {b, a, low}, {b, a, high}, {b, b, high}});
     test::add_polygon(made, "south", grey, {{b, a, low}, {a, a, low}, {a, a, high}, {b, a, high}});
     test::add_polygon(made, "north", grey, {{a, b, low}, {b, b, low}, {b, b, high}, {a, b, high}});
+    if (with_bulb) {
+      made.surfaces.push_back(
+          {.name = "bulb",
+           .material = test::add_material(made, test::diffuse(made.bands, 0.0f)),
+           .shape = Sphere{.center = {3, 3, 4.8}, .radius = 0.06}});
+    }
     return made;
   }();
   PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.3});
@@ -193,7 +200,9 @@ struct ShadedRoom {
     const Eigen::Vector3d middle(3, 3, 4.7);
     for (int e = 0; e < mesh.element_count(); ++e) {
       const PatchPoint center = element_center(mesh, e);
-      if (mesh.facet[e] < 6 || center.normal.dot(middle - center.position) < 0.0) continue;
+      if (mesh.facet[e] < 6 || mesh.facet[e] > 10 ||
+          center.normal.dot(middle - center.position) < 0.0)
+        continue;
       for (int c = 0; c < mesh.corner_count(e); ++c) B.row(mesh.corners[e][c]) = of_inside;
     }
     return B;
@@ -367,8 +376,11 @@ TEST(BrightPatches, InACavityHaveDirectionsOfTheStatedDensity) {
   EXPECT_GT(counted, 2 * seen);
 }
 
-TEST(BrightCavities, HaveTheirMouthWhereLightLeaves) {
-  const ShadedRoom room;
+// A bulb within ends many rays, in all directions.
+class BrightCavitiesWithABulb : public testing::TestWithParam<bool> {};
+
+TEST_P(BrightCavitiesWithABulb, HaveTheirMouthWhereLightLeaves) {
+  const ShadedRoom room{.with_bulb = GetParam()};
   const BandArray B = room.radiosity(1000.0f);
   std::vector<double> of_element(static_cast<std::size_t>(room.mesh.element_count()), 0.0);
   std::vector<BrightPatch> bright;
@@ -396,6 +408,8 @@ TEST(BrightCavities, HaveTheirMouthWhereLightLeaves) {
   // No light leaves upwards: there is a tenth of the mean at least and no more.
   EXPECT_GT(mouth.intensity(-Eigen::Vector3d::UnitZ()), 10.0 * mouth.intensity({0, 0, 1}));
 }
+
+INSTANTIATE_TEST_SUITE_P(OrWithout, BrightCavitiesWithABulb, testing::Bool());
 
 TEST(BrightPatches, AreTheSameBitsAgain) {
   const Room room{.side = 0.1, .with_shelf = true};
