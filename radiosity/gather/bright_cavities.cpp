@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -10,6 +11,7 @@
 #include <optional>
 
 #include "mesh/patches/patch_sampler.h"
+#include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
@@ -37,7 +39,8 @@ int root_of(std::vector<int>& parent, int i) {
 }
 
 // Groups of patches that see each other and little else.
-std::vector<std::vector<int>> groups_of(const std::vector<BrightPatch>& bright) {
+std::vector<std::vector<int>> groups_of(const PatchMesh& mesh,
+                                        const std::vector<BrightPatch>& bright) {
   // Aimed at one by one, more than half of the points of a more closed patch are hidden.
   constexpr double closed = 0.5;
   std::vector<int> parent(bright.size());
@@ -62,7 +65,12 @@ std::vector<std::vector<int>> groups_of(const std::vector<BrightPatch>& bright) 
     by_root[root_of(parent, i)].push_back(bright[static_cast<std::size_t>(i)].patch);
   }
   std::vector<std::vector<int>> groups;
-  for (auto& [root, group] : by_root) groups.push_back(std::move(group));
+  for (auto& [root, group] : by_root) {
+    // A single flat patch is closed in by others that are not.
+    if (group.size() > 1 || !PatchSampler(mesh, group.front()).is_flat()) {
+      groups.push_back(std::move(group));
+    }
+  }
   std::ranges::sort(groups);
   return groups;
 }
@@ -73,7 +81,6 @@ struct CavityRays {
   double power = 0.0;      // of each ray, W
 };
 
-// A ball around the patches.
 Sphere ball_around(const PatchMesh& mesh, const std::vector<int>& patches) {
   Eigen::AlignedBox3d box;
   const auto for_each_corner = [&](const auto& body) {
@@ -96,10 +103,8 @@ bool stays(const PatchMesh& mesh, const BrightCavity& cavity, const ElementHit& 
 }
 
 // Casts rays from points of the patches by their light, and sets the cavity's brightness.
-CavityRays cast_out(const ElementCaster& caster, const std::vector<double>& of_element,
+CavityRays cast_out(const ElementCaster& caster, const std::vector<double>& of_element, int rays,
                     BrightCavity& cavity) {
-  // One in eight leaves the shade of a spotlight, into a fifth of all cells: 20 rays a cell.
-  constexpr int rays = 4096;
   const PatchMesh& mesh = caster.mesh();
   std::vector<int> elements;
   std::vector<double> power{0.0};
@@ -140,7 +145,7 @@ CavityRays cast_out(const ElementCaster& caster, const std::vector<double>& of_e
   return found;
 }
 
-// Where a ray meets the plane of a mouth.
+// The point at which a ray meets the plane of a mouth.
 Eigen::Vector3d crossing(const Ray& ray, const CavityMouth& mouth) {
   const double t = mouth.normal.dot(mouth.center - ray.origin) / mouth.normal.dot(ray.direction);
   return ray.origin + t * ray.direction;
@@ -254,17 +259,32 @@ double CavityMouth::intensity(const Eigen::Vector3d& direction) const {
 
 BrightCavities find_cavities(const ElementCaster& caster, const std::vector<BrightPatch>& bright,
                              const std::vector<double>& of_element) {
+  const std::vector<std::vector<int>> groups = groups_of(caster.mesh(), bright);
+  const int count = static_cast<int>(groups.size());
+  // One in eight leaves the shade of a spotlight, into a fifth of all cells: 20 rays a cell with
+  // the most rays. All together cost no more than some hundred gathers.
+  constexpr int most = 4096, fewest = 512, of_all = 1 << 17;
+  const int rays = std::clamp(
+      static_cast<int>(std::bit_floor(static_cast<unsigned>(of_all / std::max(1, count)))), fewest,
+      most);
+  std::vector<BrightCavity> cavities(groups.size());
+  std::vector<std::vector<CavityMouth>> mouths(groups.size());
+  parallel_for(count, 1, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const auto g = static_cast<std::size_t>(i);
+      cavities[g].patches = groups[g];
+      const CavityRays found = cast_out(caster, of_element, rays, cavities[g]);
+      mouths[g] = mouths_of(caster, cavities[g], found);
+    }
+  });
   BrightCavities found;
-  for (std::vector<int>& group : groups_of(bright)) {
-    BrightCavity cavity{.patches = std::move(group)};
-    const CavityRays rays = cast_out(caster, of_element, cavity);
-    std::vector<CavityMouth> mouths = mouths_of(caster, cavity, rays);
-    if (mouths.empty()) continue;
-    for (CavityMouth& mouth : mouths) {
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (mouths[g].empty()) continue;
+    for (CavityMouth& mouth : mouths[g]) {
       mouth.cavity = static_cast<int>(found.cavities.size());
       found.mouths.push_back(mouth);
     }
-    found.cavities.push_back(std::move(cavity));
+    found.cavities.push_back(std::move(cavities[g]));
   }
   return found;
 }
