@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <variant>
 
 namespace lightwell {
@@ -20,38 +21,53 @@ double distance_between(const RoundShape& shape, const Eigen::AlignedBox3d& box)
   return (on_shape - in_box).norm();
 }
 
+// The box of each emitting facet and lamp of a scene, and the surface of each; -1 for lamps.
+struct EmitterBoxes {
+  std::vector<Eigen::AlignedBox3d> boxes{};
+  std::vector<int> surface{};
+
+  explicit EmitterBoxes(const Scene& scene) {
+    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+      const Surface& own = scene.surfaces[s];
+      if (!scene.materials[static_cast<std::size_t>(own.material)].is_emitter()) continue;
+      if (const auto shape = round_shape(own)) {
+        boxes.push_back(bounds(*shape));
+      } else {
+        add_facets(std::get<PolygonMesh>(own.shape));
+      }
+      surface.resize(boxes.size(), static_cast<int>(s));
+    }
+    for (const Lamp& lamp : scene.lamps) boxes.emplace_back(lamp.position);
+    surface.resize(boxes.size(), -1);
+  }
+
+  void add_facets(const PolygonMesh& mesh) {
+    for (const Facet& facet : mesh.facets) {
+      auto& box = boxes.emplace_back();
+      for (const int v : facet.boundary) box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
+    }
+  }
+};
+
 }  // namespace
 
-NearEmitters::NearEmitters(const Scene& scene) {
-  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-    const Surface& surface = scene.surfaces[s];
-    if (!scene.materials[static_cast<std::size_t>(surface.material)].is_emitter()) continue;
-    const int number = static_cast<int>(s);
-    if (const auto shape = round_shape(surface)) {
-      emitters_.push_back({number, bounds(*shape)});
-      continue;
-    }
-    const auto& mesh = std::get<PolygonMesh>(surface.shape);
-    for (const Facet& facet : mesh.facets) {
-      Emitter emitter{.surface = number};
-      for (const int v : facet.boundary) {
-        emitter.box.extend(mesh.vertices[static_cast<std::size_t>(v)]);
-      }
-      emitters_.push_back(emitter);
-    }
-  }
-  for (const Lamp& lamp : scene.lamps) {
-    emitters_.push_back({-1, Eigen::AlignedBox3d(lamp.position)});
-  }
+NearEmitters::NearEmitters(const Scene& scene) : tree_({}) {
+  EmitterBoxes emitters(scene);
+  boxes_ = std::move(emitters.boxes);
+  surface_ = std::move(emitters.surface);
+  tree_ = BoxTree(boxes_);
 }
 
 double NearEmitters::distance(const RoundShape& shape, int surface, double farthest) const {
-  const Sphere ball = ball_around(shape);
+  Eigen::AlignedBox3d around = bounds(shape);
+  const Eigen::Vector3d margin = Eigen::Vector3d::Constant(farthest);
+  around = {around.min() - margin, around.max() + margin};
+  std::vector<int> found;
+  tree_.find_overlaps(around, found);
   double nearest = farthest;
-  for (const Emitter& emitter : emitters_) {
-    if (emitter.surface == surface) continue;
-    if (emitter.box.exteriorDistance(ball.center) - ball.radius >= nearest) continue;
-    nearest = std::min(nearest, distance_between(shape, emitter.box));
+  for (const int i : found) {
+    const auto e = static_cast<std::size_t>(i);
+    if (surface_[e] != surface) nearest = std::min(nearest, distance_between(shape, boxes_[e]));
   }
   return nearest;
 }
@@ -59,11 +75,12 @@ double NearEmitters::distance(const RoundShape& shape, int surface, double farth
 CutSize NearEmitters::cut(const RoundShape& shape, int surface, const CutSize& size) const {
   // Linear elements of a quarter of the distance d are off by (d / 4)^2 / 8 times the second
   // derivative of 1 / d^2, 5 % of the light.
-  constexpr double share = 0.25, most = 16.0;
-  const double h = size.element_size(), wanted = share * distance(shape, surface, h / share);
+  constexpr double share = 0.25, most_times = 16.0, of_ball = 1.0 / 12.0;
+  const double h = size.element_size();
+  const double shortest = std::max(h / most_times, of_ball * ball_around(shape).radius);
+  const double wanted = std::max(shortest, share * distance(shape, surface, h / share));
   CutSize finer = size;
-  finer.elements_per_edge *=
-      static_cast<int>(std::ceil(std::min(most, h / std::max(wanted, h / most))));
+  finer.elements_per_edge *= static_cast<int>(std::ceil(std::max(1.0, h / wanted)));
   return finer;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numbers>
 
 #include "tests/mesh/mesh_scenes.h"
@@ -60,14 +61,23 @@ TEST(NearEmitters, AreLampsToo) {
   EXPECT_EQ(NearEmitters(scene).cut(shade, 0, size).element_size(), 0.25 * radius);
 }
 
-TEST(NearEmitters, AtTheShapeMakeASixteenthAtLeast) {
+TEST(NearEmitters, AtTheShapeMakeElementsATwelfthOfItAtLeast) {
   const Scene scene = scene_with(0.02, false, {radius, 0, 0.15});
-  EXPECT_EQ(NearEmitters(scene).cut(shade, 0, size).elements_per_edge, 16 * size.elements_per_edge);
+  const NearEmitters near(scene);
+  // A ball around the shade reaches from its middle to the rims. Elements are a whole part of those
+  // of 20 cm, here 13 of 15.4 mm or more; one of 15 mm would be a 14th.
+  const double ball = std::hypot(radius, 0.15);
+  const double length = near.cut(shade, 0, size).element_size();
+  EXPECT_LE(length, ball / 12.0);
+  EXPECT_GE(length, ball / 12.0 * 13.0 / 14.0);
+  // A column of 3 m stays as it is.
+  const Frustum column{
+      .base = {0, 0, 0}, .height = 3.0, .base_radius = radius, .top_radius = radius};
+  EXPECT_LE(near.cut(column, 0, size).elements_per_edge, 2 * size.elements_per_edge);
   // Of itself no shape is near.
-  EXPECT_EQ(NearEmitters(scene)
-                .cut(Sphere{.center = {radius, 0, 0.15}, .radius = 0.02}, 1, size)
-                .elements_per_edge,
-            size.elements_per_edge);
+  EXPECT_EQ(
+      near.cut(Sphere{.center = {radius, 0, 0.15}, .radius = 0.02}, 1, size).elements_per_edge,
+      size.elements_per_edge);
 }
 
 }  // namespace
