@@ -38,7 +38,7 @@ void require_light(const Scene& scene) {
       "{}: nothing emits light, so there is nothing to solve; give a material a 'radiance', "
       "'exitance' or 'power' (in OBJ files: Ke) and use it on a surface, or add a lamp",
       scene.file.empty() ? "the scene" : scene.file.string());
-  // What was left out may have been the lamp.
+  // The lamp may be among what was left out.
   constexpr std::size_t most = 5;
   for (std::size_t i = 0; i < std::min(most, scene.losses.size()); ++i) {
     message += "\n  " + scene.losses[i];

@@ -17,10 +17,10 @@ class NearEmitters {
  public:
   explicit NearEmitters(const Scene& scene);
 
-  /// The sizes for a shape of a surface: those of `size`, but elements no longer than a quarter of
-  /// the way to the nearest emitter of another surface. They are no shorter for that than a 16th of
-  /// those of `size`, nor than a twelfth of the radius of a ball around the shape: on a column with
-  /// a lamp all elements would be as small as the lamp's.
+  /// The sizes, m, for a shape of a surface of the scene: those of `size`, but elements no longer
+  /// than a quarter of the way to the nearest emitter of another surface. They are no shorter for
+  /// that than a 16th of those of `size`, nor than a twelfth of the radius of a ball around the
+  /// shape: on a column with a lamp all elements would be as small as the lamp's.
   CutSize cut(const RoundShape& shape, int surface, const CutSize& size) const;
 
  private:

@@ -155,8 +155,10 @@ Eigen::Vector3d crossing(const Ray& ray, const CavityMouth& mouth) {
 // plane at a_i + h b_i, and sum |a_i + h b_i - mean|^2 is least at h = -cov(a, b) / var(b). None if
 // the rays have no common direction.
 std::optional<CavityMouth> waist_of(std::vector<Ray> rays) {
-  // 1/2 is the mean cosine, about the axis, of rays over the whole hemisphere.
-  constexpr double least_mean = 0.5, steep = 0.1;
+  // Rays all over a hemisphere, of even density, have a mean cosine of 1/2 about its axis.
+  constexpr double least_mean = 0.5;
+  // Rays that are nearly parallel to the plane would cross it far away.
+  constexpr double steep = 0.1;
   if (rays.empty()) return {};
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   for (const Ray& ray : rays) mean += ray.direction / static_cast<double>(rays.size());
@@ -190,18 +192,16 @@ std::optional<CavityMouth> waist_of(std::vector<Ray> rays) {
 // at points of the patches, fewer do.
 bool leads_inside(const ElementCaster& caster, const BrightCavity& cavity,
                   const std::vector<Ray>& rays, const CavityMouth& mouth) {
-  constexpr std::size_t most = 256;
-  Eigen::Vector3d a, b;
-  tangent_frame(mouth.normal, a, b);
+  constexpr std::size_t most = 256;  // tell a half to 3 %
   std::vector<Ray> back;
   for (std::size_t i = 0; i < std::min(most, rays.size()); ++i) {
     const std::uint64_t key = random_key(i, RandomPurpose::bright_openness, 2);
-    const double r = mouth.radius * std::sqrt(random_uniform(random_key(key, 0))),
-                 turn = 2.0 * pi * random_uniform(random_key(key, 1));
-    const Eigen::Vector3d at = mouth.center + r * (std::cos(turn) * a + std::sin(turn) * b);
-    // From far enough outside that the ray passes the mouth.
-    back.push_back(
-        {.origin = at + 0.1 * mouth.radius * rays[i].direction, .direction = -rays[i].direction});
+    const Eigen::Vector3d at =
+        mouth.point(random_uniform(random_key(key, 0)), random_uniform(random_key(key, 1)));
+    // A start before the mouth, so that the ray passes a rim that stands out a little.
+    constexpr double before = 0.1;
+    back.push_back({.origin = at + before * mouth.radius * rays[i].direction,
+                    .direction = -rays[i].direction});
   }
   std::vector<ElementHit> hit(back.size());
   caster.closest_elements(back, hit);
@@ -211,7 +211,8 @@ bool leads_inside(const ElementCaster& caster, const BrightCavity& cavity,
 }
 
 void set_intensity(const std::vector<Ray>& rays, double power, CavityMouth& mouth) {
-  constexpr double least = 0.1;  // of the mean
+  // A cell that no ray met may still get light; with a tenth of the mean it keeps a few draws.
+  constexpr double least = 0.1;
   constexpr double solid_angle = 4.0 * pi / (CavityMouth::rings * CavityMouth::sectors);
   for (const Ray& ray : rays) {
     mouth.cells[cell_of(ray.direction)] += static_cast<float>(power / solid_angle);
@@ -251,6 +252,13 @@ std::vector<CavityMouth> mouths_of(const ElementCaster& caster, const BrightCavi
 
 double CavityMouth::area() const {
   return pi * radius * radius;
+}
+
+Eigen::Vector3d CavityMouth::point(double u, double v) const {
+  Eigen::Vector3d a, b;
+  tangent_frame(normal, a, b);
+  const double r = radius * std::sqrt(u), turn = 2.0 * pi * v;
+  return center + r * (std::cos(turn) * a + std::sin(turn) * b);
 }
 
 double CavityMouth::intensity(const Eigen::Vector3d& direction) const {

@@ -14,8 +14,8 @@ struct BrightPatch {
   /// Share of its cosine-distributed rays that meet no bright patch; at least that of one ray,
   /// since points of the room may see a little of any patch.
   double openness = 1.0;
-  std::vector<int>
-      met{};  ///< bright patches that its rays meet, itself among them, in rising order
+  /// Bright patches that its rays meet, in rising order; the patch itself may be among them.
+  std::vector<int> met{};
 };
 
 /// A disc that light of a BrightCavity leaves through.
@@ -27,6 +27,8 @@ struct CavityMouth {
 
   bool is_before(const Eigen::Vector3d& point) const { return normal.dot(point - center) > 0.0; }
   double area() const;  ///< m^2
+  /// A point uniform over the disc for (u, v) uniform in [0,1)^2.
+  Eigen::Vector3d point(double u, double v) const;
   /// Radiant intensity in a unit direction, all columns, W/sr. Rough, and at least a tenth of the
   /// mean over all directions.
   double intensity(const Eigen::Vector3d& direction) const;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "mesh/patches/patch_sampler.h"
+#include "mesh/patches/round_grid.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -152,11 +153,10 @@ BrightPatches::BrightPatches(const Scene& scene, const ElementCaster& caster,
   if (bright.empty()) return;
   of_element_.assign(of_element.size(), -1);
   cavities_ = find_cavities(caster, bright, of_element);
-  for (const BrightPatch& b : bright) add_patch(scene, b, of_element);
+  for (const BrightPatch& b : bright) add_patch(b, of_element);
 }
 
-void BrightPatches::add_patch(const Scene& scene, const BrightPatch& bright,
-                              const std::vector<double>& of_element) {
+void BrightPatches::add_patch(const BrightPatch& bright, const std::vector<double>& of_element) {
   const PatchMesh& mesh = *mesh_;
   const int p = bright.patch;
   Patch patch{.openness = bright.openness, .first = static_cast<int>(elements_.size())};
@@ -165,12 +165,12 @@ void BrightPatches::add_patch(const Scene& scene, const BrightPatch& bright,
     return std::ranges::binary_search(cavity.patches, p);
   });
   if (own != cavities.end()) patch.cavity = static_cast<int>(own - cavities.begin());
-  const auto shape = round_shape(scene.surfaces[static_cast<std::size_t>(mesh.surface[p])]);
-  const bool is_flat = !shape && mesh.facet_of(p) >= 0;
-  if (is_flat) patch.normal = element_center(mesh, mesh.first_element[p]).normal;
+  const RoundGrid* const grid = round_grid_of(mesh, mesh.facet[mesh.first_element[p]]);
+  if (PatchSampler(mesh, p).is_flat())
+    patch.normal = element_center(mesh, mesh.first_element[p]).normal;
   for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
     const auto [first, second] = triangle_areas(mesh, e);
-    const double area = shape ? mesh.element_area[e] : first + second;
+    const double area = grid ? mesh.element_area[e] : first + second;
     const double power = area * of_element[static_cast<std::size_t>(e)];
     patch.area += area;
     patch.center += area * element_center(mesh, e).position;
@@ -182,8 +182,8 @@ void BrightPatches::add_patch(const Scene& scene, const BrightPatch& bright,
                          .up_to = patch.power,
                          .share_per_area = of_element[static_cast<std::size_t>(e)],
                          .normal = element_center(mesh, e).normal,
-                         .round = shape ? static_cast<int>(round_.size()) : -1});
-    if (shape) round_.push_back({*shape, PatchSampler(mesh, p, e)});
+                         .round = grid ? static_cast<int>(round_.size()) : -1});
+    if (grid) round_.push_back({grid->shape, PatchSampler(mesh, p, e)});
   }
   patch.center /= patch.area;
   for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
@@ -265,7 +265,7 @@ double BrightPatches::add_mouths(const Eigen::Vector3d& normal, int rays, double
       const double slant = std::min(rise / (distance + mouth.radius), 1.0);
       const double E = mouth.intensity(-to / distance) * slant /
                        (distance * distance + mouth.radius * mouth.radius);
-      // Of what is bright.
+      // The form factor of the bright part alone, seen through the mouth.
       const double form_factor =
           E / cavities_.cavities[static_cast<std::size_t>(mouth.cavity)].brightness;
       sum += E / (1.0 + rays * form_factor / few);
@@ -275,22 +275,16 @@ double BrightPatches::add_mouths(const Eigen::Vector3d& normal, int rays, double
   return sum;
 }
 
-BrightPatches::Aim BrightPatches::through(const CavityMouth& mouth, const View& view, double u,
-                                          double v) const {
-  Eigen::Vector3d a, b;
-  tangent_frame(mouth.normal, a, b);
-  const double r = mouth.radius * std::sqrt(u), turn = 2.0 * std::numbers::pi * v;
-  const Eigen::Vector3d at = mouth.center + r * (std::cos(turn) * a + std::sin(turn) * b);
-  return {.direction = (at - view.from_).normalized()};
-}
-
 BrightPatches::Aim BrightPatches::draw(const View& view, double which, double u, double v) const {
   const auto& up_to = view.up_to_;
   const auto place =
       std::min<std::ptrdiff_t>(std::upper_bound(up_to.begin(), up_to.end(), which) - up_to.begin(),
                                static_cast<std::ptrdiff_t>(up_to.size()) - 1);
   const auto p = static_cast<std::size_t>(place);
-  if (p >= patches_.size()) return through(cavities_.mouths[p - patches_.size()], view, u, v);
+  if (p >= patches_.size()) {
+    const CavityMouth& mouth = cavities_.mouths[p - patches_.size()];
+    return {.direction = (mouth.point(u, v) - view.from_).normalized()};
+  }
   const double before = p > 0 ? up_to[p - 1] : 0.0;
   const double within = std::clamp((which - before) / (up_to[p] - before), 0.0, 1.0);
   const Patch& patch = patches_[p];

@@ -41,7 +41,7 @@ class BrightPatches {
   struct Aim {
     Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
     int element = -1;                                      ///< see counts()
-    /// Of the point that is aimed at, m; 0: the element is flat, or -1.
+    /// Distance of the point that is aimed at, m; 0: the element is flat, or -1.
     double distance = 0.0;
   };
   /// Returns whether a ray along `aim` counts that meets `hit` first: at the point that is aimed at
@@ -112,13 +112,11 @@ class BrightPatches {
   };
 
   // `of_element`: brightness of every element of the mesh.
-  void add_patch(const Scene& scene, const BrightPatch& bright,
-                 const std::vector<double>& of_element);
+  void add_patch(const BrightPatch& bright, const std::vector<double>& of_element);
   Eigen::Vector3d normal_at(const Element& element, const Eigen::Vector3d& point) const;
   Eigen::Vector3d point_on(const Element& element, double u, double v) const;
   bool is_bright(int element) const { return of_element_[static_cast<std::size_t>(element)] >= 0; }
   double add_mouths(const Eigen::Vector3d& normal, int rays, double sum, View& view) const;
-  Aim through(const CavityMouth& mouth, const View& view, double u, double v) const;
 
   const PatchMesh* mesh_ = nullptr;
   std::vector<Patch> patches_{};

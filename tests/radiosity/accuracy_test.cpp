@@ -217,13 +217,15 @@ TEST(Accuracy, EffortFollowsTheError) {
 // or 80 % of the error that elements have, which is a quarter to a half more of them.
 TEST(Accuracy, EachAttemptIsWorthItsTime) {
   const Effort first = first_effort(0.02, true);
-  // Elements have well below the 0.019 that both errors together may have, and may be split.
+  // Both errors together may be 95 % of 0.02. Elements have 0.012, below that, so that neither step
+  // is one of a tolerance that was missed.
   RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.012};
   // Noise of 0.0111 where 0.011 is allowed takes 1.4 % more rays.
   const auto noisy = next_effort(first, 0.02, 0.0201, 0.0111, reached, 0);
   ASSERT_TRUE(noisy);
   EXPECT_GE(noisy->gather_rays, 1.5 * first.gather_rays);
-  // 1 % more than 0.019, none of it noise. The step is from the error that elements have.
+  // 1 % more than 0.019, none of it noise. The step is from the error that elements have, to four
+  // fifths of it or less, as said above.
   const auto coarse = next_effort(first, 0.02, 0.0192, 0.0, reached, 0);
   ASSERT_TRUE(coarse);
   EXPECT_LE(coarse->refine_tolerance, 0.8 * reached.estimate);
@@ -232,7 +234,8 @@ TEST(Accuracy, EachAttemptIsWorthItsTime) {
 // The error contains the noise of both gathers, so an estimate of the noise above it is too high.
 TEST(Accuracy, NoiseIsNoMoreThanTheError) {
   const Effort first = first_effort(0.05, true);
-  // Any error of the elements below the target serves: both calls get the same.
+  // Both calls get the same error of the elements: any below the target of 0.05 serves, here three
+  // fifths of it.
   RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.03};
   const auto as_error = next_effort(first, 0.05, 0.06, 0.06, reached, 0);
   const auto beyond = next_effort(first, 0.05, 0.06, 700.0, reached, 0);

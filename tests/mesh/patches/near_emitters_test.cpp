@@ -74,7 +74,7 @@ TEST(NearEmitters, AtTheShapeMakeElementsATwelfthOfItAtLeast) {
   const Frustum column{
       .base = {0, 0, 0}, .height = 3.0, .base_radius = radius, .top_radius = radius};
   EXPECT_LE(near.cut(column, 0, size).elements_per_edge, 2 * size.elements_per_edge);
-  // Of itself no shape is near.
+  // An emitter is not near itself.
   EXPECT_EQ(
       near.cut(Sphere{.center = {radius, 0, 0.15}, .radius = 0.02}, 1, size).elements_per_edge,
       size.elements_per_edge);
