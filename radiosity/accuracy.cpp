@@ -25,6 +25,9 @@ constexpr int most_attempts = 6;
 // of stratified rays falls with rays^(-3/4).
 constexpr double sky_rays_for_one_percent = 2048.0, sky_rays_law = 4.0 / 3.0;
 
+// Rays of a gather for an error of 1 %.
+constexpr int rays_for_one_percent = 1024;
+
 }  // namespace
 
 double noise_share(double target) {
@@ -88,7 +91,14 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
 
 ShadowOptions Effort::shadows() const {
   const int most = std::clamp(gather_rays / 4, 64, most_shadow_rays);
-  return {.min_rays = std::max(16, most / 8), .max_rays = most};
+  // Half of the error for which the rays suffice. Groups at the limit differ from what their
+  // members say by a fifth of the limit, and errors of groups add up as squares do.
+  constexpr double for_one_percent = 0.005, law = 2.0 / 3.0, finest = 1e-5, coarsest = 0.02;
+  const double share =
+      for_one_percent * std::pow(static_cast<double>(rays_for_one_percent) / gather_rays, law);
+  return {.min_rays = std::max(16, most / 8),
+          .max_rays = most,
+          .group_share = std::clamp(share, finest, coarsest)};
 }
 
 int sky_rays(double target) {
@@ -100,12 +110,6 @@ int sky_rays(double target) {
 double target_of_sky_rays(int rays) {
   return 0.01 * std::pow(sky_rays_for_one_percent / rays, 1.0 / sky_rays_law);
 }
-
-namespace {
-
-constexpr int rays_for_one_percent = 1024;
-
-}  // namespace
 
 int rays_worth(double left) {
   constexpr double of_the_error = 1.0 / 6.0;

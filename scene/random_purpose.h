@@ -84,6 +84,7 @@ enum class RandomPurpose : std::uint64_t {
   portal_paths = 0x9047a1,
   // One light in place of all; (key of a query, purpose, channel).
   drawn_lights = 0xd4a3,
+  light_groups = 0x9c07,  // two members of a group; (key of a query, purpose, node)
 };
 
 /// True for every purpose. Two purposes of equal value are two equal cases, which no compiler
@@ -140,6 +141,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::pixel_gather_aims:
     case RandomPurpose::part_rays:
     case RandomPurpose::drawn_lights:
+    case RandomPurpose::light_groups:
     case RandomPurpose::side_rays:
     case RandomPurpose::lamp_face_rays:
     case RandomPurpose::part_vectors:

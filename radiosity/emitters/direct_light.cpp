@@ -11,6 +11,7 @@
 #include "radiosity/emitters/emitter_shadows.h"
 #include "radiosity/emitters/exact_shadows.h"
 #include "radiosity/emitters/find_emitters.h"
+#include "radiosity/emitters/light_tree.h"
 #include "radiosity/emitters/sky_light.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"
@@ -29,6 +30,7 @@ struct LightShadow {
   int channel = 0;
   std::uint64_t key = 0;
   double chance = 1.0;            // by which the light was drawn
+  int group = -1;                 // see DirectLight::Choice
   int least = 0, most = 0;        // rays
   std::optional<double> share{};  // visible; empty: rays are needed
   EmissionTree::View view{};      // of an emitter that shines by a picture; else without parts
@@ -82,9 +84,9 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
 // Stratified rays to a shadow's edge have an error of n^(-3/4), so the error of the sum over lights
 // with shares w of the light is least with rays in proportion to w^(4/5). Shares are taken within a
 // channel, since other channels may be dimmed. Fewer than 8 first rays would often miss an occluder
-// that hides only a part.
+// that hides only a part. A member of a group may miss it: the group gives little.
 void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOptions& options) {
-  const auto light = [](const LightShadow& s) { return s.F * s.light().mean(); };
+  const auto light = [](const LightShadow& s) { return s.F * s.light().mean() / s.chance; };
   std::vector<double> most_light(channels, 0.0);
   for (const LightShadow& s : shadows) most_light[s.channel] += light(s);
   const int most = std::clamp(options.max_rays, 1, most_probe_shadow_rays);
@@ -98,8 +100,8 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
     const double all = most_light[s.channel];
     const double effort = all > 0.0 ? std::pow(light(s) / all, 0.8) : 1.0;
     s.most = std::clamp(static_cast<int>(std::ceil(effort * most)), 1, most);
-    s.least = std::min(
-        s.most, std::max(std::min(first_rays, least), static_cast<int>(std::ceil(effort * least))));
+    const int fewest = s.group >= 0 ? 1 : std::min(first_rays, least);
+    s.least = std::min(s.most, std::max(fewest, static_cast<int>(std::ceil(effort * least))));
   }
 }
 
@@ -133,6 +135,9 @@ void find_share(const ExactShadows& exact, const ElementCaster& caster, const Su
   if (!shadow.share) shadow.sampler = SolidAngleSampler(*shadow.emitter, at.position);
 }
 
+// The most parts of a cut: one of point lamps costs less than a hundred rays of a hemisphere.
+constexpr int most_cut_parts = 2048;
+
 }  // namespace
 
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
@@ -157,6 +162,50 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
     owned_[emitter.facet] = emitter.is_sphere ? Owned::front : Owned::whole;
   }
   exact_ = like ? like->exact_ : std::make_shared<const ExactShadows>(scene, mesh, emitters_);
+  group_lights();
+}
+
+int DirectLight::channel_of(int light) const {
+  if (is_emitter(light)) return first_column(emitters_[light].facet) / bands_;
+  return free_sources_[light - static_cast<int>(emitters_.size())].channel;
+}
+
+void DirectLight::group_lights() {
+  const auto channels = static_cast<std::size_t>(channel_count_);
+  std::vector<std::vector<LightBound>> emitters(channels), lamps(channels);
+  for (const LightBound& bound : bounds_of(emitters_)) {
+    emitters[static_cast<std::size_t>(channel_of(bound.light))].push_back(bound);
+  }
+  for (const LightBound& bound : bounds_of(free_sources_, static_cast<int>(emitters_.size()))) {
+    lamps[static_cast<std::size_t>(channel_of(bound.light))].push_back(bound);
+  }
+  trees_.resize(channels);
+  std::vector<char> is_grouped(static_cast<std::size_t>(light_count()), 0);
+  const auto tree_of = [&](std::vector<LightBound>& bounds) -> std::shared_ptr<const LightTree> {
+    if (bounds.size() < fewest_grouped) return nullptr;
+    for (const LightBound& bound : bounds) is_grouped[static_cast<std::size_t>(bound.light)] = 1;
+    return std::make_shared<const LightTree>(std::move(bounds));
+  };
+  for (std::size_t c = 0; c < channels; ++c) {
+    trees_[c] = {.of_emitters = tree_of(emitters[c]), .of_lamps = tree_of(lamps[c])};
+  }
+  few_.resize(channels);
+  for (int i = 0; i < light_count(); ++i) {
+    if (is_grouped[static_cast<std::size_t>(i)] != 0) continue;
+    few_[static_cast<std::size_t>(channel_of(i))].push_back(i);
+  }
+}
+
+bool DirectLight::is_on(int light) const {
+  const Spectrum& L = is_emitter(light)
+                          ? emitters_[light].exitance
+                          : free_sources_[light - static_cast<int>(emitters_.size())].light;
+  return (L > 0.0f).any();
+}
+
+bool DirectLight::groups_emitters() const {
+  return std::ranges::any_of(trees_,
+                             [](const Trees& trees) { return trees.of_emitters != nullptr; });
 }
 
 double DirectLight::unoccluded_form_factor(const Emitter& emitter, const SurfacePoint& at) const {
@@ -181,9 +230,12 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
       .emitter = &emitter, .F = unoccluded_form_factor(emitter, query.at), .key = query.key};
   if (!(shadow.F > 0.0)) return 0.0;
   set_effort({&shadow, 1}, 1, query.shadows);
-  const auto known = std::ranges::find(emitters_, emitter.facet, &Emitter::facet);
-  if (known == emitters_.end()) throw std::invalid_argument("an emitter of another DirectLight");
-  shadow.index = static_cast<int>(known - emitters_.begin());
+  const std::less<const Emitter*> before;
+  if (before(&emitter, emitters_.data()) ||
+      !before(&emitter, emitters_.data() + emitters_.size())) {
+    throw std::invalid_argument("an emitter of another DirectLight");
+  }
+  shadow.index = static_cast<int>(&emitter - emitters_.data());
   find_share(*exact_, caster, query.at, shadow);
   return shadow.F * cast_shadows({&shadow, 1}, caster, samples_, query.at, nullptr)[0].share();
 }
@@ -325,77 +377,134 @@ double DirectLight::approximate_light(int light, const SurfacePoint& at) const {
          static_cast<double>(emitter.exitance.mean());
 }
 
-// All lights of a query, or one of each channel and the sky's dome.
-std::vector<DirectLight::Choice> DirectLight::chosen_lights(const LightQuery& query) const {
-  std::vector<Choice> lights;
-  const int first = first_light(query.lights);
-  if (!query.one_stands_for_all) {
-    for (int i = first; i < light_count(); ++i) lights.push_back({.light = i});
-    return lights;
-  }
-  // Each light that is on has a part of the chance whatever its estimate, since the middle of a
-  // light may lie below the horizon or outside of a beam of which other points see a part.
-  constexpr double even = 0.1;
-  struct Candidates {
-    std::vector<int> light{};
-    std::vector<double> weight{};
-    double sum = 0.0;
-  };
-  std::vector<Candidates> channels(static_cast<std::size_t>(channel_count_));
-  const auto emitter_count = static_cast<int>(emitters_.size());
-  for (int i = first; i < light_count(); ++i) {
-    const Emitter* emitter = i < emitter_count ? &emitters_[i] : nullptr;
-    const FreeSource* source = emitter ? nullptr : &free_sources_[i - emitter_count];
-    if (source && source->is_dome()) {
-      lights.push_back({.light = i});
+// Adds the parts of a cut through the trees of a channel: single lights, and two members of each
+// group. The two halves of the chances that they are drawn from show what drawing leaves to chance.
+void DirectLight::add_cut(int channel, Lights lights, const SurfacePoint& at, std::uint64_t key,
+                          double share, double light, std::vector<Choice>& choices) const {
+  const auto& [of_emitters, of_lamps] = trees_[static_cast<std::size_t>(channel)];
+  std::vector<const LightTree*> trees;
+  const bool has_emitters = lights != Lights::free && lights != Lights::distant;
+  const bool has_lamps = lights != Lights::emitters && lights != Lights::distant;
+  if (of_emitters && has_emitters) trees.push_back(of_emitters.get());
+  if (of_lamps && has_lamps) trees.push_back(of_lamps.get());
+  if (trees.empty()) return;
+  int group = choices.empty() ? 0 : choices.back().group + 1;
+  for (const CutPart& part : light_cut(trees, at, share, light, most_cut_parts)) {
+    const int node = part.seen.node;
+    if (!part.tree->is_group(node)) {
+      choices.push_back({.light = part.tree->light(node)});
       continue;
     }
-    if (!((emitter ? emitter->exitance : source->light) > 0.0f).any()) continue;
-    Candidates& of_channel = channels[static_cast<std::size_t>(
-        emitter ? first_column(emitter->facet) / bands_ : source->channel)];
-    of_channel.light.push_back(i);
-    of_channel.weight.push_back(approximate_light(i, query.at));
-    of_channel.sum += of_channel.weight.back();
-  }
-  for (std::size_t c = 0; c < channels.size(); ++c) {
-    const auto& [light, weight, sum] = channels[c];
-    if (light.empty()) continue;
-    const auto count = static_cast<double>(light.size());
-    const double by_weight = sum > 0.0 ? (1.0 - even) / sum : 0.0;
-    const double by_number = sum > 0.0 ? even / count : 1.0 / count;
-    double left = random_uniform(random_key(query.key, RandomPurpose::drawn_lights, c));
-    std::size_t k = 0;
-    double chance = by_weight * weight[k] + by_number;
-    while (k + 1 < light.size() && left >= chance) {
-      left -= chance;
-      chance = by_weight * weight[++k] + by_number;
+    const bool is_of_lamps = part.tree == of_lamps.get();
+    const double u = random_uniform(random_key(key, RandomPurpose::light_groups,
+                                               2 * static_cast<std::uint64_t>(node) + is_of_lamps));
+    for (const double from : {0.0, 0.5}) {
+      const LightTree::Draw draw = part.tree->draw(node, at, from + 0.5 * u);
+      choices.push_back({.light = draw.light, .chance = 2.0 * draw.chance, .group = group});
     }
-    lights.push_back({.light = light[k], .chance = chance});
+    ++group;
   }
-  return lights;
 }
 
-template <class Add>
-void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
-                                 EmitterVisibility* visibility, Add&& add) const {
+std::vector<DirectLight::Choice> DirectLight::chosen_emitters(const SurfacePoint& at,
+                                                              std::uint64_t key,
+                                                              double share) const {
+  std::vector<Choice> choices;
+  for (int c = 0; c < channel_count_; ++c) {
+    for (const int light : few_[static_cast<std::size_t>(c)]) {
+      if (is_emitter(light)) choices.push_back({.light = light});
+    }
+    add_cut(c, Lights::emitters, at, key, share, 0.0, choices);
+  }
+  std::erase_if(choices, [](const Choice& choice) { return choice.light < 0; });
+  return choices;
+}
+
+// The light of a channel that stands for all but the sky's dome. Each candidate has a part of the
+// chance whatever its estimate, since the middle of a light may lie below the horizon or outside of
+// a beam of which other points see a part.
+DirectLight::Choice DirectLight::one_for_all(int channel, const LightQuery& query) const {
+  constexpr double even = 0.1, coarse = 0.1;
+  std::vector<Choice> choices;
+  std::vector<double> weight;
+  for (const int light : few_[static_cast<std::size_t>(channel)]) {
+    const bool is_dome =
+        !is_emitter(light) && free_sources_[light - static_cast<int>(emitters_.size())].is_dome();
+    if (light < first_light(query.lights) || is_dome || !is_on(light)) continue;
+    choices.push_back({.light = light});
+  }
+  add_cut(channel, query.lights, query.at, query.key, coarse, 0.0, choices);
+  double sum = 0.0;
+  for (const Choice& choice : choices) {
+    weight.push_back(choice.light < 0 ? 0.0
+                                      : approximate_light(choice.light, query.at) / choice.chance);
+    sum += weight.back();
+  }
+  if (choices.empty()) return {.light = -1};
+  const auto count = static_cast<double>(choices.size());
+  const double by_weight = sum > 0.0 ? (1.0 - even) / sum : 0.0;
+  const double by_number = sum > 0.0 ? even / count : 1.0 / count;
+  double left = random_uniform(
+      random_key(query.key, RandomPurpose::drawn_lights, static_cast<std::uint64_t>(channel)));
+  std::size_t k = 0;
+  double chance = by_weight * weight[k] + by_number;
+  while (k + 1 < choices.size() && left >= chance) {
+    left -= chance;
+    chance = by_weight * weight[++k] + by_number;
+  }
+  return {.light = choices[k].light, .chance = chance * choices[k].chance};
+}
+
+// The lights that a query asks: all, those of a cut, or one of each channel and the sky's dome.
+std::vector<DirectLight::Choice> DirectLight::chosen_lights(
+    const LightQuery& query, const std::vector<double>& light) const {
+  std::vector<Choice> choices;
+  for (int c = 0; c < channel_count_; ++c) {
+    const auto channel = static_cast<std::size_t>(c);
+    for (const int i : few_[channel]) {
+      const bool is_dome =
+          !is_emitter(i) && free_sources_[i - static_cast<int>(emitters_.size())].is_dome();
+      if (i >= first_light(query.lights) && (is_dome || !query.one_stands_for_all)) {
+        choices.push_back({.light = i});
+      }
+    }
+    if (query.one_stands_for_all) {
+      choices.push_back(one_for_all(c, query));
+    } else {
+      add_cut(c, query.lights, query.at, query.key, query.shadows.group_share,
+              light.empty() ? 0.0 : light[channel], choices);
+    }
+  }
+  std::erase_if(choices, [](const Choice& choice) { return choice.light < 0; });
+  return choices;
+}
+
+struct DirectLight::Shadows {
+  std::vector<LightShadow> lights{};
+  std::vector<ShadowTally> tallies{};
+  std::optional<LightShadow> dome{};
+};
+
+// Lights above the horizon of a point and what their shadow rays find.
+DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const LightQuery& query,
+                                          const std::vector<double>& light) const {
   const auto& [point, normal, facet] = query.at;
-  const Receiver receiver{.base = query.base, .relief = query.relief};
   const auto emitter_count = static_cast<int>(emitters_.size());
-  std::vector<LightShadow> shadows;
-  std::optional<LightShadow> dome;
-  for (const auto& [i, chance] : chosen_lights(query)) {
-    LightShadow shadow{
-        .index = i, .key = random_key(query.key, static_cast<std::uint64_t>(i)), .chance = chance};
+  Shadows found;
+  for (const auto& [i, chance, group] : chosen_lights(query, light)) {
+    LightShadow shadow{.index = i,
+                       .channel = channel_of(i),
+                       .key = random_key(query.key, static_cast<std::uint64_t>(i)),
+                       .chance = chance,
+                       .group = group};
     if (i < emitter_count) {
       shadow.emitter = &emitters_[i];
-      shadow.channel = first_column(shadow.emitter->facet) / bands_;
     } else {
       shadow.source = &free_sources_[i - emitter_count];
-      shadow.channel = shadow.source->channel;
     }
     if (!(shadow.light() > 0.0f).any()) continue;  // switched off
     if (shadow.source && shadow.source->is_dome()) {
-      if (query.lights != Lights::all_but_dome) dome = shadow;
+      if (query.lights != Lights::all_but_dome) found.dome = shadow;
       continue;
     }
     shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, query.at)
@@ -406,21 +515,66 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
       if (!shadow.has_picture()) continue;  // black as far as it is above the horizon
       shadow.pictured = pictured_light(*shadow.emitter, shadow.view, shadow.F);
     }
-    shadows.push_back(std::move(shadow));
+    found.lights.push_back(std::move(shadow));
   }
-  set_effort(shadows, channel_count_, query.shadows);
-  for (LightShadow& shadow : shadows) {
+  set_effort(found.lights, channel_count_, query.shadows);
+  for (LightShadow& shadow : found.lights) {
     if (shadow.emitter) find_share(*exact_, caster, query.at, shadow);
   }
-  const std::vector<ShadowTally> tallies =
-      cast_shadows(shadows, caster, samples_, query.at, panes_.empty() ? nullptr : &panes_);
+  found.tallies =
+      cast_shadows(found.lights, caster, samples_, query.at, panes_.empty() ? nullptr : &panes_);
+  return found;
+}
+
+// Shadows of the lights that a query asks. Where most light of a channel is hidden, groups that
+// gave little of the unobstructed light may give much of what is left: the point asks again, with
+// groups that are small against the light that it has found.
+DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster,
+                                          const LightQuery& query) const {
+  constexpr int most_rounds = 3;
+  constexpr double much = 0.5, least = 0.01;  // of the light that was taken as arriving
+  Shadows found = shadows(caster, query, {});
+  std::vector<double> taken;
+  for (int round = 1; round < most_rounds && !query.one_stands_for_all; ++round) {
+    const auto channels = static_cast<std::size_t>(channel_count_);
+    std::vector<double> seen(channels, 0.0), all(channels, 0.0);
+    std::vector<char> has_groups(channels, 0);
+    for (std::size_t i = 0; i < found.lights.size(); ++i) {
+      const LightShadow& s = found.lights[i];
+      const auto channel = static_cast<std::size_t>(s.channel);
+      const double E = s.F * s.light().mean() / s.chance;
+      all[channel] += E;
+      seen[channel] += E * found.tallies[i].share();
+      if (s.group >= 0) has_groups[channel] = 1;
+    }
+    if (taken.empty()) taken = all;
+    bool is_enough = true;
+    for (std::size_t c = 0; c < channels; ++c) {
+      if (has_groups[c] == 0 || seen[c] >= much * taken[c]) continue;
+      taken[c] = std::max(seen[c], least * taken[c]);
+      is_enough = false;
+    }
+    if (is_enough) break;
+    found = shadows(caster, query, taken);
+  }
+  return found;
+}
+
+template <class Add>
+void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
+                                 EmitterVisibility* visibility, Add&& add) const {
+  const Receiver receiver{.base = query.base, .relief = query.relief};
+  const auto [shadows, tallies, dome] = this->shadows(caster, query);
   if (visibility) *visibility = {};
+  double drawn_noise2 = 0.0;
   if (dome) {
     const double full = dome->light().mean();
     const SkyGlow glow = dome_glow(caster, query, full, dome->key);
     add(dome->channel, dome->light(), glow.irradiance);
-    if (visibility) visibility->sky_noise = full * glow.noise;
+    drawn_noise2 = std::pow(full * glow.noise, 2);
   }
+  // The difference of the two members of each group, W/m^2: both estimate half of its light.
+  std::vector<double> of_groups;
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const LightShadow& s = shadows[i];
     const ShadowTally& tally = tallies[i];
@@ -443,6 +597,12 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     }
     if (is_dimmed) add(s.channel, s.light(), through);
     if (!visibility) continue;
+    if (s.group >= 0) {
+      const auto group = static_cast<std::size_t>(s.group);
+      of_groups.resize(std::max(of_groups.size(), group + 1), 0.0);
+      of_groups[group] = F * share * s.light().mean() - of_groups[group];
+      continue;
+    }
     const bool is_behind_panes = is_dimmed && !tally.is_mixed();
     if (!s.share && tally.is_mixed()) visibility->noisy += s.F * s.light().mean();
     constexpr int bits = 64;
@@ -450,6 +610,9 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     if (share == 1.0 || is_behind_panes) visibility->whole |= bit;
     if (share == 0.0 && !is_dimmed) visibility->hidden |= bit;
   }
+  if (!visibility) return;
+  for (const double difference : of_groups) drawn_noise2 += difference * difference;
+  visibility->drawn_noise = std::sqrt(drawn_noise2);
 }
 
 Spectrum DirectLight::irradiance(const ElementCaster& caster, const LightQuery& query,

@@ -23,6 +23,7 @@ namespace lightwell {
 
 class EmissionTree;
 class ExactShadows;
+class LightTree;
 class SkyLight;
 struct SkyGlow;
 
@@ -59,6 +60,9 @@ struct ShadowOptions {
   /// Rays to the dome of the sky, of which an eighth come first; 0: as to an emitter. 1 to
   /// most_sky_rays.
   int sky_rays = 0;
+  /// The greatest share of a point's light that a group of lights may give (see LightTree); 0: each
+  /// light is asked. A channel of fewer than DirectLight::fewest_grouped lights has no groups.
+  double group_share = 0.005;
 
   /// True if each light and the sky get one ray at most, without an estimate of the noise.
   bool is_one_ray() const { return max_rays == 1 && sky_rays == 0; }
@@ -69,13 +73,15 @@ struct EmitterVisibility {
   /// Unobstructed irradiance, sum M F, mean of the bands, W/m^2, of the lights whose shadow rays
   /// were partly blocked; their noise is a share of this sum.
   double noisy = 0.0;
-  double sky_noise = 0.0;    ///< standard error of the dome's light, mean of the bands, W/m^2
+  /// Standard error of the light of the dome and of groups of lights, mean of the bands, W/m^2.
+  double drawn_noise = 0.0;
   std::uint64_t whole = 0;   ///< bit i: light i is fully visible; the first 64 lights
   std::uint64_t hidden = 0;  ///< bit i: light i is fully hidden
 };
 
-/// Lights that give a sum: all, free sources only, sky and sun only, or all but the sky's dome.
-enum class Lights { all, free, distant, all_but_dome };
+/// Lights that give a sum: all, emitters only, free sources only, sky and sun only, or all but the
+/// sky's dome.
+enum class Lights { all, emitters, free, distant, all_but_dome };
 
 /// A point that direct light is computed at, and with which effort.
 struct LightQuery {
@@ -117,6 +123,10 @@ struct LightQuery {
 /// Free sources (lamps without surface, sky and sun) are always direct light. *Lights* are the
 /// emitters, followed by the free sources.
 ///
+/// Where a channel has many lights, a point asks those that give it much, and two drawn members of
+/// each group of others (see LightTree and ShadowOptions::group_share). The mean over keys of
+/// random numbers is the sum over all lights.
+///
 /// Irradiance includes light that passes straight through ClearPanes; form factors take panes as
 /// opaque.
 ///
@@ -154,6 +164,21 @@ class DirectLight {
   double form_factor(const Emitter& emitter, const ElementCaster& caster,
                      const LightQuery& query) const;
 
+  /// The fewest emitters, or lamps, of a channel that are grouped.
+  static constexpr std::size_t fewest_grouped = 32;
+  /// A light that a point asks for. What the light gives counts over `chance`.
+  struct Choice {
+    int light = 0;
+    double chance = 1.0;
+    int group = -1;  ///< of which two are drawn; -1: a light by itself
+  };
+  /// True if any emitters are grouped.
+  bool groups_emitters() const;
+  /// The emitters that a point asks for, no group of which gives more than `share` of the light of
+  /// all. `key`: of the random numbers that draw members.
+  std::vector<Choice> chosen_emitters(const SurfacePoint& at, std::uint64_t key,
+                                      double share) const;
+
   /// The closed form alone, without occluders.
   double unoccluded_form_factor(const Emitter& emitter, const SurfacePoint& at) const;
 
@@ -189,12 +214,20 @@ class DirectLight {
 
  private:
   int first_light(Lights lights) const;
-  /// A light to be added, over the chance that it was drawn.
-  struct Choice {
-    int light = 0;
-    double chance = 1.0;
-  };
-  std::vector<Choice> chosen_lights(const LightQuery& query) const;
+  bool is_on(int light) const;
+  bool is_emitter(int light) const { return light < static_cast<int>(emitters_.size()); }
+  int channel_of(int light) const;
+  void group_lights();
+  /// `light`: what lights of each channel give the point, W/m^2; empty: not known yet.
+  std::vector<Choice> chosen_lights(const LightQuery& query,
+                                    const std::vector<double>& light) const;
+  struct Shadows;
+  Shadows shadows(const ElementCaster& caster, const LightQuery& query,
+                  const std::vector<double>& light) const;
+  Shadows shadows(const ElementCaster& caster, const LightQuery& query) const;
+  Choice one_for_all(int channel, const LightQuery& query) const;
+  void add_cut(int channel, Lights lights, const SurfacePoint& at, std::uint64_t key, double share,
+               double light, std::vector<Choice>& choices) const;
   double approximate_light(int light, const SurfacePoint& at) const;
   /// Factor of the light that arrives from a direction: that of a coated base, of relief, or both.
   struct Receiver {
@@ -215,6 +248,12 @@ class DirectLight {
 
   std::vector<Emitter> emitters_;
   std::vector<FreeSource> free_sources_;
+  /// Trees of the emitters and of the lamps of a channel; null where there are few.
+  struct Trees {
+    std::shared_ptr<const LightTree> of_emitters{}, of_lamps{};
+  };
+  std::vector<Trees> trees_{};             // by channel
+  std::vector<std::vector<int>> few_;      // by channel: lights that are on and in no tree
   std::shared_ptr<const SkyLight> sky_{};  // null: there is no dome
   std::shared_ptr<const ExactShadows> exact_{};
   enum class Owned : char { nothing, front, whole };

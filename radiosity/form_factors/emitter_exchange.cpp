@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
@@ -48,10 +50,29 @@ EmitterExchange::EmitterExchange(const ElementCaster& caster, const DirectLight&
   }
 }
 
-// Adds the exchange area of a point of `patch` with an emitter to the rows of the emitter's
+int EmitterExchange::row_of_lit(int patch) const {
+  return own_row_[patch] >= 0 ? own_row_[patch] : 2 * emitter_of_[patch] + mesh_.is_back[patch];
+}
+
+class EmitterExchange::Found {
+ public:
+  void add(int row, double S) { sum_[row] += S; }
+  Row rows() const {
+    Row result;
+    for (const auto& [row, S] : sum_) {
+      if (S > 0.0) result.push_back({row, static_cast<float>(S)});
+    }
+    return result;
+  }
+
+ private:
+  std::map<int, double> sum_{};
+};
+
+// Adds the exchange area of a point of a patch with an emitter to the rows of the emitter's
 // patches, each by its own form factor. All patches of the emitter are taken to be hidden alike.
 void EmitterExchange::add_to_patches(int emitter, bool behind, const SurfacePoint& at,
-                                     double exchange, int patch) {
+                                     double exchange, Found& found) const {
   const std::vector<int>& lit = pictured_[2 * emitter + behind];
   const int first = 2 * static_cast<int>(direct_light_.emitters().size());
   std::vector<double> F;
@@ -71,80 +92,127 @@ void EmitterExchange::add_to_patches(int emitter, bool behind, const SurfacePoin
     sum += F.back();
   }
   for (std::size_t k = 0; k < lit.size() && sum > 0.0; ++k) {
-    exchange_(own_row_[lit[k]], patch) += exchange * F[k] / sum;
+    found.add(own_row_[lit[k]], exchange * F[k] / sum);
   }
+}
+
+// Adds what a point that stands for `area` exchanges with the emitters that it asks for.
+void EmitterExchange::add_point(const SurfacePoint& at, std::uint64_t key, double area,
+                                const FormFactorOptions& options, Found& found) const {
+  const double share = options.shadows.group_share;
+  for (const auto& [e, chance, group] : direct_light_.chosen_emitters(at, key, share)) {
+    if (is_left_to_rays_[e]) continue;
+    const Emitter& emitter = direct_light_.emitters()[e];
+    const bool behind =
+        !emitter.is_sphere && (at.position - emitter.loops[0][0]).dot(emitter.normal) < 0.0;
+    ShadowOptions shadows = options.shadows;
+    if (group >= 0) shadows.min_rays = shadows.max_rays = 1;
+    const double exchange =
+        area / chance *
+        direct_light_.form_factor(
+            emitter, caster_,
+            {.at = at, .key = random_key(key, static_cast<std::uint64_t>(e)), .shadows = shadows});
+    if (!(exchange > 0.0)) continue;
+    found.add(2 * e + behind, exchange);
+    if (emitter.picture) add_to_patches(e, behind, at, exchange, found);
+  }
+}
+
+EmitterExchange::Row EmitterExchange::row_of(int patch, const SobolPoints& sobol,
+                                             const FormFactorOptions& options) const {
+  const std::uint64_t key =
+      random_key(static_cast<std::uint64_t>(patch), RandomPurpose::emitter_exchange_points);
+  const PatchSampler sampler(mesh_, patch);
+  Found found;
+  for (int s = 0; s < sobol.count(); ++s) {
+    const Eigen::Array4f u = sobol.point(s, key);
+    const PatchPoint at = sampler.point(u[0], u[1]);
+    add_point({at.position, at.normal, mesh_.facet[at.element]},
+              random_key(key, static_cast<std::uint64_t>(s)), mesh_.area[patch] / sobol.count(),
+              options, found);
+  }
+  return found.rows();
 }
 
 void EmitterExchange::compute(const std::vector<char>& receives, const FormFactorOptions& options,
                               const JournalPhase& phase) {
-  const auto emitter_count = static_cast<int>(direct_light_.emitters().size());
-  exchange_.setZero(2 * emitter_count + static_cast<int>(outline_.size()), mesh_.patch_count());
-  const SobolPoints sobol(options.emitter_points);
-  // A fraction of a second per slice, shadow rays included.
-  constexpr int form_factors_per_slice = 1 << 17;
-  const int each = std::max(1, options.emitter_points * emitter_count);
-  const int slice = std::max(16, form_factors_per_slice / each);
-  const auto columns = [&](int begin, int size) {
-    return std::tuple(std::span(exchange_.data() + begin * exchange_.rows(),
-                                static_cast<std::size_t>(size * exchange_.rows())));
-  };
-  const auto report_progress = [&](int) { report(options.run.progress, "closed forms", 0.0); };
-  const auto fill = [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      if (!receives[i]) continue;
-      const std::uint64_t key =
-          random_key(static_cast<std::uint64_t>(i), RandomPurpose::emitter_exchange_points);
-      const PatchSampler sampler(mesh_, i);
-      for (int s = 0; s < options.emitter_points; ++s) {
-        const Eigen::Array4f u = sobol.point(s, key);
-        const PatchPoint at = sampler.point(u[0], u[1]);
-        for (int e = 0; e < emitter_count; ++e) {
-          if (is_left_to_rays_[e]) continue;
-          const Emitter& emitter = direct_light_.emitters()[e];
-          const bool behind =
-              !emitter.is_sphere && (at.position - emitter.loops[0][0]).dot(emitter.normal) < 0.0;
-          const SurfacePoint point{at.position, at.normal, mesh_.facet[at.element]};
-          const double exchange =
-              mesh_.area[i] / options.emitter_points *
-              direct_light_.form_factor(
-                  emitter, caster_,
-                  {.at = point, .key = random_key(key, s, e), .shadows = options.shadows});
-          exchange_(2 * e + behind, i) += exchange;
-          if (emitter.picture && exchange > 0.0) add_to_patches(e, behind, point, exchange, i);
+  from_.assign(static_cast<std::size_t>(mesh_.patch_count()), {});
+  // Where points ask for groups, each point draws other members.
+  constexpr int fewer = 4;
+  const int points = direct_light_.groups_emitters() ? std::max(1, options.emitter_points / fewer)
+                                                     : options.emitter_points;
+  const SobolPoints sobol(points);
+  // About a second per slice, shadow rays included.
+  constexpr int slice = 512, grain = 4;
+  for (int begin = 0, block = 0; begin < mesh_.patch_count(); begin += slice, ++block) {
+    report(options.run.progress, "closed forms", static_cast<double>(begin) / mesh_.patch_count());
+    const int end = std::min(begin + slice, mesh_.patch_count());
+    std::vector<int> counts;
+    Row records;
+    if (!phase.recall(block, counts, records)) {
+      parallel_for(end - begin, grain, [&](int low, int high) {
+        for (int i = begin + low; i < begin + high; ++i) {
+          if (receives[i]) from_[i] = row_of(i, sobol, options);
         }
+      });
+      for (int i = begin; i < end; ++i) {
+        counts.push_back(static_cast<int>(from_[i].size()));
+        records.insert(records.end(), from_[i].begin(), from_[i].end());
       }
+      phase.keep(block, counts, records);
+      continue;
     }
-  };
-  for_each_slice(phase, mesh_.patch_count(), slice, 16, columns, report_progress, fill);
+    auto next = records.begin();
+    for (int i = begin; i < end; ++i) {
+      const auto last = next + counts[static_cast<std::size_t>(i - begin)];
+      from_[i].assign(next, last);
+      next = last;
+    }
+  }
+  turn_over();
+}
+
+// Fills `to_` and `lit_of_row_`.
+void EmitterExchange::turn_over() {
+  const std::size_t rows = 2 * direct_light_.emitters().size() + outline_.size();
+  lit_of_row_.assign(rows, {});
+  for (const int j : lit_) lit_of_row_[static_cast<std::size_t>(row_of_lit(j))].push_back(j);
+  to_.assign(rows, {});
+  for (int i = 0; i < mesh_.patch_count(); ++i) {
+    for (const auto& [row, S] : from_[i]) to_[static_cast<std::size_t>(row)].push_back({i, S});
+  }
 }
 
 // Emitters without a picture have uniform radiosity, so each patch has a share in proportion to its
 // area.
 double EmitterExchange::share_of_emitter(int patch) const {
+  if (own_row_[patch] >= 0) return 1.0;
   return mesh_.area[patch] / direct_light_.emitters()[emitter_of_[patch]].area;
 }
 
-// S_ij of two patches, at least one of which belongs to an emitter.
-double EmitterExchange::between(int i, int j) const {
-  const auto from = [&](int patch, int lit) {
-    if (own_row_[lit] >= 0) return exchange_(own_row_[lit], patch);
-    return exchange_(2 * emitter_of_[lit] + mesh_.is_back[lit], patch) * share_of_emitter(lit);
-  };
-  if (emitter_of_[i] == emitter_of_[j]) return 0.0;
-  if (emitter_of_[i] < 0) return from(i, j);
-  if (emitter_of_[j] < 0) return from(j, i);
-  return 0.5 * (from(i, j) + from(j, i));  // computed from both ends; the mean keeps S symmetric
-}
-
+// Exchange of two emitters is computed from both ends, and the mean keeps S symmetric.
 void EmitterExchange::add_row(int i, std::vector<FormFactor>& row) const {
-  const auto add = [&](int j) {
-    const auto S = static_cast<float>(between(i, j));
-    if (S > 0.0f) row.push_back({j, S});
-  };
-  if (emitter_of_[i] >= 0) {
-    for (int j = i + 1; j < mesh_.patch_count(); ++j) add(j);
-  } else {
-    for (auto j = std::upper_bound(lit_.begin(), lit_.end(), i); j != lit_.end(); ++j) add(*j);
+  const bool is_lit = emitter_of_[i] >= 0;
+  std::vector<std::pair<int, double>> found;
+  for (const auto& [number, S] : from_[i]) {
+    for (const int j : lit_of_row_[static_cast<std::size_t>(number)]) {
+      if (j <= i || (is_lit && emitter_of_[j] == emitter_of_[i])) continue;
+      found.emplace_back(j, (is_lit ? 0.5 : 1.0) * static_cast<double>(S) * share_of_emitter(j));
+    }
+  }
+  if (is_lit) {
+    for (const auto& [j, S] : to_[static_cast<std::size_t>(row_of_lit(i))]) {
+      if (j <= i || emitter_of_[j] == emitter_of_[i]) continue;
+      found.emplace_back(
+          j, (emitter_of_[j] >= 0 ? 0.5 : 1.0) * static_cast<double>(S) * share_of_emitter(i));
+    }
+  }
+  std::ranges::stable_sort(found, {}, &std::pair<int, double>::first);
+  for (std::size_t k = 0; k < found.size();) {
+    const int j = found[k].first;
+    double S = 0.0;
+    for (; k < found.size() && found[k].first == j; ++k) S += found[k].second;
+    if (static_cast<float>(S) > 0.0f) row.push_back({j, static_cast<float>(S)});
   }
 }
 

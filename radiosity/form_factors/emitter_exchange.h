@@ -1,8 +1,11 @@
 #pragma once
 
+#include <vector>
+
 #include "mesh/patches/patch_outline.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/journal/journal_phase.h"
+#include "scene/sampling.h"
 
 namespace lightwell {
 
@@ -25,9 +28,18 @@ class EmitterExchange {
   void add_row(int i, std::vector<FormFactor>& row) const;
 
  private:
+  /// S_ij of patch i with the row `patch` of lit patches; see own_row_.
+  using Row = std::vector<FormFactor>;
+  /// The exchange areas that the points of a patch have found, by row.
+  class Found;
+  void add_point(const SurfacePoint& at, std::uint64_t key, double area,
+                 const FormFactorOptions& options, Found& found) const;
+  void add_to_patches(int emitter, bool behind, const SurfacePoint& at, double exchange,
+                      Found& found) const;
+  Row row_of(int patch, const SobolPoints& sobol, const FormFactorOptions& options) const;
+  void turn_over();
   double share_of_emitter(int patch) const;
-  void add_to_patches(int emitter, bool behind, const SurfacePoint& at, double exchange, int patch);
-  double between(int i, int j) const;
+  int row_of_lit(int patch) const;
 
   const PatchMesh& mesh_;
   const ElementCaster& caster_;
@@ -40,7 +52,9 @@ class EmitterExchange {
   std::vector<int> own_row_;
   std::vector<std::vector<int>> pictured_;  // by emitter and side, as rows are: patches with a row
   std::vector<PatchOutline> outline_;       // of each patch with a row
-  Eigen::ArrayXXd exchange_;  // (2 e + side, i): from patch i to the front or back of emitter e
+  std::vector<std::vector<int>> lit_of_row_;  // patches that a row stands for, ascending
+  std::vector<Row> from_;  // by patch i: rows 2 e + side of the front or back of emitter e
+  std::vector<Row> to_;    // by row: patches i, ascending
 };
 
 }  // namespace lightwell

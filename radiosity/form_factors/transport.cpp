@@ -75,11 +75,13 @@ std::int64_t most_row_bytes(int patches, const FormFactorOptions& options) {
 std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
                                const FormFactorOptions& options) {
   // Per patch: outlines with quadrature points, entries of stores, vectors of the scaling. Per
-  // band: vectors of a solver. Per thread: scratch of a row.
-  constexpr std::int64_t per_patch = 900, per_band = 128, per_thread = 48, per_emitter = 16;
+  // band: vectors of a solver. Per thread: scratch of a row. Of many emitters, a patch asks for
+  // those of a cut at a few points.
+  constexpr std::int64_t per_patch = 900, per_band = 128, per_thread = 48, per_emitter = 16,
+                         most_emitters = 1024;
   const std::int64_t bands = mesh.reflectance.cols();
-  std::int64_t each =
-      per_patch + per_band * bands + per_thread * thread_count() + per_emitter * emitters;
+  std::int64_t each = per_patch + per_band * bands + per_thread * thread_count() +
+                      per_emitter * std::min(emitters, most_emitters);
   const bool analytic = options.method == FormFactorMethod::analytic;
   if (analytic) each += std::int64_t{sizeof(PatchSampler)};
   const bool clips =

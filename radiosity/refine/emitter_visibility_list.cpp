@@ -9,19 +9,19 @@ EmitterVisibilityList::EmitterVisibilityList(int lights)
 
 void EmitterVisibilityList::resize(int count) {
   noisy_.resize(static_cast<std::size_t>(count), 0.0f);
-  sky_noise_.resize(static_cast<std::size_t>(count), 0.0f);
+  drawn_noise_.resize(static_cast<std::size_t>(count), 0.0f);
   bits_.resize(static_cast<std::size_t>(count) * 2 * static_cast<std::size_t>(bytes_), 0);
 }
 
 void EmitterVisibilityList::shrink_to_fit() {
   noisy_.shrink_to_fit();
-  sky_noise_.shrink_to_fit();
+  drawn_noise_.shrink_to_fit();
   bits_.shrink_to_fit();
 }
 
 void EmitterVisibilityList::set(int index, const EmitterVisibility& visibility) {
   noisy_[static_cast<std::size_t>(index)] = static_cast<float>(visibility.noisy);
-  sky_noise_[static_cast<std::size_t>(index)] = static_cast<float>(visibility.sky_noise);
+  drawn_noise_[static_cast<std::size_t>(index)] = static_cast<float>(visibility.drawn_noise);
   std::uint8_t* whole = bits_.data() + std::ptrdiff_t{index} * 2 * bytes_;
   for (int i = 0; i < bytes_; ++i) {
     whole[i] = static_cast<std::uint8_t>(visibility.whole >> (8 * i));
@@ -30,8 +30,9 @@ void EmitterVisibilityList::set(int index, const EmitterVisibility& visibility) 
 }
 
 EmitterVisibility EmitterVisibilityList::operator[](int index) const {
-  EmitterVisibility visibility{.noisy = double{noisy_[static_cast<std::size_t>(index)]},
-                               .sky_noise = double{sky_noise_[static_cast<std::size_t>(index)]}};
+  EmitterVisibility visibility{
+      .noisy = double{noisy_[static_cast<std::size_t>(index)]},
+      .drawn_noise = double{drawn_noise_[static_cast<std::size_t>(index)]}};
   const std::uint8_t* whole = bits_.data() + std::ptrdiff_t{index} * 2 * bytes_;
   for (int i = 0; i < bytes_; ++i) {
     visibility.whole |= std::uint64_t{whole[i]} << (8 * i);

@@ -17,12 +17,12 @@ class EmitterVisibilityList {
   void resize(int count);
   void shrink_to_fit();
   void set(int index, const EmitterVisibility& visibility);
-  /// The entry, with `noisy` and `sky_noise` rounded to float.
+  /// The entry, with `noisy` and `drawn_noise` rounded to float.
   EmitterVisibility operator[](int index) const;
 
  private:
   int bytes_;  // that hold a bit of each light
-  std::vector<float> noisy_{}, sky_noise_{};
+  std::vector<float> noisy_{}, drawn_noise_{};
   std::vector<std::uint8_t> bits_{};  // whole, hidden, whole, ...
 };
 

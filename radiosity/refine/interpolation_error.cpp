@@ -136,21 +136,21 @@ double InterpolationError::reference(int cell, int side) const {
 }
 
 // Differences count if they are beyond doubt; `hidden` gets what noise may hide otherwise. The
-// noise of the sky is known at each vertex, and is left to the final gather instead: to split a
-// cell would not reduce it. Of many cells whose differences are noise, some exceed twice the noise,
-// and few four times.
+// noise of the sky and of groups of lights is known at each vertex, and is left to the final gather
+// instead: to split a cell would not reduce it. Of many cells whose differences are noise, some
+// exceed twice the noise, and few four times.
 InterpolationError::Squares InterpolationError::beyond_noise(const Differences& differences,
                                                              double shadow_noise,
-                                                             double sky_noise) {
-  constexpr double beyond_sky = 4.0;
+                                                             double drawn_noise) {
+  constexpr double beyond_drawn = 4.0;
   // The product of only two gathers, over one cell, has an error of about the noise.
   const bool indirect_counts = differences.indirect > beyond_doubt * differences.noise;
   const double error = indirect_counts ? differences.both : differences.direct;
-  const double noise = shadow_noise + sky_noise;
-  const bool shadow_counts = error > beyond_doubt * shadow_noise + beyond_sky * sky_noise;
+  const double noise = shadow_noise + drawn_noise;
+  const bool shadow_counts = error > beyond_doubt * shadow_noise + beyond_drawn * drawn_noise;
   return {.error = shadow_counts ? error - noise : 0.0,
           .hidden = (indirect_counts ? 0.0 : differences.noise) +
-                    (shadow_counts ? 0.0 : std::clamp(error - sky_noise, 0.0, shadow_noise)),
+                    (shadow_counts ? 0.0 : std::clamp(error - drawn_noise, 0.0, shadow_noise)),
           .direct = differences.direct,
           .shadow_noise = noise,
           .indirect = std::max(differences.indirect, 0.0) + counted_noise * differences.noise,
@@ -165,12 +165,12 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
   const BandArray &direct = gathers_.direct(), &first = gathers_.first(),
                   &second = gathers_.second();
   Differences differences;
-  double shadow_noise = 0.0, sky_noise = 0.0;
+  double shadow_noise = 0.0, drawn_noise = 0.0;
   const double of_one = mixed_shadow_noise(gathers_.options().shadows.max_rays);
   const auto add_shadow_noise = [&](int v, double weight) {
     const EmitterVisibility visibility = gathers_.visibility(v);
     shadow_noise += weight * std::pow(of_one * visibility.noisy, 2);
-    sky_noise += weight * std::pow(visibility.sky_noise, 2);
+    drawn_noise += weight * std::pow(visibility.drawn_noise, 2);
   };
   Spectrum mean_direct = Spectrum::Zero(direct.cols()), mean_first = mean_direct,
            mean_second = mean_direct;
@@ -195,7 +195,7 @@ InterpolationError::Squares InterpolationError::lattice_error(int cell, int side
                     first.row(v).transpose() - mean_first, second.row(v).transpose() - mean_second);
     add_shadow_noise(v, at_center);
   }
-  return beyond_noise(differences, shadow_noise, sky_noise);
+  return beyond_noise(differences, shadow_noise, drawn_noise);
 }
 
 // Indirect light is gathered, or interpolated where the parent's is even.

@@ -111,7 +111,7 @@ class InterpolationError {
   };
   struct Differences;
   static Squares beyond_noise(const Differences& differences, double shadow_noise,
-                              double sky_noise);
+                              double drawn_noise);
   Squares lattice_error(int cell, int side) const;
   double reference(int cell, int side) const;
 

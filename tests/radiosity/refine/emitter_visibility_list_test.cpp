@@ -14,7 +14,7 @@ TEST(EmitterVisibilityList, KeepsABitOfEachLight) {
     const auto visibility = [&](int i) {
       const auto key = static_cast<std::uint64_t>(i);
       return EmitterVisibility{.noisy = 0.25 * i,
-                               .sky_noise = 0.5 * i,
+                               .drawn_noise = 0.5 * i,
                                .whole = random_key(key, 1) & some,
                                .hidden = random_key(key, 2) & some};
     };
@@ -29,7 +29,7 @@ TEST(EmitterVisibilityList, KeepsABitOfEachLight) {
       const EmitterVisibility expected = is_set ? visibility(i) : EmitterVisibility{},
                               found = list[i];
       EXPECT_EQ(found.noisy, expected.noisy) << lights << ' ' << i;
-      EXPECT_EQ(found.sky_noise, expected.sky_noise) << lights << ' ' << i;
+      EXPECT_EQ(found.drawn_noise, expected.drawn_noise) << lights << ' ' << i;
       EXPECT_EQ(found.whole, expected.whole) << lights << ' ' << i;
       EXPECT_EQ(found.hidden, expected.hidden) << lights << ' ' << i;
     }

@@ -1,0 +1,263 @@
+#include "radiosity/emitters/light_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <queue>
+
+namespace lightwell {
+namespace {
+
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+constexpr int steps = static_cast<int>(IntensityByAngle{}.size());
+constexpr double step = pi / steps;
+
+int step_of(double angle) {
+  return std::clamp(static_cast<int>(angle / step), 0, steps - 1);
+}
+
+double angle_between(const Vector3d& a, const Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+// The greatest value of `shape` within each step, for a function of the angle that falls from 0 to
+// pi.
+template <class Shape>
+IntensityByAngle falling(double scale, Shape shape) {
+  IntensityByAngle result;
+  for (int k = 0; k < steps; ++k) {
+    result[static_cast<std::size_t>(k)] = static_cast<float>(scale * shape(k * step));
+  }
+  return result;
+}
+
+// The greatest relative intensity of a web within each step, among directions as dense as the
+// angles of measured webs.
+IntensityByAngle greatest_of_web(const Lamp& lamp) {
+  constexpr int finer = 12, around = 72;  // about 1 degree of gamma, 5 degrees of C
+  IntensityByAngle result{};
+  for (int i = 0; i <= steps * finer; ++i) {
+    const double gamma = step * i / finer;
+    double greatest = 0.0;
+    for (int j = 0; j < around; ++j) {
+      const double c = 2.0 * pi * j / around;
+      const Vector3d local(std::sin(gamma) * std::cos(c), std::sin(gamma) * std::sin(c),
+                           -std::cos(gamma));
+      greatest = std::max(greatest, relative_intensity(lamp, lamp.axes * local));
+    }
+    // A direction on the border of two steps counts in both.
+    for (const int k : {i / finer, (i - 1) / finer}) {
+      float& value = result[static_cast<std::size_t>(std::clamp(k, 0, steps - 1))];
+      value = std::max(value, static_cast<float>(greatest));
+    }
+  }
+  return result;
+}
+
+Eigen::AlignedBox3d box_of(const Lamp& lamp) {
+  const Vector3d half = 0.5 * lamp.opening.along_c0 * lamp.axes.col(0).cwiseAbs() +
+                        0.5 * lamp.opening.along_c90 * lamp.axes.col(1).cwiseAbs();
+  return {lamp.position - half, lamp.position + half};
+}
+
+// The smallest cone about two cones: axis and half angle.
+std::pair<Vector3d, double> joined(const Vector3d& a, double of_a, const Vector3d& b, double of_b) {
+  const double between = angle_between(a, b);
+  if (between + of_b <= of_a) return {a, of_a};
+  if (between + of_a <= of_b) return {b, of_b};
+  const double half = 0.5 * (of_a + of_b + between);
+  Vector3d side = b - b.dot(a) * a;
+  if (half >= pi || !(side.norm() > 0.0)) return {a, pi};
+  const double turn = half - of_a;
+  return {std::cos(turn) * a + std::sin(turn) * side.normalized(), half};
+}
+
+}  // namespace
+
+std::vector<LightBound> bounds_of(std::span<const Emitter> emitters) {
+  std::vector<LightBound> bounds;
+  for (std::size_t e = 0; e < emitters.size(); ++e) {
+    const Emitter& emitter = emitters[e];
+    const double M = static_cast<double>(emitter.exitance.mean());
+    if (!(M > 0.0)) continue;
+    LightBound bound{.light = static_cast<int>(e), .axis = emitter.normal};
+    if (emitter.is_sphere) {
+      const Vector3d radius = Vector3d::Constant(emitter.sphere.radius);
+      bound.box = {emitter.sphere.center - radius, emitter.sphere.center + radius};
+      bound.intensity.fill(static_cast<float>(M * emitter.sphere.radius * emitter.sphere.radius));
+    } else {
+      for (const Loop& loop : emitter.loops) {
+        for (const Vector3d& corner : loop) bound.box.extend(corner);
+      }
+      // A picture may be brighter than its mean where a point sees only a part of the facet, which
+      // only single lights are near enough for.
+      bound.intensity = falling(M * emitter.area / pi,
+                                [](double angle) { return std::max(0.0, std::cos(angle)); });
+      if (emitter.emits_both_sides) {
+        for (int k = 0; k < steps / 2; ++k) {
+          bound.intensity[static_cast<std::size_t>(steps - 1 - k)] =
+              bound.intensity[static_cast<std::size_t>(k)];
+        }
+      }
+    }
+    bounds.push_back(bound);
+  }
+  return bounds;
+}
+
+std::vector<LightBound> bounds_of(std::span<const FreeSource> sources, int first) {
+  std::map<const PhotometricWeb*, IntensityByAngle> webs;
+  std::vector<LightBound> bounds;
+  for (std::size_t s = 0; s < sources.size(); ++s) {
+    const auto* light = std::get_if<LampLight>(&sources[s].shape);
+    if (!light || !sources[s].is_on()) continue;
+    const Lamp& lamp = light->lamp;
+    LightBound bound{.light = first + static_cast<int>(s), .box = box_of(lamp), .axis = lamp.aim()};
+    if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) {
+      const auto [known, is_new] = webs.try_emplace(web->get());
+      if (is_new) known->second = greatest_of_web(lamp);
+      bound.intensity = known->second;
+    } else {
+      const Vector3d across = lamp.axes.col(0);
+      bound.intensity = falling(1.0, [&](double angle) {
+        return relative_intensity(lamp, std::cos(angle) * lamp.aim() + std::sin(angle) * across);
+      });
+    }
+    for (float& value : bound.intensity) value *= sources[s].light.mean();
+    bounds.push_back(bound);
+  }
+  return bounds;
+}
+
+LightTree::LightTree(std::vector<LightBound> lights) {
+  nodes_.reserve(2 * lights.size());
+  nodes_.emplace_back();
+  fill(0, lights);
+}
+
+// Halves a group at the median along the longest side of the box about the lights' middles.
+void LightTree::fill(int node, std::span<LightBound> lights) {
+  Node filled;
+  if (lights.size() == 1) {
+    const LightBound& light = lights.front();
+    filled = {
+        .box = light.box, .axis = light.axis, .intensity = light.intensity, .light = light.light};
+  } else {
+    Eigen::AlignedBox3d middles;
+    for (const LightBound& light : lights) middles.extend(light.box.center());
+    Eigen::Index axis = 0;
+    middles.sizes().maxCoeff(&axis);
+    const auto half = lights.begin() + static_cast<std::ptrdiff_t>(lights.size() / 2);
+    std::nth_element(lights.begin(), half, lights.end(),
+                     [&](const LightBound& a, const LightBound& b) {
+                       const double x = a.box.center()[axis], y = b.box.center()[axis];
+                       return x != y ? x < y : a.light < b.light;
+                     });
+    filled.child = static_cast<int>(nodes_.size());
+    nodes_.resize(nodes_.size() + 2);
+    fill(filled.child, {lights.begin(), half});
+    fill(filled.child + 1, {half, lights.end()});
+    const Node &a = nodes_[static_cast<std::size_t>(filled.child)],
+               &b = nodes_[static_cast<std::size_t>(filled.child) + 1];
+    filled.box = a.box.merged(b.box);
+    std::tie(filled.axis, filled.half_angle) = joined(a.axis, a.half_angle, b.axis, b.half_angle);
+    for (std::size_t k = 0; k < filled.intensity.size(); ++k) {
+      filled.intensity[k] = a.intensity[k] + b.intensity[k];
+    }
+  }
+  nodes_[static_cast<std::size_t>(node)] = filled;
+}
+
+LightTree::Seen LightTree::seen(int node, const SurfacePoint& at) const {
+  const Node& n = nodes_[static_cast<std::size_t>(node)];
+  const Vector3d middle = n.box.center(), half = 0.5 * n.box.sizes();
+  const Vector3d to = middle - at.position;
+  const double height = to.dot(at.normal), reach = half.dot(at.normal.cwiseAbs());
+  if (!(height + reach > 0.0)) return {.node = node};
+  const double near = std::sqrt(n.box.squaredExteriorDistance(at.position)), distance = to.norm(),
+               radius = half.norm();
+  // Angles between an axis of a light and directions from the node's box to the point.
+  const double angle = distance > 0.0 ? angle_between(n.axis, -to) : 0.0;
+  const double spread = n.half_angle + (distance > radius ? std::asin(radius / distance) : pi);
+  float greatest = 0.0f;
+  const int last = step_of(std::min(pi, angle + spread));
+  for (int k = step_of(std::max(0.0, angle - spread)); k <= last; ++k) {
+    greatest = std::max(greatest, n.intensity[static_cast<std::size_t>(k)]);
+  }
+  if (!(greatest > 0.0f)) return {.node = node};
+  const double I = static_cast<double>(greatest);
+  const double bound = near > 0.0 ? I * std::min(1.0, (height + reach) / near) / (near * near)
+                                  : std::numeric_limits<double>::infinity();
+  // From within a group, light comes from its middle as from its border.
+  const double away = std::max(distance, radius);
+  const double along = static_cast<double>(n.intensity[static_cast<std::size_t>(step_of(angle))]);
+  const double about =
+      away > 0.0 ? std::max(0.0, along * std::min(1.0, height / away)) / (away * away) : 0.0;
+  return {.node = node, .bound = bound, .about = std::min(about, bound)};
+}
+
+std::array<LightTree::Seen, 2> LightTree::halves(int node, const SurfacePoint& at) const {
+  const int child = nodes_[static_cast<std::size_t>(node)].child;
+  return {seen(child, at), seen(child + 1, at)};
+}
+
+// Bounds of halves hardly add up to more than that of the whole, since the whole's nearest distance
+// and greatest cosine bound those of the halves. So chances in proportion to bounds leave no light
+// that counts much more than the bound of the node.
+LightTree::Draw LightTree::draw(int node, const SurfacePoint& at, double u) const {
+  Draw draw;
+  while (is_group(node)) {
+    const auto [a, b] = halves(node, at);
+    if (!(a.bound + b.bound > 0.0)) return {.light = -1};
+    const double share = a.bound / (a.bound + b.bound);
+    const bool is_first = u < share;
+    u = is_first ? u / share : (u - share) / (1.0 - share);
+    draw.chance *= is_first ? share : 1.0 - share;
+    node = is_first ? a.node : b.node;
+  }
+  draw.light = light(node);
+  return draw;
+}
+
+std::vector<CutPart> light_cut(std::span<const LightTree* const> trees, const SurfacePoint& at,
+                               double share, double light, int most) {
+  std::vector<CutPart> groups, done;
+  double about = 0.0;
+  const auto by_bound = [](const CutPart& a, const CutPart& b) {
+    return a.seen.bound < b.seen.bound;
+  };
+  const auto add = [&](const LightTree* tree, const LightTree::Seen& seen) {
+    if (!(seen.bound > 0.0)) return;
+    about += seen.about;
+    if (!tree->is_group(seen.node)) {
+      done.push_back({tree, seen});
+      return;
+    }
+    groups.push_back({tree, seen});
+    std::push_heap(groups.begin(), groups.end(), by_bound);
+  };
+  for (const LightTree* tree : trees) add(tree, tree->root(at));
+  const auto is_over = [&](const CutPart& part) {
+    // Nothing can be drawn from a group without a finite bound.
+    if (!std::isfinite(part.seen.bound)) return true;
+    return part.seen.bound > share * (light > 0.0 ? light : about) &&
+           static_cast<int>(groups.size() + done.size()) < most;
+  };
+  while (!groups.empty() && is_over(groups.front())) {
+    std::pop_heap(groups.begin(), groups.end(), by_bound);
+    const CutPart whole = groups.back();
+    groups.pop_back();
+    about -= whole.seen.about;
+    for (const LightTree::Seen& half : whole.tree->halves(whole.seen.node, at)) {
+      add(whole.tree, half);
+    }
+  }
+  done.insert(done.end(), groups.begin(), groups.end());
+  return done;
+}
+
+}  // namespace lightwell
