@@ -84,6 +84,7 @@ enum class RandomPurpose : std::uint64_t {
   portal_paths = 0x9047a1,
   // One light in place of all; (key of a query, purpose, channel).
   drawn_lights = 0xd4a3,
+  pilot_lights = 0x9c06,  // (key of a query, purpose)
   light_groups = 0x9c07,  // two members of a group; (key of a query, purpose, node)
 };
 
@@ -142,6 +143,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::part_rays:
     case RandomPurpose::drawn_lights:
     case RandomPurpose::light_groups:
+    case RandomPurpose::pilot_lights:
     case RandomPurpose::side_rays:
     case RandomPurpose::lamp_face_rays:
     case RandomPurpose::part_vectors:

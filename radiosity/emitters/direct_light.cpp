@@ -166,6 +166,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
 }
 
 int DirectLight::channel_of(int light) const {
+  if (channel_count_ == 1) return 0;
   if (is_emitter(light)) return first_column(emitters_[light].facet) / bands_;
   return free_sources_[light - static_cast<int>(emitters_.size())].channel;
 }
@@ -526,45 +527,41 @@ DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const Lig
   return found;
 }
 
-// Shadows of the lights that a query asks. Where most light of a channel is hidden, groups that
-// gave little of the unobstructed light may give much of what is left: the point asks again, with
-// groups that are small against the light that it has found.
-DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster,
-                                          const LightQuery& query) const {
-  constexpr int most_rounds = 3;
-  constexpr double much = 0.5, least = 0.01;  // of the light that was taken as arriving
-  Shadows found = shadows(caster, query, {});
-  std::vector<double> taken;
-  for (int round = 1; round < most_rounds && !query.one_stands_for_all; ++round) {
-    const auto channels = static_cast<std::size_t>(channel_count_);
-    std::vector<double> seen(channels, 0.0), all(channels, 0.0);
-    std::vector<char> has_groups(channels, 0);
-    for (std::size_t i = 0; i < found.lights.size(); ++i) {
-      const LightShadow& s = found.lights[i];
-      const auto channel = static_cast<std::size_t>(s.channel);
-      const double E = s.F * s.light().mean() / s.chance;
-      all[channel] += E;
-      seen[channel] += E * found.tallies[i].share();
-      if (s.group >= 0) has_groups[channel] = 1;
-    }
-    if (taken.empty()) taken = all;
-    bool is_enough = true;
-    for (std::size_t c = 0; c < channels; ++c) {
-      if (has_groups[c] == 0 || seen[c] >= much * taken[c]) continue;
-      taken[c] = std::max(seen[c], least * taken[c]);
-      is_enough = false;
-    }
-    if (is_enough) break;
-    found = shadows(caster, query, taken);
+// The light of each channel that a point gets, about, W/m^2: that of a coarse cut with one shadow
+// ray to each light. Empty if no lights are grouped.
+std::vector<double> DirectLight::pilot_light(const ElementCaster& caster,
+                                             const LightQuery& query) const {
+  const bool has_groups = std::ranges::any_of(
+      trees_, [](const Trees& trees) { return trees.of_emitters || trees.of_lamps; });
+  if (!has_groups || query.one_stands_for_all) return {};
+  constexpr double coarser = 4.0;
+  LightQuery pilot = query;
+  pilot.key = random_key(query.key, RandomPurpose::pilot_lights);
+  pilot.lights = query.lights == Lights::all ? Lights::all_but_dome : query.lights;
+  pilot.shadows = {
+      .min_rays = 1, .max_rays = 1, .group_share = coarser * query.shadows.group_share};
+  const Shadows found = shadows(caster, pilot, {});
+  const auto channels = static_cast<std::size_t>(channel_count_);
+  std::vector<double> seen(channels, 0.0), all(channels, 0.0);
+  for (std::size_t i = 0; i < found.lights.size(); ++i) {
+    const LightShadow& s = found.lights[i];
+    const double E = s.F * s.light().mean() / s.chance;
+    all[static_cast<std::size_t>(s.channel)] += E;
+    seen[static_cast<std::size_t>(s.channel)] += E * found.tallies[i].share();
   }
-  return found;
+  // Where hardly anything is seen, a pilot may have missed more than it has found.
+  constexpr double least = 0.01;
+  for (std::size_t c = 0; c < channels; ++c) seen[c] = std::max(seen[c], least * all[c]);
+  return seen;
 }
 
 template <class Add>
 void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
                                  EmitterVisibility* visibility, Add&& add) const {
   const Receiver receiver{.base = query.base, .relief = query.relief};
-  const auto [shadows, tallies, dome] = this->shadows(caster, query);
+  // Groups are small against the light that arrives, which may be a small part of all light. The
+  // pilot draws other members: a cut that follows from what it draws itself would be biased.
+  const auto [shadows, tallies, dome] = this->shadows(caster, query, pilot_light(caster, query));
   if (visibility) *visibility = {};
   double drawn_noise2 = 0.0;
   if (dome) {

@@ -62,7 +62,7 @@ struct ShadowOptions {
   int sky_rays = 0;
   /// The greatest share of a point's light that a group of lights may give (see LightTree); 0: each
   /// light is asked. A channel of fewer than DirectLight::fewest_grouped lights has no groups.
-  double group_share = 0.005;
+  double group_share = 0.01;
 
   /// True if each light and the sky get one ray at most, without an estimate of the noise.
   bool is_one_ray() const { return max_rays == 1 && sky_rays == 0; }
@@ -224,7 +224,7 @@ class DirectLight {
   struct Shadows;
   Shadows shadows(const ElementCaster& caster, const LightQuery& query,
                   const std::vector<double>& light) const;
-  Shadows shadows(const ElementCaster& caster, const LightQuery& query) const;
+  std::vector<double> pilot_light(const ElementCaster& caster, const LightQuery& query) const;
   Choice one_for_all(int channel, const LightQuery& query) const;
   void add_cut(int channel, Lights lights, const SurfacePoint& at, std::uint64_t key, double share,
                double light, std::vector<Choice>& choices) const;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
-#include <queue>
 
 namespace lightwell {
 namespace {
@@ -16,8 +16,15 @@ using std::numbers::pi;
 constexpr int steps = static_cast<int>(IntensityByAngle{}.size());
 constexpr double step = pi / steps;
 
-int step_of(double angle) {
-  return std::clamp(static_cast<int>(angle / step), 0, steps - 1);
+// The step of an angle, by its cosine: the number of steps whose ends are smaller angles.
+int step_of_cosine(double cosine) {
+  static const std::array<double, steps - 1> ends = [] {
+    std::array<double, steps - 1> cosines{};
+    for (int k = 1; k < steps; ++k) cosines[static_cast<std::size_t>(k) - 1] = std::cos(k * step);
+    return cosines;
+  }();
+  const auto end = std::ranges::lower_bound(ends, cosine, std::greater<>());
+  return static_cast<int>(end - ends.begin());
 }
 
 double angle_between(const Vector3d& a, const Vector3d& b) {
@@ -144,8 +151,11 @@ void LightTree::fill(int node, std::span<LightBound> lights) {
   Node filled;
   if (lights.size() == 1) {
     const LightBound& light = lights.front();
-    filled = {
-        .box = light.box, .axis = light.axis, .intensity = light.intensity, .light = light.light};
+    filled.middle = light.box.center();
+    filled.half = 0.5 * light.box.sizes();
+    filled.axis = light.axis;
+    filled.intensity = light.intensity;
+    filled.light = light.light;
   } else {
     Eigen::AlignedBox3d middles;
     for (const LightBound& light : lights) middles.extend(light.box.center());
@@ -163,40 +173,60 @@ void LightTree::fill(int node, std::span<LightBound> lights) {
     fill(filled.child + 1, {half, lights.end()});
     const Node &a = nodes_[static_cast<std::size_t>(filled.child)],
                &b = nodes_[static_cast<std::size_t>(filled.child) + 1];
-    filled.box = a.box.merged(b.box);
+    const Eigen::AlignedBox3d box = a.box().merged(b.box());
+    filled.middle = box.center();
+    filled.half = 0.5 * box.sizes();
     std::tie(filled.axis, filled.half_angle) = joined(a.axis, a.half_angle, b.axis, b.half_angle);
     for (std::size_t k = 0; k < filled.intensity.size(); ++k) {
       filled.intensity[k] = a.intensity[k] + b.intensity[k];
     }
   }
+  filled.radius = filled.half.norm();
+  filled.cosine = std::cos(filled.half_angle);
+  filled.sine = std::sin(filled.half_angle);
   nodes_[static_cast<std::size_t>(node)] = filled;
+}
+
+// Adds the angles between the node's axis and an axis of a light, and between directions from the
+// node's middle and from another of its points, by their sines and cosines.
+LightTree::Steps LightTree::steps_to(const Node& node, const Vector3d& to, double distance) {
+  constexpr int end = steps - 1;
+  if (!(distance > node.radius)) return {.last = end};
+  const double cos_at = -node.axis.dot(to) / distance,
+               sin_at = std::sqrt(std::max(0.0, 1.0 - cos_at * cos_at));
+  const double sin_ball = node.radius / distance, cos_ball = std::sqrt(1.0 - sin_ball * sin_ball);
+  const double cos_all = node.cosine * cos_ball - node.sine * sin_ball,
+               sin_all = node.sine * cos_ball + node.cosine * sin_ball;
+  Steps result{.last = end, .middle = step_of_cosine(cos_at)};
+  if (sin_all < 0.0) return result;  // more than half a turn
+  if (cos_at < cos_all) result.first = step_of_cosine(cos_at * cos_all + sin_at * sin_all);
+  if (cos_at > -cos_all) result.last = step_of_cosine(cos_at * cos_all - sin_at * sin_all);
+  return result;
+}
+
+double LightTree::greatest(const Node& node, const Steps& steps) {
+  float greatest = 0.0f;
+  for (int k = steps.first; k <= steps.last; ++k) {
+    greatest = std::max(greatest, node.intensity[static_cast<std::size_t>(k)]);
+  }
+  return static_cast<double>(greatest);
 }
 
 LightTree::Seen LightTree::seen(int node, const SurfacePoint& at) const {
   const Node& n = nodes_[static_cast<std::size_t>(node)];
-  const Vector3d middle = n.box.center(), half = 0.5 * n.box.sizes();
-  const Vector3d to = middle - at.position;
-  const double height = to.dot(at.normal), reach = half.dot(at.normal.cwiseAbs());
+  const Vector3d to = n.middle - at.position;
+  const double height = to.dot(at.normal), reach = n.half.dot(at.normal.cwiseAbs());
   if (!(height + reach > 0.0)) return {.node = node};
-  const double near = std::sqrt(n.box.squaredExteriorDistance(at.position)), distance = to.norm(),
-               radius = half.norm();
-  // Angles between an axis of a light and directions from the node's box to the point.
-  const double angle = distance > 0.0 ? angle_between(n.axis, -to) : 0.0;
-  const double spread = n.half_angle + (distance > radius ? std::asin(radius / distance) : pi);
-  float greatest = 0.0f;
-  const int last = step_of(std::min(pi, angle + spread));
-  for (int k = step_of(std::max(0.0, angle - spread)); k <= last; ++k) {
-    greatest = std::max(greatest, n.intensity[static_cast<std::size_t>(k)]);
-  }
-  if (!(greatest > 0.0f)) return {.node = node};
-  const double I = static_cast<double>(greatest);
+  const double near = (to.cwiseAbs() - n.half).cwiseMax(0.0).norm(), distance = to.norm();
+  const Steps steps = steps_to(n, to, distance);
+  const double I = greatest(n, steps);
+  if (!(I > 0.0)) return {.node = node};
   const double bound = near > 0.0 ? I * std::min(1.0, (height + reach) / near) / (near * near)
                                   : std::numeric_limits<double>::infinity();
   // From within a group, light comes from its middle as from its border.
-  const double away = std::max(distance, radius);
-  const double along = static_cast<double>(n.intensity[static_cast<std::size_t>(step_of(angle))]);
-  const double about =
-      away > 0.0 ? std::max(0.0, along * std::min(1.0, height / away)) / (away * away) : 0.0;
+  const double away = std::max(distance, n.radius);
+  const double along = static_cast<double>(n.intensity[static_cast<std::size_t>(steps.middle)]);
+  const double about = away > 0.0 ? along * std::max(0.0, height) / (away * away * away) : 0.0;
   return {.node = node, .bound = bound, .about = std::min(about, bound)};
 }
 
@@ -205,19 +235,31 @@ std::array<LightTree::Seen, 2> LightTree::halves(int node, const SurfacePoint& a
   return {seen(child, at), seen(child + 1, at)};
 }
 
-// Bounds of halves hardly add up to more than that of the whole, since the whole's nearest distance
-// and greatest cosine bound those of the halves. So chances in proportion to bounds leave no light
-// that counts much more than the bound of the node.
+// Halves are weighed by the intensity that the group's steps bound, and by cosine and distance of
+// their middles. The weight is 0 only where the bound is.
 LightTree::Draw LightTree::draw(int node, const SurfacePoint& at, double u) const {
+  const Node& group = nodes_[static_cast<std::size_t>(node)];
+  const Vector3d to_group = group.middle - at.position;
+  const Steps steps = steps_to(group, to_group, to_group.norm());
+  const Vector3d up = at.normal.cwiseAbs();
+  const auto weight = [&](const Node& n) {
+    const Vector3d to = n.middle - at.position;
+    const double height = to.dot(at.normal) + n.half.dot(up);
+    if (!(height > 0.0)) return 0.0;
+    const double away = std::max(to.norm(), n.radius);
+    return greatest(n, steps) * height / (away * away * away);
+  };
   Draw draw;
   while (is_group(node)) {
-    const auto [a, b] = halves(node, at);
-    if (!(a.bound + b.bound > 0.0)) return {.light = -1};
-    const double share = a.bound / (a.bound + b.bound);
+    const int child = nodes_[static_cast<std::size_t>(node)].child;
+    const double first = weight(nodes_[static_cast<std::size_t>(child)]),
+                 second = weight(nodes_[static_cast<std::size_t>(child) + 1]);
+    if (!(first + second > 0.0)) return {.light = -1};
+    const double share = first / (first + second);
     const bool is_first = u < share;
     u = is_first ? u / share : (u - share) / (1.0 - share);
     draw.chance *= is_first ? share : 1.0 - share;
-    node = is_first ? a.node : b.node;
+    node = is_first ? child : child + 1;
   }
   draw.light = light(node);
   return draw;

@@ -53,21 +53,31 @@ class LightTree {
     int light = 0;  ///< -1: one of those that give nothing
     double chance = 1.0;
   };
-  /// Draws a light in proportion to about its bound, for u in [0,1). What the light gives, over the
-  /// chance, is hardly more than the node's bound. Precondition: the bound is above 0 and finite.
+  /// Draws a light in proportion to about what it may give, for u in [0,1). What the light gives,
+  /// over the chance, is hardly more than the node's bound. Precondition: the bound is above 0 and
+  /// finite.
   Draw draw(int node, const SurfacePoint& at, double u) const;
 
  private:
   struct Node {
-    Eigen::AlignedBox3d box{};
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  // of the cone of all axes
-    double half_angle = 0.0;                          // of that cone, radians
-    IntensityByAngle intensity{};                     // sum over lights
-    int child = -1;                                   // of two; -1: one light
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero(), half = middle;  // of the box
+    double radius = 0.0;                                              // of the ball about it
+    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();                  // of the cone of all axes
+    double half_angle = 0.0, cosine = 1.0, sine = 0.0;                // of that cone
+    IntensityByAngle intensity{};                                     // sum over lights
+    int child = -1;                                                   // of two; -1: one light
     int light = 0;
+
+    Eigen::AlignedBox3d box() const { return {middle - half, middle + half}; }
+  };
+  // Steps of IntensityByAngle, first to last, into which a point may lie; and that of the middle.
+  struct Steps {
+    int first = 0, last = 0, middle = 0;
   };
   void fill(int node, std::span<LightBound> lights);
   Seen seen(int node, const SurfacePoint& at) const;
+  static Steps steps_to(const Node& node, const Eigen::Vector3d& to, double distance);
+  static double greatest(const Node& node, const Steps& steps);
 
   std::vector<Node> nodes_{};
 };

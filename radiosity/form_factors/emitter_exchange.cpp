@@ -97,10 +97,11 @@ void EmitterExchange::add_to_patches(int emitter, bool behind, const SurfacePoin
 }
 
 // Adds what a point that stands for `area` exchanges with the emitters that it asks for.
-void EmitterExchange::add_point(const SurfacePoint& at, std::uint64_t key, double area,
+void EmitterExchange::add_point(const SurfacePoint& at, std::uint64_t key, int number, double area,
                                 const FormFactorOptions& options, Found& found) const {
   const double share = options.shadows.group_share;
-  for (const auto& [e, chance, group] : direct_light_.chosen_emitters(at, key, share)) {
+  for (const auto& [e, chance, group] : direct_light_.chosen_emitters(
+           at, random_key(key, static_cast<std::uint64_t>(number)), share)) {
     if (is_left_to_rays_[e]) continue;
     const Emitter& emitter = direct_light_.emitters()[e];
     const bool behind =
@@ -110,8 +111,7 @@ void EmitterExchange::add_point(const SurfacePoint& at, std::uint64_t key, doubl
     const double exchange =
         area / chance *
         direct_light_.form_factor(
-            emitter, caster_,
-            {.at = at, .key = random_key(key, static_cast<std::uint64_t>(e)), .shadows = shadows});
+            emitter, caster_, {.at = at, .key = random_key(key, number, e), .shadows = shadows});
     if (!(exchange > 0.0)) continue;
     found.add(2 * e + behind, exchange);
     if (emitter.picture) add_to_patches(e, behind, at, exchange, found);
@@ -127,9 +127,8 @@ EmitterExchange::Row EmitterExchange::row_of(int patch, const SobolPoints& sobol
   for (int s = 0; s < sobol.count(); ++s) {
     const Eigen::Array4f u = sobol.point(s, key);
     const PatchPoint at = sampler.point(u[0], u[1]);
-    add_point({at.position, at.normal, mesh_.facet[at.element]},
-              random_key(key, static_cast<std::uint64_t>(s)), mesh_.area[patch] / sobol.count(),
-              options, found);
+    add_point({at.position, at.normal, mesh_.facet[at.element]}, key, s,
+              mesh_.area[patch] / sobol.count(), options, found);
   }
   return found.rows();
 }

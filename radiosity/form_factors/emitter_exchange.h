@@ -32,7 +32,7 @@ class EmitterExchange {
   using Row = std::vector<FormFactor>;
   /// The exchange areas that the points of a patch have found, by row.
   class Found;
-  void add_point(const SurfacePoint& at, std::uint64_t key, double area,
+  void add_point(const SurfacePoint& at, std::uint64_t key, int number, double area,
                  const FormFactorOptions& options, Found& found) const;
   void add_to_patches(int emitter, bool behind, const SurfacePoint& at, double exchange,
                       Found& found) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -93,9 +94,12 @@ struct Sums {
       : straight(Eigen::ArrayXd::Zero(mesh.patch_count())),
         by_specular(Eigen::ArrayXXd::Zero(bands, mesh.patch_count())),
         absorbed(Eigen::ArrayXd::Zero(bands)),
-        escaped(absorbed) {}
+        escaped(absorbed),
+        is_met(static_cast<std::size_t>(mesh.patch_count()), 0) {}
 
   void add(const CastPiece& piece) {
+    for (const Arrival& at : piece.straight) touch(at.patch);
+    for (const PassedOn& at : piece.by_specular) touch(at.patch);
     sent += piece.sent;
     missed += piece.missed;
     met_black += piece.met_black;
@@ -107,10 +111,32 @@ struct Sums {
     }
   }
 
+  // Makes the sums zero. Only patches that were met have any.
+  void clear() {
+    for (const int patch : met) {
+      straight[patch] = 0.0;
+      by_specular.col(patch).setZero();
+      is_met[static_cast<std::size_t>(patch)] = 0;
+    }
+    met.clear();
+    sent = missed = met_black = 0.0;
+    absorbed.setZero();
+    escaped.setZero();
+  }
+
   double sent = 0.0, missed = 0.0, met_black = 0.0;
   Eigen::ArrayXd straight;
   Eigen::ArrayXXd by_specular;  // bands x patches
   Eigen::ArrayXd absorbed, escaped;
+  std::vector<int> met{};  // patches
+
+ private:
+  void touch(int patch) {
+    char& known = is_met[static_cast<std::size_t>(patch)];
+    if (known == 0) met.push_back(patch);
+    known = 1;
+  }
+  std::vector<char> is_met;
 };
 
 class Collector {
@@ -123,26 +149,49 @@ class Collector {
         Eigen::ArrayXd::Zero(columns);
   }
 
-  void cast(const FreeSource& source, int rays) {
-    const SobolPoints sobol(rays);
-    const auto key =
-        random_key(static_cast<std::uint64_t>(source.number), RandomPurpose::free_source_rays);
-    // Slices bound the memory of results that wait to be added in order.
+  /// A source and the number of its rays.
+  struct Shot {
+    const FreeSource* source = nullptr;
+    int rays = 0;
+  };
+
+  // Casts the rays of many sources side by side, and adds what they find in order.
+  void cast(std::span<const Shot> shots) {
+    // Slices bound the memory of results that wait to be added.
     constexpr int piece_rays = 1 << 13, slice = 16;
-    const int count = (rays + piece_rays - 1) / piece_rays;
+    struct Piece {
+      const Shot* shot = nullptr;
+      int first = 0;
+    };
+    std::vector<Piece> pieces;
+    int most = 1;
+    for (const Shot& shot : shots) {
+      most = std::max(most, shot.rays);
+      for (int from = 0; from < shot.rays; from += piece_rays) pieces.push_back({&shot, from});
+    }
+    const SobolPoints sobol(most);
     Sums sums(caster_.mesh(), bands_);
-    for (int first = 0; first < count; first += slice) {
-      std::vector<CastPiece> pieces(static_cast<std::size_t>(std::min(slice, count - first)));
-      parallel_for(static_cast<int>(pieces.size()), 1, [&](int begin, int end) {
+    for (std::size_t first = 0; first < pieces.size(); first += slice) {
+      const std::size_t count = std::min<std::size_t>(slice, pieces.size() - first);
+      std::vector<CastPiece> found(count);
+      parallel_for(static_cast<int>(count), 1, [&](int begin, int end) {
         for (int p = begin; p < end; ++p) {
-          const int from = (first + p) * piece_rays;
-          pieces[static_cast<std::size_t>(p)] = cast_piece(source, caster_, paths_, sobol, key,
-                                                           from, std::min(rays, from + piece_rays));
+          const auto& [shot, from] = pieces[first + static_cast<std::size_t>(p)];
+          const auto key = random_key(static_cast<std::uint64_t>(shot->source->number),
+                                      RandomPurpose::free_source_rays);
+          found[static_cast<std::size_t>(p)] =
+              cast_piece(*shot->source, caster_, paths_, sobol, key, from,
+                         std::min(shot->rays, from + piece_rays));
         }
       });
-      for (const CastPiece& piece : pieces) sums.add(piece);
+      for (std::size_t p = 0; p < count; ++p) {
+        const Shot* shot = pieces[first + p].shot;
+        sums.add(found[p]);
+        if (first + p + 1 < pieces.size() && pieces[first + p + 1].shot == shot) continue;
+        if (sums.sent > 0.0) add(*shot->source, sums);
+        sums.clear();
+      }
     }
-    if (sums.sent > 0.0) add(source, sums);
   }
 
   // Light of sky and sun at points all over each patch, straight or through clear panes. The
@@ -215,7 +264,7 @@ class Collector {
     const Eigen::ArrayXd watts = total_weight(source) / sums.sent * source.light.cast<double>();
     const auto of = [&](Eigen::ArrayXd& sum) { return sum.segment(column, bands_); };
     Eigen::ArrayXXd& power = source.is_distant() ? from_afar_ : of_lamps_;
-    for (Eigen::Index i = 0; i < power.cols(); ++i) {
+    for (const int i : sums.met) {
       power.col(i).segment(column, bands_) += watts * (sums.straight[i] + sums.by_specular.col(i));
     }
     if (source.is_distant()) return;  // see receive()
@@ -292,21 +341,30 @@ FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const
   double all = 0.0;
   for (const FreeSource& source : sources) all += source.is_distant() ? 0.0 : power(source);
   Collector collector(caster, paths, direct_light);
-  double done = 0.0;
+  // Few rays of each suffice where many lamps make up for each other's noise.
+  constexpr double fewest_of_many = 64.0, times = 4.0;
+  const double fewest = std::clamp<double>(times * rays / static_cast<double>(sources.size()),
+                                           fewest_of_many, fewest_free_rays);
+  std::vector<Collector::Shot> shots;
   for (const FreeSource& source : sources) {
     if (!source.is_on() || source.is_distant()) continue;
-    report(progress, "lamps", done / all);
     const double due = rays * (power(source) / all);
-    const auto count =
-        static_cast<unsigned>(std::clamp<double>(due, fewest_free_rays, most_free_rays));
-    collector.cast(source, static_cast<int>(std::bit_ceil(count)));
-    done += power(source);
+    const auto count = static_cast<unsigned>(std::clamp<double>(due, fewest, most_free_rays));
+    shots.push_back({.source = &source, .rays = static_cast<int>(std::bit_ceil(count))});
+  }
+  constexpr std::size_t between_reports = 64;
+  for (std::size_t first = 0; first < shots.size(); first += between_reports) {
+    report(progress, "lamps", static_cast<double>(first) / static_cast<double>(shots.size()));
+    collector.cast(
+        std::span(shots).subspan(first, std::min(between_reports, shots.size() - first)));
   }
   report(progress, "lamps", 1.0);
   if (!sources.back().is_distant()) return collector.result();
   const FreeSource& last = sources.back();
   if (paths.has_specular() && last.is_on() && !last.is_dome()) {
-    collector.cast(last, static_cast<int>(std::bit_ceil(static_cast<unsigned>(rays))));
+    const Collector::Shot shot{
+        .source = &last, .rays = static_cast<int>(std::bit_ceil(static_cast<unsigned>(rays)))};
+    collector.cast({&shot, 1});
   }
   collector.receive(scene, direct_light, progress);
   return collector.result();

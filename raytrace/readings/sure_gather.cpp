@@ -126,7 +126,8 @@ class SureGather {
     return {.min_rays = scaled(options_.shadows.min_rays),
             .max_rays = scaled(options_.shadows.max_rays),
             .sky_rays = rays,
-            .group_share = options_.shadows.group_share / std::max(1.0, share)};
+            // A point can afford what a thousand vertices cannot.
+            .group_share = 0.1 * options_.shadows.group_share / std::max(1.0, share)};
   }
 
   // Gathers a part at points, those with equally many rays together.

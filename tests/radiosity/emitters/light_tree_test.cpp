@@ -1,0 +1,263 @@
+#include "radiosity/emitters/light_tree.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+
+#include "mesh/build_patches.h"
+#include "mesh/elements/element_caster.h"
+#include "scene/sampling.h"
+#include "tests/radiosity/test_scenes.h"
+
+namespace lightwell::light_tree_test {
+namespace {
+
+using Eigen::Vector3d;
+
+double uniform(int k, int use) {
+  return random_uniform(random_key(static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(use)));
+}
+
+Vector3d direction(int k, int use) {
+  const double z = 2.0 * uniform(k, use) - 1.0, phi = 2.0 * std::numbers::pi * uniform(k, use + 1);
+  const double r = std::sqrt(1.0 - z * z);
+  return {r * std::cos(phi), r * std::sin(phi), z};
+}
+
+/// A black hall of 20 x 20 x 6 m with screens, `panels` that face everywhere and `lamps`, a third
+/// of which are spots and a third have openings.
+struct Hall {
+  Scene scene;
+  PatchMesh mesh;
+
+  Hall(int panels, int lamps) {
+    const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+    test::add_box(scene, {-10, -10, 0}, {10, 10, 6}, {black, black, black, black, black, black},
+                  true);
+    const int screens = 6;
+    for (int k = 0; k < screens; ++k) {
+      const double x = -8.0 + 3.0 * k;
+      test::add_box(scene, {x, -4, 1}, {x + 0.2, 4, 4}, {black, black, black, black, black, black},
+                    false);
+    }
+    for (int k = 0; k < panels; ++k) {
+      const float M = 1.0f + 9.0f * static_cast<float>(uniform(k, 1));
+      const int bright = test::add_material(scene, test::diffuse(scene.bands, 0.0f, M));
+      const Vector3d at = place(k, 2), normal = direction(k, 5);
+      Vector3d a, b;
+      tangent_frame(normal, a, b);
+      const double h = 0.02 + 0.1 * uniform(k, 7);
+      test::add_polygon(
+          scene, "panel" + std::to_string(k), bright,
+          {at - h * a - h * b, at + h * a - h * b, at + h * a + h * b, at - h * a + h * b});
+    }
+    for (int k = 0; k < lamps; ++k) {
+      Lamp lamp{.name = "lamp" + std::to_string(k),
+                .position = place(k, 12),
+                .axes = lamp_axes(direction(k, 15)),
+                .intensity = constant_spectrum(scene.bands,
+                                               1.0f + 9.0f * static_cast<float>(uniform(k, 17)))};
+      if (k % 3 == 0) lamp.shape = SpotCone{.inner = 0.2, .outer = 0.3 + uniform(k, 18)};
+      if (k % 3 == 1) lamp.opening = {.along_c0 = 0.6 * uniform(k, 19), .along_c90 = 0.1};
+      scene.lamps.push_back(lamp);
+    }
+    mesh = build_patches(scene, {.max_patch_size = 4.0, .elements_per_patch_edge = 1});
+  }
+
+  static Vector3d place(int k, int use) {
+    return {-9.5 + 19.0 * uniform(k, use), -9.5 + 19.0 * uniform(k, use + 1),
+            4.2 + 1.5 * uniform(k, use + 2)};
+  }
+};
+
+SurfacePoint point(int k) {
+  return {.position = {-9.0 + 18.0 * uniform(k, 30), -9.0 + 18.0 * uniform(k, 31),
+                       0.1 + 4.0 * uniform(k, 32)},
+          .normal = direction(k, 33),
+          .facet = -1};
+}
+
+/// What each light gives a point without occluders, mean of the bands, W/m^2.
+std::vector<double> unoccluded(const DirectLight& light, const SurfacePoint& at) {
+  std::vector<double> E;
+  for (const Emitter& emitter : light.emitters()) {
+    E.push_back(light.unoccluded_form_factor(emitter, at) * emitter.exitance.mean());
+  }
+  for (const FreeSource& source : light.free_sources()) {
+    E.push_back(unoccluded_kernel(source, at.position, at.normal) * source.light.mean());
+  }
+  return E;
+}
+
+LightTree tree_of(const DirectLight& light) {
+  std::vector<LightBound> bounds = bounds_of(light.emitters());
+  const auto of_lamps = bounds_of(light.free_sources(), static_cast<int>(light.emitters().size()));
+  bounds.insert(bounds.end(), of_lamps.begin(), of_lamps.end());
+  return LightTree(std::move(bounds));
+}
+
+/// Checks the bound of a node and of all nodes below; returns the light of the node.
+double expect_bounded(const LightTree& tree, const LightTree::Seen& seen, const SurfacePoint& at,
+                      const std::vector<double>& E) {
+  double sum = 0.0;
+  if (tree.is_group(seen.node)) {
+    for (const auto& half : tree.halves(seen.node, at)) sum += expect_bounded(tree, half, at, E);
+  } else {
+    sum = E[static_cast<std::size_t>(tree.light(seen.node))];
+  }
+  // Intensities are floats.
+  EXPECT_LE(sum, seen.bound * (1.0 + 1e-6) + 1e-12) << "node " << seen.node;
+  return sum;
+}
+
+TEST(LightTree, NoNodeGivesMoreThanItsBound) {
+  const Hall hall(60, 60);
+  const DirectLight light(hall.scene, hall.mesh);
+  const LightTree tree = tree_of(light);
+  for (int k = 0; k < 200; ++k) {
+    const SurfacePoint at = point(k);
+    const std::vector<double> E = unoccluded(light, at);
+    double all = 0.0;
+    for (const double of_one : E) all += of_one;
+    EXPECT_NEAR(expect_bounded(tree, tree.root(at), at, E), all, 1e-9 * all);
+  }
+}
+
+// The chances of the lights of a group, with those of none, add up to 1, and each light that gives
+// something has one: the mean of light over chance is then the light of the group.
+TEST(LightTree, DrawsEveryLightByItsChance) {
+  const Hall hall(20, 20);
+  const DirectLight light(hall.scene, hall.mesh);
+  const LightTree tree = tree_of(light);
+  const LightTree* const trees = &tree;
+  int groups = 0;
+  for (int k = 0; k < 20; ++k) {
+    const SurfacePoint at = point(k);
+    const std::vector<double> E = unoccluded(light, at);
+    for (const CutPart& part : light_cut({&trees, 1}, at, 0.2, 0.0, 1 << 20)) {
+      if (!tree.is_group(part.seen.node)) continue;
+      ++groups;
+      // The chances follow from how often each light is drawn, to 1/draws at each of its ends.
+      constexpr int draws = 1 << 14;
+      std::map<int, double> drawn, chance;
+      for (int i = 0; i < draws; ++i) {
+        const LightTree::Draw draw = tree.draw(part.seen.node, at, (i + 0.5) / draws);
+        drawn[draw.light] += 1.0 / draws;
+        chance[draw.light] = draw.chance;
+      }
+      for (const auto& [number, share] : drawn) {
+        if (number < 0) continue;
+        EXPECT_NEAR(share, chance[number], 2.0 / draws);
+        // Weights hold cosines and distances of middles, where bounds hold the nearest point's.
+        EXPECT_LE(E[static_cast<std::size_t>(number)] / chance[number], 4.0 * part.seen.bound);
+      }
+    }
+  }
+  EXPECT_GT(groups, 20);
+}
+
+TEST(LightTree, CutsHaveNoGroupAboveTheShare) {
+  const Hall hall(100, 100);
+  const DirectLight light(hall.scene, hall.mesh);
+  const LightTree tree = tree_of(light);
+  const LightTree* const trees = &tree;
+  for (int k = 0; k < 50; ++k) {
+    const SurfacePoint at = point(k);
+    std::size_t before = 0;
+    for (const double share : {0.1, 0.02, 0.0}) {
+      const std::vector<CutPart> cut = light_cut({&trees, 1}, at, share, 7.0, 1 << 20);
+      for (const CutPart& part : cut) {
+        if (!tree.is_group(part.seen.node)) continue;
+        EXPECT_LE(part.seen.bound, share * 7.0);
+      }
+      EXPECT_GE(cut.size(), before);
+      before = cut.size();
+    }
+    // Single lights alone, as far as they give anything.
+    for (const CutPart& part : light_cut({&trees, 1}, at, 0.0, 7.0, 1 << 20)) {
+      EXPECT_FALSE(tree.is_group(part.seen.node));
+    }
+  }
+}
+
+TEST(LightTree, ManyLightsAtOnePlaceAreGrouped) {
+  std::vector<LightBound> lights(1000);
+  for (int k = 0; k < 1000; ++k) {
+    lights[k].light = k;
+    lights[k].box = {Vector3d(1, 2, 3), Vector3d(1, 2, 3)};
+    lights[k].intensity.fill(2.0f);
+  }
+  const LightTree tree(std::move(lights));
+  const SurfacePoint at{.position = {1, 2, 0}, .normal = Vector3d::UnitZ()};
+  const LightTree::Seen root = tree.root(at);
+  EXPECT_NEAR(root.bound, 1000 * 2.0 / 9.0, 1e-9);
+  EXPECT_NEAR(root.about, root.bound, 1e-9);
+  const LightTree::Draw draw = tree.draw(root.node, at, 0.75);
+  EXPECT_NEAR(draw.chance, 1e-3, 1e-9);
+}
+
+// 300 panels and 300 lamps behind screens: the mean over keys is the sum over all lights, and the
+// noise is what drawn_noise says.
+TEST(LightTree, GroupsGiveTheLightOfAllInTheMean) {
+  const Hall hall(300, 300);
+  const ElementCaster caster(hall.mesh);
+  const DirectLight light(hall.scene, hall.mesh);
+  ASSERT_TRUE(light.groups_emitters());
+  constexpr int keys = 64;
+  const auto by_key = [&](const SurfacePoint& at, double share, double& said) {
+    Eigen::ArrayXd E(keys);
+    said = 0.0;
+    for (int i = 0; i < keys; ++i) {
+      EmitterVisibility visibility;
+      const LightQuery query{.at = at,
+                             .key = static_cast<std::uint64_t>(i),
+                             .shadows = {.min_rays = 64, .max_rays = 256, .group_share = share}};
+      E[i] = light.irradiance(caster, query, &visibility).mean();
+      said += visibility.drawn_noise * visibility.drawn_noise / keys;
+    }
+    return E;
+  };
+  const auto variance = [](const Eigen::ArrayXd& E) {
+    return (E - E.mean()).square().sum() / (keys - 1);
+  };
+  double said = 0.0, found = 0.0;
+  int lit = 0;
+  for (int k = 0; k < 24; ++k) {
+    const SurfacePoint at = point(k);
+    double none = 0.0, of_groups = 0.0;
+    const Eigen::ArrayXd all = by_key(at, 0.0, none), grouped = by_key(at, 0.02, of_groups);
+    if (!(all.mean() > 0.0)) continue;
+    ++lit;
+    EXPECT_EQ(none, 0.0);
+    // Four standard errors of both means.
+    EXPECT_NEAR(grouped.mean(), all.mean(),
+                4.0 * std::sqrt((variance(all) + variance(grouped)) / keys))
+        << k;
+    const double squared = all.mean() * all.mean();
+    said += of_groups / squared;
+    found += std::max(0.0, variance(grouped) - variance(all)) / squared;
+  }
+  EXPECT_GT(lit, 12);
+  // Members from two halves of the chances differ by more than members drawn apart.
+  EXPECT_GT(said, 0.5 * found);
+  EXPECT_LT(said, 8.0 * found);
+}
+
+TEST(LightTree, FewLightsHaveNoGroups) {
+  const Hall hall(20, 20);
+  const ElementCaster caster(hall.mesh);
+  const DirectLight light(hall.scene, hall.mesh);
+  EXPECT_FALSE(light.groups_emitters());
+  const ShadowOptions fine{.group_share = 0.0}, coarse{.group_share = 0.5};
+  for (int k = 0; k < 20; ++k) {
+    const Spectrum a = light.irradiance(caster, {.at = point(k), .shadows = fine}),
+                   b = light.irradiance(caster, {.at = point(k), .shadows = coarse});
+    EXPECT_TRUE((a == b).all());
+  }
+}
+
+}  // namespace
+}  // namespace lightwell::light_tree_test
