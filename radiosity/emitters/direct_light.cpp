@@ -11,7 +11,6 @@
 #include "radiosity/emitters/emitter_shadows.h"
 #include "radiosity/emitters/exact_shadows.h"
 #include "radiosity/emitters/find_emitters.h"
-#include "radiosity/emitters/light_tree.h"
 #include "radiosity/emitters/sky_light.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"
@@ -135,9 +134,6 @@ void find_share(const ExactShadows& exact, const ElementCaster& caster, const Su
   if (!shadow.share) shadow.sampler = SolidAngleSampler(*shadow.emitter, at.position);
 }
 
-// The most parts of a cut: one of point lamps costs less than a hundred rays of a hemisphere.
-constexpr int most_cut_parts = 2048;
-
 }  // namespace
 
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
@@ -163,50 +159,6 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
   }
   exact_ = like ? like->exact_ : std::make_shared<const ExactShadows>(scene, mesh, emitters_);
   group_lights();
-}
-
-int DirectLight::channel_of(int light) const {
-  if (channel_count_ == 1) return 0;
-  if (is_emitter(light)) return first_column(emitters_[light].facet) / bands_;
-  return free_sources_[light - static_cast<int>(emitters_.size())].channel;
-}
-
-void DirectLight::group_lights() {
-  const auto channels = static_cast<std::size_t>(channel_count_);
-  std::vector<std::vector<LightBound>> emitters(channels), lamps(channels);
-  for (const LightBound& bound : bounds_of(emitters_)) {
-    emitters[static_cast<std::size_t>(channel_of(bound.light))].push_back(bound);
-  }
-  for (const LightBound& bound : bounds_of(free_sources_, static_cast<int>(emitters_.size()))) {
-    lamps[static_cast<std::size_t>(channel_of(bound.light))].push_back(bound);
-  }
-  trees_.resize(channels);
-  std::vector<char> is_grouped(static_cast<std::size_t>(light_count()), 0);
-  const auto tree_of = [&](std::vector<LightBound>& bounds) -> std::shared_ptr<const LightTree> {
-    if (bounds.size() < fewest_grouped) return nullptr;
-    for (const LightBound& bound : bounds) is_grouped[static_cast<std::size_t>(bound.light)] = 1;
-    return std::make_shared<const LightTree>(std::move(bounds));
-  };
-  for (std::size_t c = 0; c < channels; ++c) {
-    trees_[c] = {.of_emitters = tree_of(emitters[c]), .of_lamps = tree_of(lamps[c])};
-  }
-  few_.resize(channels);
-  for (int i = 0; i < light_count(); ++i) {
-    if (is_grouped[static_cast<std::size_t>(i)] != 0) continue;
-    few_[static_cast<std::size_t>(channel_of(i))].push_back(i);
-  }
-}
-
-bool DirectLight::is_on(int light) const {
-  const Spectrum& L = is_emitter(light)
-                          ? emitters_[light].exitance
-                          : free_sources_[light - static_cast<int>(emitters_.size())].light;
-  return (L > 0.0f).any();
-}
-
-bool DirectLight::groups_emitters() const {
-  return std::ranges::any_of(trees_,
-                             [](const Trees& trees) { return trees.of_emitters != nullptr; });
 }
 
 double DirectLight::unoccluded_form_factor(const Emitter& emitter, const SurfacePoint& at) const {
@@ -264,17 +216,6 @@ const FreeSource* DirectLight::dome() const {
   const auto found = std::find_if(free_sources_.begin(), free_sources_.end(),
                                   [](const FreeSource& source) { return source.is_dome(); });
   return found == free_sources_.end() ? nullptr : &*found;
-}
-
-// Emitters come first, then lamps, then sky and sun.
-int DirectLight::first_light(Lights lights) const {
-  std::size_t first = 0;
-  if (lights == Lights::free || lights == Lights::distant) first = emitters_.size();
-  if (lights == Lights::distant) {
-    first += static_cast<std::size_t>(
-        std::ranges::count_if(free_sources_, [](const auto& s) { return !s.is_distant(); }));
-  }
-  return static_cast<int>(first);
 }
 
 // The light of the sky's dome at scale 1; the scale is `full`.
@@ -357,127 +298,6 @@ double DirectLight::relief_gain(const SurfacePoint& at, const ReliefSlope& relie
 Eigen::ArrayXd DirectLight::base_gains(const SurfacePoint& at, const CoatedBase& base) const {
   const Eigen::ArrayX2d sum = light_with_factor(at, {.base = &base});
   return (sum.col(1) > 0.0).select(sum.col(0) / sum.col(1), 1.0);
-}
-
-// About what a light would give at a point without occluders, mean of the bands, W/m^2.
-double DirectLight::approximate_light(int light, const SurfacePoint& at) const {
-  const auto& [point, normal, facet] = at;
-  const auto emitter_count = static_cast<int>(emitters_.size());
-  if (light >= emitter_count) {
-    const FreeSource& source = free_sources_[light - emitter_count];
-    const SourceSample middle = sample_source(source, point, 0.5, 0.5);
-    return std::max(0.0, middle.direction.dot(normal)) * middle.irradiance *
-           static_cast<double>(source.light.mean());
-  }
-  const Emitter& emitter = emitters_[light];
-  const Eigen::Vector3d to = emitter.center - point;
-  const double above = to.dot(normal) + emitter.radius;
-  if (facet == emitter.facet || !(above > 0.0)) return 0.0;
-  const double cosine = std::min(1.0, above / std::hypot(to.norm(), emitter.radius));
-  return cosine * approximate_kernel(emitter, point) * emitter.area * std::numbers::inv_pi *
-         static_cast<double>(emitter.exitance.mean());
-}
-
-// Adds the parts of a cut through the trees of a channel: single lights, and two members of each
-// group. The two halves of the chances that they are drawn from show what drawing leaves to chance.
-void DirectLight::add_cut(int channel, Lights lights, const SurfacePoint& at, std::uint64_t key,
-                          double share, double light, std::vector<Choice>& choices) const {
-  const auto& [of_emitters, of_lamps] = trees_[static_cast<std::size_t>(channel)];
-  std::vector<const LightTree*> trees;
-  const bool has_emitters = lights != Lights::free && lights != Lights::distant;
-  const bool has_lamps = lights != Lights::emitters && lights != Lights::distant;
-  if (of_emitters && has_emitters) trees.push_back(of_emitters.get());
-  if (of_lamps && has_lamps) trees.push_back(of_lamps.get());
-  if (trees.empty()) return;
-  int group = choices.empty() ? 0 : choices.back().group + 1;
-  for (const CutPart& part : light_cut(trees, at, share, light, most_cut_parts)) {
-    const int node = part.seen.node;
-    if (!part.tree->is_group(node)) {
-      choices.push_back({.light = part.tree->light(node)});
-      continue;
-    }
-    const bool is_of_lamps = part.tree == of_lamps.get();
-    const double u = random_uniform(random_key(key, RandomPurpose::light_groups,
-                                               2 * static_cast<std::uint64_t>(node) + is_of_lamps));
-    for (const double from : {0.0, 0.5}) {
-      const LightTree::Draw draw = part.tree->draw(node, at, from + 0.5 * u);
-      choices.push_back({.light = draw.light, .chance = 2.0 * draw.chance, .group = group});
-    }
-    ++group;
-  }
-}
-
-std::vector<DirectLight::Choice> DirectLight::chosen_emitters(const SurfacePoint& at,
-                                                              std::uint64_t key,
-                                                              double share) const {
-  std::vector<Choice> choices;
-  for (int c = 0; c < channel_count_; ++c) {
-    for (const int light : few_[static_cast<std::size_t>(c)]) {
-      if (is_emitter(light)) choices.push_back({.light = light});
-    }
-    add_cut(c, Lights::emitters, at, key, share, 0.0, choices);
-  }
-  std::erase_if(choices, [](const Choice& choice) { return choice.light < 0; });
-  return choices;
-}
-
-// The light of a channel that stands for all but the sky's dome. Each candidate has a part of the
-// chance whatever its estimate, since the middle of a light may lie below the horizon or outside of
-// a beam of which other points see a part.
-DirectLight::Choice DirectLight::one_for_all(int channel, const LightQuery& query) const {
-  constexpr double even = 0.1, coarse = 0.1;
-  std::vector<Choice> choices;
-  std::vector<double> weight;
-  for (const int light : few_[static_cast<std::size_t>(channel)]) {
-    const bool is_dome =
-        !is_emitter(light) && free_sources_[light - static_cast<int>(emitters_.size())].is_dome();
-    if (light < first_light(query.lights) || is_dome || !is_on(light)) continue;
-    choices.push_back({.light = light});
-  }
-  add_cut(channel, query.lights, query.at, query.key, coarse, 0.0, choices);
-  double sum = 0.0;
-  for (const Choice& choice : choices) {
-    weight.push_back(choice.light < 0 ? 0.0
-                                      : approximate_light(choice.light, query.at) / choice.chance);
-    sum += weight.back();
-  }
-  if (choices.empty()) return {.light = -1};
-  const auto count = static_cast<double>(choices.size());
-  const double by_weight = sum > 0.0 ? (1.0 - even) / sum : 0.0;
-  const double by_number = sum > 0.0 ? even / count : 1.0 / count;
-  double left = random_uniform(
-      random_key(query.key, RandomPurpose::drawn_lights, static_cast<std::uint64_t>(channel)));
-  std::size_t k = 0;
-  double chance = by_weight * weight[k] + by_number;
-  while (k + 1 < choices.size() && left >= chance) {
-    left -= chance;
-    chance = by_weight * weight[++k] + by_number;
-  }
-  return {.light = choices[k].light, .chance = chance * choices[k].chance};
-}
-
-// The lights that a query asks: all, those of a cut, or one of each channel and the sky's dome.
-std::vector<DirectLight::Choice> DirectLight::chosen_lights(
-    const LightQuery& query, const std::vector<double>& light) const {
-  std::vector<Choice> choices;
-  for (int c = 0; c < channel_count_; ++c) {
-    const auto channel = static_cast<std::size_t>(c);
-    for (const int i : few_[channel]) {
-      const bool is_dome =
-          !is_emitter(i) && free_sources_[i - static_cast<int>(emitters_.size())].is_dome();
-      if (i >= first_light(query.lights) && (is_dome || !query.one_stands_for_all)) {
-        choices.push_back({.light = i});
-      }
-    }
-    if (query.one_stands_for_all) {
-      choices.push_back(one_for_all(c, query));
-    } else {
-      add_cut(c, query.lights, query.at, query.key, query.shadows.group_share,
-              light.empty() ? 0.0 : light[channel], choices);
-    }
-  }
-  std::erase_if(choices, [](const Choice& choice) { return choice.light < 0; });
-  return choices;
 }
 
 struct DirectLight::Shadows {

@@ -20,6 +20,7 @@
 #include "radiosity/solution/vtk_messages.h"
 #include "radiosity/solution/vtk_output.h"
 #include "scene/atomic_file.h"
+#include "scene/errors.h"
 #include "scene/utf8.h"
 
 namespace lightwell {
