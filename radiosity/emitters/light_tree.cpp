@@ -102,8 +102,11 @@ std::vector<LightBound> bounds_of(std::span<const Emitter> emitters) {
       }
       // A picture may be brighter than its mean where a point sees only a part of the facet, which
       // only single lights are near enough for.
-      bound.intensity = falling(M * emitter.area / pi,
-                                [](double angle) { return std::max(0.0, std::cos(angle)); });
+      bound.intensity = falling(M * emitter.area / pi, [](double angle) {
+        // Rounding leaves a cosine above 0 at a right angle.
+        constexpr double rounding = 1e-12;
+        return std::max(0.0, std::cos(angle) - rounding);
+      });
       if (emitter.emits_both_sides) {
         for (int k = 0; k < steps / 2; ++k) {
           bound.intensity[static_cast<std::size_t>(steps - 1 - k)] =
@@ -218,7 +221,15 @@ LightTree::Seen LightTree::seen(int node, const SurfacePoint& at) const {
   const double height = to.dot(at.normal), reach = n.half.dot(at.normal.cwiseAbs());
   if (!(height + reach > 0.0)) return {.node = node};
   const double near = (to.cwiseAbs() - n.half).cwiseMax(0.0).norm(), distance = to.norm();
-  const Steps steps = steps_to(n, to, distance);
+  Steps steps = steps_to(n, to, distance);
+  constexpr double parallel = 1e-6;
+  if (n.half_angle < parallel && near > 0.0) {
+    // The greatest cosine at lights of one axis: below a ceiling of panels that face down there is
+    // light, and above there is none.
+    const double above = n.half.dot(n.axis.cwiseAbs()) - n.axis.dot(to);
+    const double cosine = std::clamp(above / near + parallel, 0.0, 1.0);
+    steps.first = std::max(steps.first, above > 0.0 ? step_of_cosine(cosine) : step_of_cosine(0.0));
+  }
   const double I = greatest(n, steps);
   if (!(I > 0.0)) return {.node = node};
   const double bound = near > 0.0 ? I * std::min(1.0, (height + reach) / near) / (near * near)

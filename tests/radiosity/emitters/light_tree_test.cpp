@@ -33,7 +33,8 @@ struct Hall {
   Scene scene;
   PatchMesh mesh;
 
-  Hall(int panels, int lamps) {
+  /// `down`: panels face down instead.
+  Hall(int panels, int lamps, bool down = false) {
     const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
     test::add_box(scene, {-10, -10, 0}, {10, 10, 6}, {black, black, black, black, black, black},
                   true);
@@ -46,7 +47,8 @@ struct Hall {
     for (int k = 0; k < panels; ++k) {
       const float M = 1.0f + 9.0f * static_cast<float>(uniform(k, 1));
       const int bright = test::add_material(scene, test::diffuse(scene.bands, 0.0f, M));
-      const Vector3d at = place(k, 2), normal = direction(k, 5);
+      const Vector3d at = place(k, 2);
+      const Vector3d normal = down ? Vector3d(-Vector3d::UnitZ()) : direction(k, 5);
       Vector3d a, b;
       tangent_frame(normal, a, b);
       const double h = 0.02 + 0.1 * uniform(k, 7);
@@ -113,8 +115,7 @@ double expect_bounded(const LightTree& tree, const LightTree::Seen& seen, const 
   return sum;
 }
 
-TEST(LightTree, NoNodeGivesMoreThanItsBound) {
-  const Hall hall(60, 60);
+void expect_bounds(const Hall& hall) {
   const DirectLight light(hall.scene, hall.mesh);
   const LightTree tree = tree_of(light);
   for (int k = 0; k < 200; ++k) {
@@ -124,6 +125,19 @@ TEST(LightTree, NoNodeGivesMoreThanItsBound) {
     for (const double of_one : E) all += of_one;
     EXPECT_NEAR(expect_bounded(tree, tree.root(at), at, E), all, 1e-9 * all);
   }
+}
+
+TEST(LightTree, NoNodeGivesMoreThanItsBound) {
+  expect_bounds(Hall(60, 60));
+}
+
+TEST(LightTree, PanelsThatFaceDownGiveNothingAbove) {
+  const Hall hall(60, 0, true);
+  expect_bounds(hall);
+  const DirectLight light(hall.scene, hall.mesh);
+  const LightTree tree = tree_of(light);
+  const SurfacePoint above{.position = {0, 0, 5.9}, .normal = -Vector3d::UnitZ(), .facet = -1};
+  EXPECT_EQ(tree.root(above).bound, 0.0);
 }
 
 // The chances of the lights of a group, with those of none, add up to 1, and each light that gives
