@@ -13,6 +13,7 @@
 #include "mesh/patch_builder.h"
 #include "mesh/patches/near_emitters.h"
 #include "mesh/patches/patch_textures.h"
+#include "scene/errors.h"
 #include "scene/parallel.h"
 #include "scene/round_shape.h"
 

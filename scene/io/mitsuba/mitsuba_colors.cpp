@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/black_body.h"
+#include "scene/errors.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
 #include "scene/io/spectrum_samples.h"
 #include "scene/io/text_file.h"
