@@ -91,8 +91,9 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
 
 ShadowOptions Effort::shadows() const {
   const int most = std::clamp(gather_rays / 4, 64, most_shadow_rays);
-  // Half of the error for which the rays suffice. Groups at the limit differ from what their
-  // members say by a fifth of the limit, and errors of groups add up as squares do.
+  // Groups of 0.5 % leave noise of 0.35 % in a hall of 10 000 lamps, which beside 0.55 % of the
+  // rays and 0.95 % of interpolation hardly counts. `law` is that of rays_for_noise(). At the
+  // finest share, no more than DirectLight's most parts are asked; at the coarsest, some 50 are.
   constexpr double for_one_percent = 0.005, law = 2.0 / 3.0, finest = 1e-5, coarsest = 0.02;
   const double share =
       for_one_percent * std::pow(static_cast<double>(rays_for_one_percent) / gather_rays, law);

@@ -1,4 +1,4 @@
-// The part of DirectLight that decides which lights a point asks.
+// Members of DirectLight that decide which lights a point asks.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +12,8 @@
 namespace lightwell {
 namespace {
 
-// The most parts of a cut: one of point lamps costs less than a hundred rays of a hemisphere.
+// The most parts of a cut: six times those of 10 000 panels at the default share. Groups of a cut
+// that ends here are larger than asked for, and their members' difference says what that costs.
 constexpr int most_cut_parts = 2048;
 
 }  // namespace
@@ -20,7 +21,7 @@ constexpr int most_cut_parts = 2048;
 int DirectLight::channel_of(int light) const {
   if (channel_count_ == 1) return 0;
   if (is_emitter(light)) return first_column(emitters_[light].facet) / bands_;
-  return free_sources_[light - static_cast<int>(emitters_.size())].channel;
+  return source(light).channel;
 }
 
 void DirectLight::group_lights() {
@@ -45,14 +46,16 @@ void DirectLight::group_lights() {
   few_.resize(channels);
   for (int i = 0; i < light_count(); ++i) {
     if (is_grouped[static_cast<std::size_t>(i)] != 0) continue;
-    few_[static_cast<std::size_t>(channel_of(i))].push_back(i);
+    if (is_on(i)) {
+      few_[static_cast<std::size_t>(channel_of(i))].push_back(i);
+    } else if (is_emitter(i)) {
+      off_.push_back(i);
+    }
   }
 }
 
 bool DirectLight::is_on(int light) const {
-  const Spectrum& L = is_emitter(light)
-                          ? emitters_[light].exitance
-                          : free_sources_[light - static_cast<int>(emitters_.size())].light;
+  const Spectrum& L = is_emitter(light) ? emitters_[light].exitance : source(light).light;
   return (L > 0.0f).any();
 }
 
@@ -75,12 +78,10 @@ int DirectLight::first_light(Lights lights) const {
 // About what a light would give at a point without occluders, mean of the bands, W/m^2.
 double DirectLight::approximate_light(int light, const SurfacePoint& at) const {
   const auto& [point, normal, facet] = at;
-  const auto emitter_count = static_cast<int>(emitters_.size());
-  if (light >= emitter_count) {
-    const FreeSource& source = free_sources_[light - emitter_count];
-    const SourceSample middle = sample_source(source, point, 0.5, 0.5);
+  if (!is_emitter(light)) {
+    const SourceSample middle = sample_source(source(light), point, 0.5, 0.5);
     return std::max(0.0, middle.direction.dot(normal)) * middle.irradiance *
-           static_cast<double>(source.light.mean());
+           static_cast<double>(source(light).light.mean());
   }
   const Emitter& emitter = emitters_[light];
   const Eigen::Vector3d to = emitter.center - point;
@@ -91,70 +92,77 @@ double DirectLight::approximate_light(int light, const SurfacePoint& at) const {
          static_cast<double>(emitter.exitance.mean());
 }
 
-// Adds the parts of a cut through the trees of a channel: single lights, and two members of each
-// group. The two halves of the chances that they are drawn from show what drawing leaves to chance.
-void DirectLight::add_cut(int channel, Lights lights, const SurfacePoint& at, std::uint64_t key,
-                          double share, double light, std::vector<Choice>& choices) const {
+std::vector<const LightTree*> DirectLight::trees_of(int channel, Lights lights) const {
   const auto& [of_emitters, of_lamps] = trees_[static_cast<std::size_t>(channel)];
   std::vector<const LightTree*> trees;
-  const bool has_emitters = lights != Lights::free && lights != Lights::distant;
-  const bool has_lamps = lights != Lights::emitters && lights != Lights::distant;
+  const bool has_emitters = lights == Lights::all || lights == Lights::all_but_dome;
   if (of_emitters && has_emitters) trees.push_back(of_emitters.get());
-  if (of_lamps && has_lamps) trees.push_back(of_lamps.get());
-  if (trees.empty()) return;
-  int group = choices.empty() ? 0 : choices.back().group + 1;
+  if (of_lamps && lights != Lights::distant) trees.push_back(of_lamps.get());
+  return trees;
+}
+
+// Adds the parts of a cut through trees: single lights, and two members of each group. The two
+// halves of the chances that they are drawn from show what drawing leaves to chance.
+void DirectLight::add_cut(std::span<const LightTree* const> trees, const SurfacePoint& at,
+                          std::uint64_t key, double share, double light,
+                          std::vector<Choice>& choices) const {
+  int group = 0;
+  for (const Choice& choice : choices) group = std::max(group, choice.group + 1);
   for (const CutPart& part : light_cut(trees, at, share, light, most_cut_parts)) {
     const int node = part.seen.node;
     if (!part.tree->is_group(node)) {
       choices.push_back({.light = part.tree->light(node)});
       continue;
     }
-    const bool is_of_lamps = part.tree == of_lamps.get();
-    const double u = random_uniform(random_key(key, RandomPurpose::light_groups,
-                                               2 * static_cast<std::uint64_t>(node) + is_of_lamps));
+    const double u = random_uniform(
+        random_key(key, RandomPurpose::light_groups, static_cast<std::uint64_t>(group)));
     for (const double from : {0.0, 0.5}) {
       const LightTree::Draw draw = part.tree->draw(node, at, from + 0.5 * u);
+      if (draw.light < 0) continue;
       choices.push_back({.light = draw.light, .chance = 2.0 * draw.chance, .group = group});
     }
     ++group;
   }
 }
 
+// Emitters that are switched off exchange as all others, since they reflect.
 std::vector<DirectLight::Choice> DirectLight::chosen_emitters(const SurfacePoint& at,
                                                               std::uint64_t key,
                                                               double share) const {
   std::vector<Choice> choices;
+  for (const int light : off_) choices.push_back({.light = light});
   for (int c = 0; c < channel_count_; ++c) {
     for (const int light : few_[static_cast<std::size_t>(c)]) {
       if (is_emitter(light)) choices.push_back({.light = light});
     }
-    add_cut(c, Lights::emitters, at, key, share, 0.0, choices);
+    const LightTree* const tree = trees_[static_cast<std::size_t>(c)].of_emitters.get();
+    if (tree) add_cut({&tree, 1}, at, key, share, 0.0, choices);
   }
-  std::erase_if(choices, [](const Choice& choice) { return choice.light < 0; });
   return choices;
 }
 
 // The light of a channel that stands for all but the sky's dome. Each candidate has a part of the
 // chance whatever its estimate, since the middle of a light may lie below the horizon or outside of
-// a beam of which other points see a part.
-DirectLight::Choice DirectLight::one_for_all(int channel, const LightQuery& query) const {
-  constexpr double even = 0.1, coarse = 0.1;
+// a beam of which other points see a part. Empty if the channel has no lights.
+std::optional<DirectLight::Choice> DirectLight::one_for_all(int channel,
+                                                            const LightQuery& query) const {
+  constexpr double even = 0.1;
+  // A tenth of the light at most for a group: one light is drawn, so that finer groups save
+  // nothing.
+  constexpr double coarse = 0.1;
   std::vector<Choice> choices;
   std::vector<double> weight;
+  const int first = first_light(query.lights);
   for (const int light : few_[static_cast<std::size_t>(channel)]) {
-    const bool is_dome =
-        !is_emitter(light) && free_sources_[light - static_cast<int>(emitters_.size())].is_dome();
-    if (light < first_light(query.lights) || is_dome || !is_on(light)) continue;
-    choices.push_back({.light = light});
+    if (light >= first && !is_dome(light)) choices.push_back({.light = light});
   }
-  add_cut(channel, query.lights, query.at, query.key, coarse, 0.0, choices);
+  add_cut(trees_of(channel, query.lights), query.at, query.key, coarse, 0.0, choices);
   double sum = 0.0;
   for (const Choice& choice : choices) {
-    weight.push_back(choice.light < 0 ? 0.0
-                                      : approximate_light(choice.light, query.at) / choice.chance);
+    weight.push_back(approximate_light(choice.light, query.at) / choice.chance);
     sum += weight.back();
   }
-  if (choices.empty()) return {.light = -1};
+  if (choices.empty()) return std::nullopt;
   const auto count = static_cast<double>(choices.size());
   const double by_weight = sum > 0.0 ? (1.0 - even) / sum : 0.0;
   const double by_number = sum > 0.0 ? even / count : 1.0 / count;
@@ -166,30 +174,28 @@ DirectLight::Choice DirectLight::one_for_all(int channel, const LightQuery& quer
     left -= chance;
     chance = by_weight * weight[++k] + by_number;
   }
-  return {.light = choices[k].light, .chance = chance * choices[k].chance};
+  return Choice{.light = choices[k].light, .chance = chance * choices[k].chance};
 }
 
 // The lights that a query asks: all, those of a cut, or one of each channel and the sky's dome.
 std::vector<DirectLight::Choice> DirectLight::chosen_lights(
     const LightQuery& query, const std::vector<double>& light) const {
   std::vector<Choice> choices;
+  const int first = first_light(query.lights);
   for (int c = 0; c < channel_count_; ++c) {
     const auto channel = static_cast<std::size_t>(c);
     for (const int i : few_[channel]) {
-      const bool is_dome =
-          !is_emitter(i) && free_sources_[i - static_cast<int>(emitters_.size())].is_dome();
-      if (i >= first_light(query.lights) && (is_dome || !query.one_stands_for_all)) {
-        choices.push_back({.light = i});
-      }
+      const bool is_asked = is_dome(i) || !query.one_stands_for_all;
+      if (i >= first && is_asked) choices.push_back({.light = i});
     }
     if (query.one_stands_for_all) {
-      choices.push_back(one_for_all(c, query));
+      const std::optional<Choice> one = one_for_all(c, query);
+      if (one) choices.push_back(*one);
     } else {
-      add_cut(c, query.lights, query.at, query.key, query.shadows.group_share,
+      add_cut(trees_of(c, query.lights), query.at, query.key, query.shadows.group_share,
               light.empty() ? 0.0 : light[channel], choices);
     }
   }
-  std::erase_if(choices, [](const Choice& choice) { return choice.light < 0; });
   return choices;
 }
 

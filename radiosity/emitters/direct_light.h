@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
@@ -79,9 +80,8 @@ struct EmitterVisibility {
   std::uint64_t hidden = 0;  ///< bit i: light i is fully hidden
 };
 
-/// Lights that give a sum: all, emitters only, free sources only, sky and sun only, or all but the
-/// sky's dome.
-enum class Lights { all, emitters, free, distant, all_but_dome };
+/// Lights that give a sum: all, free sources only, sky and sun only, or all but the sky's dome.
+enum class Lights { all, free, distant, all_but_dome };
 
 /// A point that direct light is computed at, and with which effort.
 struct LightQuery {
@@ -123,9 +123,9 @@ struct LightQuery {
 /// Free sources (lamps without surface, sky and sun) are always direct light. *Lights* are the
 /// emitters, followed by the free sources.
 ///
-/// Where a channel has many lights, a point asks those that give it much, and two drawn members of
-/// each group of others (see LightTree and ShadowOptions::group_share). The mean over keys of
-/// random numbers is the sum over all lights.
+/// Points ask not all of many lights: of a channel with fewest_grouped emitters or lamps, a point
+/// asks those that give it much, and two drawn members of each group of others (see LightTree and
+/// ShadowOptions::group_share). The mean over keys of random numbers is the sum over all lights.
 ///
 /// Irradiance includes light that passes straight through ClearPanes; form factors take panes as
 /// opaque.
@@ -164,7 +164,8 @@ class DirectLight {
   double form_factor(const Emitter& emitter, const ElementCaster& caster,
                      const LightQuery& query) const;
 
-  /// The fewest emitters, or lamps, of a channel that are grouped.
+  /// The fewest emitters, or lamps, of a channel that are grouped. A cut of fewer has few groups,
+  /// and saves less than its pilot costs.
   static constexpr std::size_t fewest_grouped = 32;
   /// A light that a point asks for. What the light gives counts over `chance`.
   struct Choice {
@@ -215,6 +216,11 @@ class DirectLight {
  private:
   int first_light(Lights lights) const;
   bool is_on(int light) const;
+  bool is_dome(int light) const { return !is_emitter(light) && source(light).is_dome(); }
+  /// A light that is_emitter() is not.
+  const FreeSource& source(int light) const {
+    return free_sources_[light - static_cast<int>(emitters_.size())];
+  }
   bool is_emitter(int light) const { return light < static_cast<int>(emitters_.size()); }
   int channel_of(int light) const;
   void group_lights();
@@ -225,9 +231,10 @@ class DirectLight {
   Shadows shadows(const ElementCaster& caster, const LightQuery& query,
                   const std::vector<double>& light) const;
   std::vector<double> pilot_light(const ElementCaster& caster, const LightQuery& query) const;
-  Choice one_for_all(int channel, const LightQuery& query) const;
-  void add_cut(int channel, Lights lights, const SurfacePoint& at, std::uint64_t key, double share,
-               double light, std::vector<Choice>& choices) const;
+  std::optional<Choice> one_for_all(int channel, const LightQuery& query) const;
+  std::vector<const LightTree*> trees_of(int channel, Lights lights) const;
+  void add_cut(std::span<const LightTree* const> trees, const SurfacePoint& at, std::uint64_t key,
+               double share, double light, std::vector<Choice>& choices) const;
   double approximate_light(int light, const SurfacePoint& at) const;
   /// Factor of the light that arrives from a direction: that of a coated base, of relief, or both.
   struct Receiver {
@@ -254,6 +261,7 @@ class DirectLight {
   };
   std::vector<Trees> trees_{};             // by channel
   std::vector<std::vector<int>> few_;      // by channel: lights that are on and in no tree
+  std::vector<int> off_;                   // emitters that are switched off
   std::shared_ptr<const SkyLight> sky_{};  // null: there is no dome
   std::shared_ptr<const ExactShadows> exact_{};
   enum class Owned : char { nothing, front, whole };

@@ -42,24 +42,26 @@ IntensityByAngle falling(double scale, Shape shape) {
   return result;
 }
 
-// The greatest relative intensity of a web within each step, among directions as dense as the
-// angles of measured webs.
-IntensityByAngle greatest_of_web(const Lamp& lamp) {
-  constexpr int finer = 12, around = 72;  // about 1 degree of gamma, 5 degrees of C
+// The greatest value of a web within each step. Values are linear between measured angles, so that
+// the greatest are at these and at the ends of steps.
+IntensityByAngle greatest_of_web(const PhotometricWeb& web) {
+  constexpr double degrees = 180.0 / pi;
+  const std::vector<double>& gammas = web.gammas();
   IntensityByAngle result{};
-  for (int i = 0; i <= steps * finer; ++i) {
-    const double gamma = step * i / finer;
-    double greatest = 0.0;
-    for (int j = 0; j < around; ++j) {
-      const double c = 2.0 * pi * j / around;
-      const Vector3d local(std::sin(gamma) * std::cos(c), std::sin(gamma) * std::sin(c),
-                           -std::cos(gamma));
-      greatest = std::max(greatest, relative_intensity(lamp, lamp.axes * local));
-    }
-    // A direction on the border of two steps counts in both.
-    for (const int k : {i / finer, (i - 1) / finer}) {
-      float& value = result[static_cast<std::size_t>(std::clamp(k, 0, steps - 1))];
-      value = std::max(value, static_cast<float>(greatest));
+  const auto add = [&](int k, double value) {
+    float& greatest = result[static_cast<std::size_t>(k)];
+    greatest = std::max(greatest, static_cast<float>(value));
+  };
+  for (int k = 0; k < steps; ++k) {
+    const double first = k * step * degrees, last = (k + 1) * step * degrees;
+    for (std::size_t g = 0; g < gammas.size(); ++g) {
+      if (gammas[g] >= first && gammas[g] <= last) add(k, web.values().col(g).maxCoeff());
+      if (g + 1 == gammas.size()) break;
+      for (const double end : {first, last}) {
+        const double t = (end - gammas[g]) / (gammas[g + 1] - gammas[g]);
+        if (t < 0.0 || t > 1.0) continue;
+        add(k, ((1.0 - t) * web.values().col(g) + t * web.values().col(g + 1)).maxCoeff());
+      }
     }
   }
   return result;
@@ -129,7 +131,7 @@ std::vector<LightBound> bounds_of(std::span<const FreeSource> sources, int first
     LightBound bound{.light = first + static_cast<int>(s), .box = box_of(lamp), .axis = lamp.aim()};
     if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) {
       const auto [known, is_new] = webs.try_emplace(web->get());
-      if (is_new) known->second = greatest_of_web(lamp);
+      if (is_new) known->second = greatest_of_web(**web);
       bound.intensity = known->second;
     } else {
       const Vector3d across = lamp.axes.col(0);
@@ -222,13 +224,15 @@ LightTree::Seen LightTree::seen(int node, const SurfacePoint& at) const {
   if (!(height + reach > 0.0)) return {.node = node};
   const double near = (to.cwiseAbs() - n.half).cwiseMax(0.0).norm(), distance = to.norm();
   Steps steps = steps_to(n, to, distance);
-  constexpr double parallel = 1e-6;
-  if (n.half_angle < parallel && near > 0.0) {
-    // The greatest cosine at lights of one axis: below a ceiling of panels that face down there is
-    // light, and above there is none.
+  if (near > 0.0) {
+    // The box bounds the cosine to the node's axis as it bounds that at the point, and axes within
+    // the cone are nearer to the direction by the cone's half angle at most.
     const double above = n.half.dot(n.axis.cwiseAbs()) - n.axis.dot(to);
-    const double cosine = std::clamp(above / near + parallel, 0.0, 1.0);
-    steps.first = std::max(steps.first, above > 0.0 ? step_of_cosine(cosine) : step_of_cosine(0.0));
+    const double cosine = std::clamp(above / near, 0.0, 1.0);
+    if (cosine < n.cosine) {
+      const double sine = std::sqrt(1.0 - cosine * cosine);
+      steps.first = std::max(steps.first, step_of_cosine(cosine * n.cosine + sine * n.sine));
+    }
   }
   const double I = greatest(n, steps);
   if (!(I > 0.0)) return {.node = node};

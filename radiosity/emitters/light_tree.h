@@ -15,12 +15,12 @@ namespace lightwell {
 /// 0 to pi.
 using IntensityByAngle = std::array<float, 16>;
 
-/// What a light can give at most, for LightTree.
+/// Bounds of a light's place and intensity, for LightTree.
 struct LightBound {
   int light = 0;                                    ///< number of the light
   Eigen::AlignedBox3d box{};                        ///< of all points that shine, m
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit
-  IntensityByAngle intensity{};                     ///< mean of the bands
+  IntensityByAngle intensity{};                     ///< W/sr, mean of the bands
 };
 
 /// The bounds of emitters that are on, numbered from 0.
@@ -33,6 +33,7 @@ std::vector<LightBound> bounds_of(std::span<const FreeSource> sources, int first
 /// distant groups from a few of their members, drawn at random.
 class LightTree {
  public:
+  /// Precondition: `lights` is not empty.
   explicit LightTree(std::vector<LightBound> lights);
 
   /// A node as a point sees it, without occluders.
@@ -88,8 +89,9 @@ struct CutPart {
   LightTree::Seen seen{};
 };
 
-/// The coarsest cut through trees in which no group can give more than `share` of `light`, W/m^2;
-/// `light` 0: of what all parts give about. At most `most` parts. Parts that give nothing are left
+/// The coarsest cut through trees in which no group can give more than `share` of `light`, W/m^2,
+/// the light that arrives (Walter et al. 2005); `light` 0: of what all parts give about. At most
+/// `most` parts, and more only where a point lies within groups. Parts that give nothing are left
 /// out.
 std::vector<CutPart> light_cut(std::span<const LightTree* const> trees, const SurfacePoint& at,
                                double share, double light, int most);

@@ -136,7 +136,8 @@ EmitterExchange::Row EmitterExchange::row_of(int patch, const SobolPoints& sobol
 void EmitterExchange::compute(const std::vector<char>& receives, const FormFactorOptions& options,
                               const JournalPhase& phase) {
   from_.assign(static_cast<std::size_t>(mesh_.patch_count()), {});
-  // Where points ask for groups, each point draws other members.
+  // Points that ask for groups draw other members each; a quarter of the points keeps what a patch
+  // with 10 000 emitters costs near to what one with 100 does.
   constexpr int fewer = 4;
   const int points = direct_light_.groups_emitters() ? std::max(1, options.emitter_points / fewer)
                                                      : options.emitter_points;

@@ -75,8 +75,8 @@ std::int64_t most_row_bytes(int patches, const FormFactorOptions& options) {
 std::int64_t bytes_beside_rows(const PatchMesh& mesh, std::int64_t emitters,
                                const FormFactorOptions& options) {
   // Per patch: outlines with quadrature points, entries of stores, vectors of the scaling. Per
-  // band: vectors of a solver. Per thread: scratch of a row. Of many emitters, a patch asks for
-  // those of a cut at a few points.
+  // band: vectors of a solver. Per thread: scratch of a row. Per emitter: an entry of a
+  // patch's row and one of the emitter's; of many emitters, four points ask some 250 each.
   constexpr std::int64_t per_patch = 900, per_band = 128, per_thread = 48, per_emitter = 16,
                          most_emitters = 1024;
   const std::int64_t bands = mesh.reflectance.cols();

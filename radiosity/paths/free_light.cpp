@@ -341,7 +341,9 @@ FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const
   double all = 0.0;
   for (const FreeSource& source : sources) all += source.is_distant() ? 0.0 : power(source);
   Collector collector(caster, paths, direct_light);
-  // Few rays of each suffice where many lamps make up for each other's noise.
+  // Many lamps make up for each other's noise: no lamp needs the fewest rays of one alone where
+  // these would make more than four times the rays that are asked for. 64 still tell where a lamp's
+  // light goes.
   constexpr double fewest_of_many = 64.0, times = 4.0;
   const double fewest = std::clamp<double>(times * rays / static_cast<double>(sources.size()),
                                            fewest_of_many, fewest_free_rays);
@@ -352,11 +354,15 @@ FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const
     const auto count = static_cast<unsigned>(std::clamp<double>(due, fewest, most_free_rays));
     shots.push_back({.source = &source, .rays = static_cast<int>(std::bit_ceil(count))});
   }
-  constexpr std::size_t between_reports = 64;
-  for (std::size_t first = 0; first < shots.size(); first += between_reports) {
+  // A tenth of a second of rays, or a single lamp, between two reports.
+  constexpr int between_reports = 1 << 18;
+  for (std::size_t first = 0, end = 0; first < shots.size(); first = end) {
     report(progress, "lamps", static_cast<double>(first) / static_cast<double>(shots.size()));
-    collector.cast(
-        std::span(shots).subspan(first, std::min(between_reports, shots.size() - first)));
+    std::int64_t together = 0;
+    do {
+      together += shots[end++].rays;
+    } while (end < shots.size() && together + shots[end].rays <= between_reports);
+    collector.cast(std::span(shots).subspan(first, end - first));
   }
   report(progress, "lamps", 1.0);
   if (!sources.back().is_distant()) return collector.result();

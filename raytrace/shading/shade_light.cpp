@@ -220,7 +220,8 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   // Many samples of a pixel average their shadows. A second stage of rays, cast only where the
   // first disagree, would leave a part of thin shadows out of that mean.
   if (state.number) shadows.max_rays = shadows.min_rays;
-  // Each draws other members of groups of lights, whose noise the mean of 16 samples quarters.
+  // Samples draw other members of groups of lights. Groups four times as large have twice the
+  // noise, which the mean of four samples halves.
   constexpr double coarser = 4.0;
   if (state.number) shadows.group_share *= coarser;
   Arriving E;

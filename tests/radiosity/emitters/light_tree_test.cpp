@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <memory>
 #include <numbers>
 #include <string>
 
@@ -27,8 +28,18 @@ Vector3d direction(int k, int use) {
   return {r * std::cos(phi), r * std::sin(phi), z};
 }
 
-/// A black hall of 20 x 20 x 6 m with screens, `panels` that face everywhere and `lamps`, a third
-/// of which are spots and a third have openings.
+/// A beam narrower than a step of IntensityByAngle, beside a wide part that ends at once at 130
+/// degrees and is twice as bright along C = 90 as along C = 0.
+SharedWeb narrow_web() {
+  Eigen::ArrayXXd values(2, 5);
+  values << 1.0, 1.0, 9.0, 1.0, 0.5,  //
+      1.0, 1.0, 9.0, 2.0, 1.0;
+  return std::make_shared<const PhotometricWeb>(
+      std::vector<double>{0.0, 90.0}, std::vector<double>{0.0, 17.0, 17.5, 18.0, 130.0}, values);
+}
+
+/// A black hall of 20 x 20 x 6 m with screens, `panels` that face everywhere, and `lamps`: spots,
+/// lamps with openings, measured ones and even ones.
 struct Hall {
   Scene scene;
   PatchMesh mesh;
@@ -63,6 +74,7 @@ struct Hall {
                 .intensity = constant_spectrum(scene.bands,
                                                1.0f + 9.0f * static_cast<float>(uniform(k, 17)))};
       if (k % 3 == 0) lamp.shape = SpotCone{.inner = 0.2, .outer = 0.3 + uniform(k, 18)};
+      if (k % 6 == 2) lamp.shape = narrow_web();
       if (k % 3 == 1) lamp.opening = {.along_c0 = 0.6 * uniform(k, 19), .along_c90 = 0.1};
       scene.lamps.push_back(lamp);
     }
@@ -82,7 +94,7 @@ SurfacePoint point(int k) {
           .facet = -1};
 }
 
-/// What each light gives a point without occluders, mean of the bands, W/m^2.
+/// The unobstructed irradiance of each light at a point, mean of the bands, W/m^2.
 std::vector<double> unoccluded(const DirectLight& light, const SurfacePoint& at) {
   std::vector<double> E;
   for (const Emitter& emitter : light.emitters()) {
@@ -123,7 +135,8 @@ void expect_bounds(const Hall& hall) {
     const std::vector<double> E = unoccluded(light, at);
     double all = 0.0;
     for (const double of_one : E) all += of_one;
-    EXPECT_NEAR(expect_bounded(tree, tree.root(at), at, E), all, 1e-9 * all);
+    // Two orders of the same sum of at most 120 terms, each rounded by 2^-53 of the sum.
+    EXPECT_NEAR(expect_bounded(tree, tree.root(at), at, E), all, 2.0 * 120.0 * 0x1p-53 * all);
   }
 }
 
@@ -212,10 +225,13 @@ TEST(LightTree, ManyLightsAtOnePlaceAreGrouped) {
   const LightTree tree(std::move(lights));
   const SurfacePoint at{.position = {1, 2, 0}, .normal = Vector3d::UnitZ()};
   const LightTree::Seen root = tree.root(at);
-  EXPECT_NEAR(root.bound, 1000 * 2.0 / 9.0, 1e-9);
-  EXPECT_NEAR(root.about, root.bound, 1e-9);
+  // Sums of powers of two times 1000 are exact in float; the quotient by 3^2 and the cosine take
+  // four roundings, the quotient by 3^3 five.
+  EXPECT_NEAR(root.bound, 1000 * 2.0 / 9.0, 4.0 * 0x1p-53 * root.bound);
+  EXPECT_NEAR(root.about, root.bound, 9.0 * 0x1p-53 * root.bound);
   const LightTree::Draw draw = tree.draw(root.node, at, 0.75);
-  EXPECT_NEAR(draw.chance, 1e-3, 1e-9);
+  // Ten halvings, each the product of a share with three roundings.
+  EXPECT_NEAR(draw.chance, 1e-3, 10.0 * 4.0 * 0x1p-53 * 1e-3);
 }
 
 // 300 panels and 300 lamps behind screens: the mean over keys is the sum over all lights, and the

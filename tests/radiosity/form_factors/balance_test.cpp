@@ -49,8 +49,8 @@ TEST(SymmetricScaling, EmptyRowsStayAsTheyAre) {
 
 // The result of a column must not depend on its neighbours, one of which needs more iterations.
 TEST(SymmetricScaling, ColumnsDoNotTouchEachOther) {
-  const Eigen::ArrayXXd S = (Eigen::ArrayXXd(2, 2) << 0.1, 0.7, 0.7, 0.2).finished();
-  Eigen::ArrayXXd open(2, 2), target(2, 2);
+  Eigen::ArrayXXd S(2, 2), open(2, 2), target(2, 2);
+  S << 0.1, 0.7, 0.7, 0.2;
   open << 0.0, 0.1, 0.0, 0.3;
   target << 1.0, 0.5, 1.0, 0.9;
   const Eigen::ArrayXXd both = symmetric_scaling(product_with(S), open, target);

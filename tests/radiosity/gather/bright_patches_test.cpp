@@ -122,8 +122,9 @@ TEST(BrightPatches, GiveTheSameNearBy) {
     constexpr int replicas = 200;
     const auto [mean, deviation] =
         gathered({room.scene, room.caster, room.direct_light}, B, point, 64, replicas);
-    // The last term is rounding of float sums.
-    EXPECT_NEAR(mean, E, 4.0 * deviation / std::sqrt(replicas) + 1e-6 * E) << z;
+    // Four standard errors of the mean, and roundings of floats, 2^-24 each: four of a corner's
+    // weight, one of its product with B and one of the result.
+    EXPECT_NEAR(mean, E, 4.0 * deviation / std::sqrt(replicas) + 6.0 * 0x1p-24 * E) << z;
   }
 }
 
