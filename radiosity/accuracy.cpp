@@ -91,7 +91,7 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
 
 ShadowOptions Effort::shadows() const {
   const int most = std::clamp(gather_rays / 4, 64, most_shadow_rays);
-  // Groups of 0.5 % leave noise of 0.35 % in a hall of 10 000 lamps, which beside 0.55 % of the
+  // Clusters of 0.5 % leave noise of 0.35 % in a hall of 10 000 lamps, which beside 0.55 % of the
   // rays and 0.95 % of interpolation hardly counts. `law` is that of rays_for_noise(). At the
   // finest share, no more than DirectLight's most parts are asked; at the coarsest, some 50 are.
   constexpr double for_one_percent = 0.005, law = 2.0 / 3.0, finest = 1e-5, coarsest = 0.02;
@@ -99,7 +99,7 @@ ShadowOptions Effort::shadows() const {
       for_one_percent * std::pow(static_cast<double>(rays_for_one_percent) / gather_rays, law);
   return {.min_rays = std::max(16, most / 8),
           .max_rays = most,
-          .group_share = std::clamp(share, finest, coarsest)};
+          .cluster_share = std::clamp(share, finest, coarsest)};
 }
 
 int sky_rays(double target) {

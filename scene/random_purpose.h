@@ -84,8 +84,8 @@ enum class RandomPurpose : std::uint64_t {
   portal_paths = 0x9047a1,
   // One light in place of all; (key of a query, purpose, channel).
   drawn_lights = 0xd4a3,
-  pilot_lights = 0x9c06,  // (key of a query, purpose)
-  light_groups = 0x9c07,  // two members of a group; (key of a query, purpose, node)
+  pilot_lights = 0x9c06,    // (key of a query, purpose)
+  light_clusters = 0x9c07,  // two members of a cluster; (key of a query, purpose, number)
 };
 
 /// True for every purpose. Two purposes of equal value are two equal cases, which no compiler
@@ -142,7 +142,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::pixel_gather_aims:
     case RandomPurpose::part_rays:
     case RandomPurpose::drawn_lights:
-    case RandomPurpose::light_groups:
+    case RandomPurpose::light_clusters:
     case RandomPurpose::pilot_lights:
     case RandomPurpose::side_rays:
     case RandomPurpose::lamp_face_rays:

@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-// The most parts of a cut: six times those of 10 000 panels at the default share. Groups of a cut
+// The most parts of a cut: six times those of 10 000 panels at the default share. Clusters of a cut
 // that ends here are larger than asked for, and their members' difference says what that costs.
 constexpr int most_cut_parts = 2048;
 
@@ -24,7 +24,7 @@ int DirectLight::channel_of(int light) const {
   return source(light).channel;
 }
 
-void DirectLight::group_lights() {
+void DirectLight::cluster_lights() {
   const auto channels = static_cast<std::size_t>(channel_count_);
   std::vector<std::vector<LightBound>> emitters(channels), lamps(channels);
   for (const LightBound& bound : bounds_of(emitters_)) {
@@ -34,10 +34,10 @@ void DirectLight::group_lights() {
     lamps[static_cast<std::size_t>(channel_of(bound.light))].push_back(bound);
   }
   trees_.resize(channels);
-  std::vector<char> is_grouped(static_cast<std::size_t>(light_count()), 0);
+  std::vector<char> is_clustered(static_cast<std::size_t>(light_count()), 0);
   const auto tree_of = [&](std::vector<LightBound>& bounds) -> std::shared_ptr<const LightTree> {
-    if (bounds.size() < fewest_grouped) return nullptr;
-    for (const LightBound& bound : bounds) is_grouped[static_cast<std::size_t>(bound.light)] = 1;
+    if (bounds.size() < fewest_clustered) return nullptr;
+    for (const LightBound& bound : bounds) is_clustered[static_cast<std::size_t>(bound.light)] = 1;
     return std::make_shared<const LightTree>(std::move(bounds));
   };
   for (std::size_t c = 0; c < channels; ++c) {
@@ -45,7 +45,7 @@ void DirectLight::group_lights() {
   }
   few_.resize(channels);
   for (int i = 0; i < light_count(); ++i) {
-    if (is_grouped[static_cast<std::size_t>(i)] != 0) continue;
+    if (is_clustered[static_cast<std::size_t>(i)] != 0) continue;
     if (is_on(i)) {
       few_[static_cast<std::size_t>(channel_of(i))].push_back(i);
     } else if (is_emitter(i)) {
@@ -59,7 +59,7 @@ bool DirectLight::is_on(int light) const {
   return (L > 0.0f).any();
 }
 
-bool DirectLight::groups_emitters() const {
+bool DirectLight::has_emitter_clusters() const {
   return std::ranges::any_of(trees_,
                              [](const Trees& trees) { return trees.of_emitters != nullptr; });
 }
@@ -101,27 +101,27 @@ std::vector<const LightTree*> DirectLight::trees_of(int channel, Lights lights) 
   return trees;
 }
 
-// Adds the parts of a cut through trees: single lights, and two members of each group. The two
+// Adds the parts of a cut through trees: single lights, and two members of each cluster. The two
 // halves of the chances that they are drawn from show what drawing leaves to chance.
 void DirectLight::add_cut(std::span<const LightTree* const> trees, const SurfacePoint& at,
                           std::uint64_t key, double share, double light,
                           std::vector<Choice>& choices) const {
-  int group = 0;
-  for (const Choice& choice : choices) group = std::max(group, choice.group + 1);
+  int cluster = 0;
+  for (const Choice& choice : choices) cluster = std::max(cluster, choice.cluster + 1);
   for (const CutPart& part : light_cut(trees, at, share, light, most_cut_parts)) {
     const int node = part.seen.node;
-    if (!part.tree->is_group(node)) {
+    if (!part.tree->is_cluster(node)) {
       choices.push_back({.light = part.tree->light(node)});
       continue;
     }
     const double u = random_uniform(
-        random_key(key, RandomPurpose::light_groups, static_cast<std::uint64_t>(group)));
+        random_key(key, RandomPurpose::light_clusters, static_cast<std::uint64_t>(cluster)));
     for (const double from : {0.0, 0.5}) {
       const LightTree::Draw draw = part.tree->draw(node, at, from + 0.5 * u);
       if (draw.light < 0) continue;
-      choices.push_back({.light = draw.light, .chance = 2.0 * draw.chance, .group = group});
+      choices.push_back({.light = draw.light, .chance = 2.0 * draw.chance, .cluster = cluster});
     }
-    ++group;
+    ++cluster;
   }
 }
 
@@ -147,7 +147,7 @@ std::vector<DirectLight::Choice> DirectLight::chosen_emitters(const SurfacePoint
 std::optional<DirectLight::Choice> DirectLight::one_for_all(int channel,
                                                             const LightQuery& query) const {
   constexpr double even = 0.1;
-  // A tenth of the light at most for a group: one light is drawn, so that finer groups save
+  // A tenth of the light at most for a cluster: one light is drawn, so that finer clusters save
   // nothing.
   constexpr double coarse = 0.1;
   std::vector<Choice> choices;
@@ -192,7 +192,7 @@ std::vector<DirectLight::Choice> DirectLight::chosen_lights(
       const std::optional<Choice> one = one_for_all(c, query);
       if (one) choices.push_back(*one);
     } else {
-      add_cut(trees_of(c, query.lights), query.at, query.key, query.shadows.group_share,
+      add_cut(trees_of(c, query.lights), query.at, query.key, query.shadows.cluster_share,
               light.empty() ? 0.0 : light[channel], choices);
     }
   }

@@ -29,7 +29,7 @@ struct LightShadow {
   int channel = 0;
   std::uint64_t key = 0;
   double chance = 1.0;            // by which the light was drawn
-  int group = -1;                 // see DirectLight::Choice
+  int cluster = -1;               // see DirectLight::Choice
   int least = 0, most = 0;        // rays
   std::optional<double> share{};  // visible; empty: rays are needed
   EmissionTree::View view{};      // of an emitter that shines by a picture; else without parts
@@ -83,7 +83,7 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
 // Stratified rays to a shadow's edge have an error of n^(-3/4), so the error of the sum over lights
 // with shares w of the light is least with rays in proportion to w^(4/5). Shares are taken within a
 // channel, since other channels may be dimmed. Fewer than 8 first rays would often miss an occluder
-// that hides only a part. A member of a group may miss it: the group gives little.
+// that hides only a part. A member of a cluster may miss it: the cluster gives little.
 void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOptions& options) {
   const auto light = [](const LightShadow& s) { return s.F * s.light().mean() / s.chance; };
   std::vector<double> most_light(channels, 0.0);
@@ -99,7 +99,7 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
     const double all = most_light[s.channel];
     const double effort = all > 0.0 ? std::pow(light(s) / all, 0.8) : 1.0;
     s.most = std::clamp(static_cast<int>(std::ceil(effort * most)), 1, most);
-    const int fewest = s.group >= 0 ? 1 : std::min(first_rays, least);
+    const int fewest = s.cluster >= 0 ? 1 : std::min(first_rays, least);
     s.least = std::min(s.most, std::max(fewest, static_cast<int>(std::ceil(effort * least))));
   }
 }
@@ -164,7 +164,7 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
     owned_[emitter.facet] = emitter.is_sphere ? Owned::front : Owned::whole;
   }
   exact_ = like ? like->exact_ : std::make_shared<const ExactShadows>(scene, mesh, emitters_);
-  group_lights();
+  cluster_lights();
 }
 
 double DirectLight::unoccluded_form_factor(const Emitter& emitter, const SurfacePoint& at) const {
@@ -317,12 +317,12 @@ DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const Lig
                                           const std::vector<double>& light) const {
   const auto& [point, normal, facet] = query.at;
   Shadows found;
-  for (const auto& [i, chance, group] : chosen_lights(query, light)) {
+  for (const auto& [i, chance, cluster] : chosen_lights(query, light)) {
     LightShadow shadow{.index = i,
                        .channel = channel_of(i),
                        .key = random_key(query.key, static_cast<std::uint64_t>(i)),
                        .chance = chance,
-                       .group = group};
+                       .cluster = cluster};
     if (is_emitter(i)) {
       shadow.emitter = &emitters_[i];
     } else {
@@ -352,21 +352,21 @@ DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const Lig
 }
 
 // The light of each channel that a point gets, about, W/m^2: that of a coarse cut with one shadow
-// ray to each light. Empty if no lights of the query are grouped.
+// ray to each light. Empty if no lights of the query are clustered.
 std::vector<double> DirectLight::pilot_light(const ElementCaster& caster,
                                              const LightQuery& query) const {
-  bool has_groups = false;
+  bool has_clusters = false;
   for (int c = 0; c < channel_count_; ++c) {
-    has_groups = has_groups || !trees_of(c, query.lights).empty();
+    has_clusters = has_clusters || !trees_of(c, query.lights).empty();
   }
-  if (!has_groups || query.one_stands_for_all) return {};
-  // A quarter of the groups cost a quarter of the time, and a pilot that is off by a tenth makes
-  // groups off by a tenth.
+  if (!has_clusters || query.one_stands_for_all) return {};
+  // A quarter of the clusters cost a quarter of the time, and a pilot that is off by a tenth makes
+  // clusters off by a tenth.
   constexpr double coarser = 4.0;
   LightQuery pilot = query;
   pilot.key = random_key(query.key, RandomPurpose::pilot_lights);
   pilot.shadows = {
-      .min_rays = 1, .max_rays = 1, .group_share = coarser * query.shadows.group_share};
+      .min_rays = 1, .max_rays = 1, .cluster_share = coarser * query.shadows.cluster_share};
   const Shadows found = shadows(caster, pilot, {});
   const auto channels = static_cast<std::size_t>(channel_count_);
   std::vector<double> seen(channels, 0.0), all(channels, 0.0);
@@ -376,7 +376,7 @@ std::vector<double> DirectLight::pilot_light(const ElementCaster& caster,
     all[static_cast<std::size_t>(s.channel)] += E;
     seen[static_cast<std::size_t>(s.channel)] += E * arriving_share(found.tallies[i]);
   }
-  // A hundredth of the unobstructed light at least: a pilot may miss all that arrives, and groups
+  // A hundredth of the unobstructed light at least: a pilot may miss all that arrives, and clusters
   // that are small against nothing would be single lights.
   constexpr double least = 0.01;
   for (std::size_t c = 0; c < channels; ++c) seen[c] = std::max(seen[c], least * all[c]);
@@ -387,7 +387,7 @@ template <class Add>
 void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
                                  EmitterVisibility* visibility, Add&& add) const {
   const Receiver receiver{.base = query.base, .relief = query.relief};
-  // Groups are small against the light that arrives, which may be a small part of all light. The
+  // Clusters are small against the light that arrives, which may be a small part of all light. The
   // pilot draws other members: a cut that follows from what it draws itself would be biased.
   const auto [shadows, tallies, dome] = this->shadows(caster, query, pilot_light(caster, query));
   if (visibility) *visibility = {};
@@ -398,8 +398,8 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     add(dome->channel, dome->light(), glow.irradiance);
     drawn_noise2 = std::pow(full * glow.noise, 2);
   }
-  // The difference of the two members of each group, W/m^2: both estimate half of its light.
-  std::vector<double> of_groups;
+  // The difference of the two members of each cluster, W/m^2: both estimate half of its light.
+  std::vector<double> of_clusters;
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const LightShadow& s = shadows[i];
     const ShadowTally& tally = tallies[i];
@@ -422,10 +422,10 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     }
     if (is_dimmed) add(s.channel, s.light(), through);
     if (!visibility) continue;
-    if (s.group >= 0) {
-      const auto group = static_cast<std::size_t>(s.group);
-      of_groups.resize(std::max(of_groups.size(), group + 1), 0.0);
-      of_groups[group] = F * arriving_share(tally) * s.light().mean() - of_groups[group];
+    if (s.cluster >= 0) {
+      const auto cluster = static_cast<std::size_t>(s.cluster);
+      of_clusters.resize(std::max(of_clusters.size(), cluster + 1), 0.0);
+      of_clusters[cluster] = F * arriving_share(tally) * s.light().mean() - of_clusters[cluster];
       continue;
     }
     const bool is_behind_panes = is_dimmed && !tally.is_mixed();
@@ -436,7 +436,7 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     if (share == 0.0 && !is_dimmed) visibility->hidden |= bit;
   }
   if (!visibility) return;
-  for (const double difference : of_groups) drawn_noise2 += difference * difference;
+  for (const double difference : of_clusters) drawn_noise2 += difference * difference;
   visibility->drawn_noise = std::sqrt(drawn_noise2);
 }
 

@@ -61,9 +61,10 @@ struct ShadowOptions {
   /// Rays to the dome of the sky, of which an eighth come first; 0: as to an emitter. 1 to
   /// most_sky_rays.
   int sky_rays = 0;
-  /// The greatest share of a point's light that a group of lights may give (see LightTree); 0: each
-  /// light is asked. A channel of fewer than DirectLight::fewest_grouped lights has no groups.
-  double group_share = 0.01;
+  /// The greatest share of a point's light that a cluster of lights may give (see LightTree); 0:
+  /// each light is asked. A channel of fewer than DirectLight::fewest_clustered lights has no
+  /// clusters.
+  double cluster_share = 0.01;
 
   /// True if each light and the sky get one ray at most, without an estimate of the noise.
   bool is_one_ray() const { return max_rays == 1 && sky_rays == 0; }
@@ -74,7 +75,7 @@ struct EmitterVisibility {
   /// Unobstructed irradiance, sum M F, mean of the bands, W/m^2, of the lights whose shadow rays
   /// were partly blocked; their noise is a share of this sum.
   double noisy = 0.0;
-  /// Standard error of the light of the dome and of groups of lights, mean of the bands, W/m^2.
+  /// Standard error of the light of the dome and of clusters of lights, mean of the bands, W/m^2.
   double drawn_noise = 0.0;
   std::uint64_t whole = 0;   ///< bit i: light i is fully visible; the first 64 lights
   std::uint64_t hidden = 0;  ///< bit i: light i is fully hidden
@@ -123,9 +124,9 @@ struct LightQuery {
 /// Free sources (lamps without surface, sky and sun) are always direct light. *Lights* are the
 /// emitters, followed by the free sources.
 ///
-/// Points ask not all of many lights: of a channel with fewest_grouped emitters or lamps, a point
-/// asks those that give it much, and two drawn members of each group of others (see LightTree and
-/// ShadowOptions::group_share). The mean over keys of random numbers is the sum over all lights.
+/// Points ask not all of many lights: of a channel with fewest_clustered emitters or lamps, a point
+/// asks those that give it much, and two drawn members of each cluster of others (see LightTree and
+/// ShadowOptions::cluster_share). The mean over keys of random numbers is the sum over all lights.
 ///
 /// Irradiance includes light that passes straight through ClearPanes; form factors take panes as
 /// opaque.
@@ -164,19 +165,19 @@ class DirectLight {
   double form_factor(const Emitter& emitter, const ElementCaster& caster,
                      const LightQuery& query) const;
 
-  /// The fewest emitters, or lamps, of a channel that are grouped. A cut of fewer has few groups,
-  /// and saves less than its pilot costs.
-  static constexpr std::size_t fewest_grouped = 32;
+  /// The fewest emitters, or lamps, of a channel that are clustered. A cut of fewer has few
+  /// clusters, and saves less than its pilot costs.
+  static constexpr std::size_t fewest_clustered = 32;
   /// A light that a point asks for. What the light gives counts over `chance`.
   struct Choice {
     int light = 0;
     double chance = 1.0;
-    int group = -1;  ///< of which two are drawn; -1: a light by itself
+    int cluster = -1;  ///< of which two are drawn; -1: a light by itself
   };
-  /// True if any emitters are grouped.
-  bool groups_emitters() const;
-  /// The emitters that a point asks for, no group of which gives more than `share` of the light of
-  /// all. `key`: of the random numbers that draw members.
+  /// True if any emitters are clustered.
+  bool has_emitter_clusters() const;
+  /// The emitters that a point asks for, no cluster of which gives more than `share` of the light
+  /// of all. `key`: of the random numbers that draw members.
   std::vector<Choice> chosen_emitters(const SurfacePoint& at, std::uint64_t key,
                                       double share) const;
 
@@ -223,7 +224,7 @@ class DirectLight {
   }
   bool is_emitter(int light) const { return light < static_cast<int>(emitters_.size()); }
   int channel_of(int light) const;
-  void group_lights();
+  void cluster_lights();
   /// `light`: what lights of each channel give the point, W/m^2; empty: not known yet.
   std::vector<Choice> chosen_lights(const LightQuery& query,
                                     const std::vector<double>& light) const;

@@ -151,7 +151,7 @@ LightTree::LightTree(std::vector<LightBound> lights) {
   fill(0, lights);
 }
 
-// Halves a group at the median along the longest side of the box about the lights' middles.
+// Halves a cluster at the median along the longest side of the box about the lights' middles.
 void LightTree::fill(int node, std::span<LightBound> lights) {
   Node filled;
   if (lights.size() == 1) {
@@ -238,7 +238,7 @@ LightTree::Seen LightTree::seen(int node, const SurfacePoint& at) const {
   if (!(I > 0.0)) return {.node = node};
   const double bound = near > 0.0 ? I * std::min(1.0, (height + reach) / near) / (near * near)
                                   : std::numeric_limits<double>::infinity();
-  // From within a group, light comes from its middle as from its border.
+  // From within a cluster, light comes from its middle as from its border.
   const double away = std::max(distance, n.radius);
   const double along = static_cast<double>(n.intensity[static_cast<std::size_t>(steps.middle)]);
   const double about = away > 0.0 ? along * std::max(0.0, height) / (away * away * away) : 0.0;
@@ -250,12 +250,12 @@ std::array<LightTree::Seen, 2> LightTree::halves(int node, const SurfacePoint& a
   return {seen(child, at), seen(child + 1, at)};
 }
 
-// Halves are weighed by the intensity that the group's steps bound, and by cosine and distance of
+// Halves are weighed by the intensity that the cluster's steps bound, and by cosine and distance of
 // their middles. The weight is 0 only where the bound is.
 LightTree::Draw LightTree::draw(int node, const SurfacePoint& at, double u) const {
-  const Node& group = nodes_[static_cast<std::size_t>(node)];
-  const Vector3d to_group = group.middle - at.position;
-  const Steps steps = steps_to(group, to_group, to_group.norm());
+  const Node& cluster = nodes_[static_cast<std::size_t>(node)];
+  const Vector3d to_cluster = cluster.middle - at.position;
+  const Steps steps = steps_to(cluster, to_cluster, to_cluster.norm());
   const Vector3d up = at.normal.cwiseAbs();
   const auto weight = [&](const Node& n) {
     const Vector3d to = n.middle - at.position;
@@ -265,7 +265,7 @@ LightTree::Draw LightTree::draw(int node, const SurfacePoint& at, double u) cons
     return greatest(n, steps) * height / (away * away * away);
   };
   Draw draw;
-  while (is_group(node)) {
+  while (is_cluster(node)) {
     const int child = nodes_[static_cast<std::size_t>(node)].child;
     const double first = weight(nodes_[static_cast<std::size_t>(child)]),
                  second = weight(nodes_[static_cast<std::size_t>(child) + 1]);
@@ -282,7 +282,7 @@ LightTree::Draw LightTree::draw(int node, const SurfacePoint& at, double u) cons
 
 std::vector<CutPart> light_cut(std::span<const LightTree* const> trees, const SurfacePoint& at,
                                double share, double light, int most) {
-  std::vector<CutPart> groups, done;
+  std::vector<CutPart> clusters, done;
   double about = 0.0;
   const auto by_bound = [](const CutPart& a, const CutPart& b) {
     return a.seen.bound < b.seen.bound;
@@ -290,30 +290,30 @@ std::vector<CutPart> light_cut(std::span<const LightTree* const> trees, const Su
   const auto add = [&](const LightTree* tree, const LightTree::Seen& seen) {
     if (!(seen.bound > 0.0)) return;
     about += seen.about;
-    if (!tree->is_group(seen.node)) {
+    if (!tree->is_cluster(seen.node)) {
       done.push_back({tree, seen});
       return;
     }
-    groups.push_back({tree, seen});
-    std::push_heap(groups.begin(), groups.end(), by_bound);
+    clusters.push_back({tree, seen});
+    std::push_heap(clusters.begin(), clusters.end(), by_bound);
   };
   for (const LightTree* tree : trees) add(tree, tree->root(at));
   const auto is_over = [&](const CutPart& part) {
-    // Nothing can be drawn from a group without a finite bound.
+    // Nothing can be drawn from a cluster without a finite bound.
     if (!std::isfinite(part.seen.bound)) return true;
     return part.seen.bound > share * (light > 0.0 ? light : about) &&
-           static_cast<int>(groups.size() + done.size()) < most;
+           static_cast<int>(clusters.size() + done.size()) < most;
   };
-  while (!groups.empty() && is_over(groups.front())) {
-    std::pop_heap(groups.begin(), groups.end(), by_bound);
-    const CutPart whole = groups.back();
-    groups.pop_back();
+  while (!clusters.empty() && is_over(clusters.front())) {
+    std::pop_heap(clusters.begin(), clusters.end(), by_bound);
+    const CutPart whole = clusters.back();
+    clusters.pop_back();
     about -= whole.seen.about;
     for (const LightTree::Seen& half : whole.tree->halves(whole.seen.node, at)) {
       add(whole.tree, half);
     }
   }
-  done.insert(done.end(), groups.begin(), groups.end());
+  done.insert(done.end(), clusters.begin(), clusters.end());
   return done;
 }
 

@@ -28,9 +28,9 @@ std::vector<LightBound> bounds_of(std::span<const Emitter> emitters);
 /// The bounds of lamps among free sources that are on; the first source has the number `first`.
 std::vector<LightBound> bounds_of(std::span<const FreeSource> sources, int first);
 
-/// Lights grouped by their places: a tree in which a node bounds what all of its lights can give a
-/// point (lightcuts; Walter et al. 2005). Where many lights shine, a point takes the light of
-/// distant groups from a few of their members, drawn at random.
+/// Lights clustered by their places: a tree in which a node bounds what all of its lights can give
+/// a point (lightcuts; Walter et al. 2005). Where many lights shine, a point takes the light of
+/// distant clusters from a few of their members, drawn at random.
 class LightTree {
  public:
   /// Precondition: `lights` is not empty.
@@ -43,10 +43,10 @@ class LightTree {
     double about = 0.0;  ///< that irradiance as if all light came from the node's middle, W/m^2
   };
   Seen root(const SurfacePoint& at) const { return seen(0, at); }
-  /// The two halves of a node that is_group().
+  /// The two halves of a node that is_cluster().
   std::array<Seen, 2> halves(int node, const SurfacePoint& at) const;
-  bool is_group(int node) const { return nodes_[static_cast<std::size_t>(node)].child >= 0; }
-  /// The light of a node that is no group.
+  bool is_cluster(int node) const { return nodes_[static_cast<std::size_t>(node)].child >= 0; }
+  /// The light of a node that is no cluster.
   int light(int node) const { return nodes_[static_cast<std::size_t>(node)].light; }
 
   /// A light of a node and the chance by which it was drawn.
@@ -83,15 +83,15 @@ class LightTree {
   std::vector<Node> nodes_{};
 };
 
-/// A part of a cut: a single light, or a group.
+/// A part of a cut: a single light, or a cluster.
 struct CutPart {
   const LightTree* tree = nullptr;
   LightTree::Seen seen{};
 };
 
-/// The coarsest cut through trees in which no group can give more than `share` of `light`, W/m^2,
+/// The coarsest cut through trees in which no cluster can give more than `share` of `light`, W/m^2,
 /// the light that arrives (Walter et al. 2005); `light` 0: of what all parts give about. At most
-/// `most` parts, and more only where a point lies within groups. Parts that give nothing are left
+/// `most` parts, and more only where a point lies within clusters. Parts that give nothing are left
 /// out.
 std::vector<CutPart> light_cut(std::span<const LightTree* const> trees, const SurfacePoint& at,
                                double share, double light, int most);

@@ -99,15 +99,15 @@ void EmitterExchange::add_to_patches(int emitter, bool behind, const SurfacePoin
 // Adds what a point that stands for `area` exchanges with the emitters that it asks for.
 void EmitterExchange::add_point(const SurfacePoint& at, std::uint64_t key, int number, double area,
                                 const FormFactorOptions& options, Found& found) const {
-  const double share = options.shadows.group_share;
-  for (const auto& [e, chance, group] : direct_light_.chosen_emitters(
+  const double share = options.shadows.cluster_share;
+  for (const auto& [e, chance, cluster] : direct_light_.chosen_emitters(
            at, random_key(key, static_cast<std::uint64_t>(number)), share)) {
     if (is_left_to_rays_[e]) continue;
     const Emitter& emitter = direct_light_.emitters()[e];
     const bool behind =
         !emitter.is_sphere && (at.position - emitter.loops[0][0]).dot(emitter.normal) < 0.0;
     ShadowOptions shadows = options.shadows;
-    if (group >= 0) shadows.min_rays = shadows.max_rays = 1;
+    if (cluster >= 0) shadows.min_rays = shadows.max_rays = 1;
     const double exchange =
         area / chance *
         direct_light_.form_factor(
@@ -136,11 +136,12 @@ EmitterExchange::Row EmitterExchange::row_of(int patch, const SobolPoints& sobol
 void EmitterExchange::compute(const std::vector<char>& receives, const FormFactorOptions& options,
                               const JournalPhase& phase) {
   from_.assign(static_cast<std::size_t>(mesh_.patch_count()), {});
-  // Points that ask for groups draw other members each; a quarter of the points keeps what a patch
-  // with 10 000 emitters costs near to what one with 100 does.
+  // Points that ask for clusters draw other members each; a quarter of the points keeps what a
+  // patch with 10 000 emitters costs near to what one with 100 does.
   constexpr int fewer = 4;
-  const int points = direct_light_.groups_emitters() ? std::max(1, options.emitter_points / fewer)
-                                                     : options.emitter_points;
+  const int points = direct_light_.has_emitter_clusters()
+                         ? std::max(1, options.emitter_points / fewer)
+                         : options.emitter_points;
   const SobolPoints sobol(points);
   // About a second per slice, shadow rays included.
   constexpr int slice = 512, grain = 4;
@@ -155,6 +156,7 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
           if (receives[i]) from_[i] = row_of(i, sobol, options);
         }
       });
+      if (!phase.is_kept()) continue;
       for (int i = begin; i < end; ++i) {
         counts.push_back(static_cast<int>(from_[i].size()));
         records.insert(records.end(), from_[i].begin(), from_[i].end());

@@ -28,7 +28,8 @@ class EmitterExchange {
   void add_row(int i, std::vector<FormFactor>& row) const;
 
  private:
-  /// S_ij of patch i with the row `patch` of lit patches; see own_row_.
+  /// Exchange areas S of a patch with rows of lit patches, m^2: FormFactor::patch is the row's
+  /// number, 2 e + side of an emitter or own_row_.
   using Row = std::vector<FormFactor>;
   /// The exchange areas that the points of a patch have found, by row.
   class Found;

@@ -34,7 +34,7 @@ struct Estimate {
 };
 
 // Adds all inputs on which form factors depend. Of reflectance only the signs matter, and of
-// emission, where no emitters are grouped by what they give.
+// emission, where no emitters are clustered by what they give.
 void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const DirectLight& direct_light,
                             const PatchMesh& mesh, const FormFactorOptions& options) {
   print.add_geometry(mesh);
@@ -42,7 +42,7 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   for (const Emitter& emitter : direct_light.emitters()) {
     print.add(emitter.facet);
     if (emitter.picture) print.add(1);
-    if (direct_light.groups_emitters()) print.add(emitter.exitance);
+    if (direct_light.has_emitter_clusters()) print.add(emitter.exitance);
   }
   for (const Material& material : scene.materials) {
     print.add(material.is_diffuse());
@@ -71,7 +71,7 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   const auto& [method, rays_per_patch, target_error, most_rays_per_patch, rays_per_emitter,
                max_specular_depth, emitter_points, shadows, portals, hemicube_resolution,
                enforce_closure, memory, run] = options;
-  const auto& [min_shadow_rays, max_shadow_rays, sky_rays, group_share] = shadows;
+  const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share] = shadows;
   print.add(method);
   print.add(rays_per_patch);
   print.add(target_error);
@@ -82,7 +82,7 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   print.add(min_shadow_rays);
   print.add(max_shadow_rays);
   print.add(sky_rays);
-  print.add(group_share);
+  print.add(cluster_share);
   // Portals follow from the scene and its light.
   print.add(portals ? portals->size() : 0);
   print.add(hemicube_resolution);

@@ -136,9 +136,9 @@ double InterpolationError::reference(int cell, int side) const {
 }
 
 // Differences count if they are beyond doubt; `hidden` gets what noise may hide otherwise. The
-// noise of the sky and of groups of lights is known at each vertex, and is left to the final gather
-// instead: to split a cell would not reduce it. Of many cells whose differences are noise, some
-// exceed twice the noise, and few four times.
+// noise of the sky and of clusters of lights is known at each vertex, and is left to the final
+// gather instead: to split a cell would not reduce it. Of many cells whose differences are noise,
+// some exceed twice the noise, and few four times.
 InterpolationError::Squares InterpolationError::beyond_noise(const Differences& differences,
                                                              double shadow_noise,
                                                              double drawn_noise) {

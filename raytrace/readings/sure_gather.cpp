@@ -126,9 +126,9 @@ class SureGather {
     return {.min_rays = scaled(options_.shadows.min_rays),
             .max_rays = scaled(options_.shadows.max_rays),
             .sky_rays = rays,
-            // Groups of a tenth leave 0.04 % of noise among 10 000 lamps, below any accuracy that
+            // Clusters of a tenth leave 0.04 % of noise among 10 000 lamps, below any accuracy that
             // can be asked for.
-            .group_share = 0.1 * options_.shadows.group_share / std::max(1.0, share)};
+            .cluster_share = 0.1 * options_.shadows.cluster_share / std::max(1.0, share)};
   }
 
   // Gathers a part at points, those with equally many rays together.

@@ -220,10 +220,10 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   // Many samples of a pixel average their shadows. A second stage of rays, cast only where the
   // first disagree, would leave a part of thin shadows out of that mean.
   if (state.number) shadows.max_rays = shadows.min_rays;
-  // Samples draw other members of groups of lights. Groups four times as large have twice the
+  // Samples draw other members of clusters of lights. Clusters four times as large have twice the
   // noise, which the mean of four samples halves.
   constexpr double coarser = 4.0;
-  if (state.number) shadows.group_share *= coarser;
+  if (state.number) shadows.cluster_share *= coarser;
   Arriving E;
   const ShadowOrigin from = shadow_origin(hit, at);
   const bool has_dome = !relief && dome_.serves(hit.element, branch.weight.maxCoeff());

@@ -117,7 +117,7 @@ LightTree tree_of(const DirectLight& light) {
 double expect_bounded(const LightTree& tree, const LightTree::Seen& seen, const SurfacePoint& at,
                       const std::vector<double>& E) {
   double sum = 0.0;
-  if (tree.is_group(seen.node)) {
+  if (tree.is_cluster(seen.node)) {
     for (const auto& half : tree.halves(seen.node, at)) sum += expect_bounded(tree, half, at, E);
   } else {
     sum = E[static_cast<std::size_t>(tree.light(seen.node))];
@@ -153,20 +153,20 @@ TEST(LightTree, PanelsThatFaceDownGiveNothingAbove) {
   EXPECT_EQ(tree.root(above).bound, 0.0);
 }
 
-// The chances of the lights of a group, with those of none, add up to 1, and each light that gives
-// something has one: the mean of light over chance is then the light of the group.
+// The chances of the lights of a cluster, with those of none, add up to 1, and each light that
+// gives something has one: the mean of light over chance is then the light of the cluster.
 TEST(LightTree, DrawsEveryLightByItsChance) {
   const Hall hall(20, 20);
   const DirectLight light(hall.scene, hall.mesh);
   const LightTree tree = tree_of(light);
   const LightTree* const trees = &tree;
-  int groups = 0;
+  int clusters = 0;
   for (int k = 0; k < 20; ++k) {
     const SurfacePoint at = point(k);
     const std::vector<double> E = unoccluded(light, at);
     for (const CutPart& part : light_cut({&trees, 1}, at, 0.2, 0.0, 1 << 20)) {
-      if (!tree.is_group(part.seen.node)) continue;
-      ++groups;
+      if (!tree.is_cluster(part.seen.node)) continue;
+      ++clusters;
       // The chances follow from how often each light is drawn, to 1/draws at each of its ends.
       constexpr int draws = 1 << 14;
       std::map<int, double> drawn, chance;
@@ -183,10 +183,10 @@ TEST(LightTree, DrawsEveryLightByItsChance) {
       }
     }
   }
-  EXPECT_GT(groups, 20);
+  EXPECT_GT(clusters, 20);
 }
 
-TEST(LightTree, CutsHaveNoGroupAboveTheShare) {
+TEST(LightTree, CutsHaveNoClusterAboveTheShare) {
   const Hall hall(100, 100);
   const DirectLight light(hall.scene, hall.mesh);
   const LightTree tree = tree_of(light);
@@ -199,7 +199,7 @@ TEST(LightTree, CutsHaveNoGroupAboveTheShare) {
     for (const double share : {0.1, 0.02, 0.0}) {
       int singles = 0;
       for (const CutPart& part : light_cut({&trees, 1}, at, share, 7.0, 1 << 20)) {
-        if (tree.is_group(part.seen.node)) {
+        if (tree.is_cluster(part.seen.node)) {
           EXPECT_LE(part.seen.bound, share * 7.0);
         } else {
           ++singles;
@@ -210,12 +210,12 @@ TEST(LightTree, CutsHaveNoGroupAboveTheShare) {
     }
     // Single lights alone, as far as they give anything.
     for (const CutPart& part : light_cut({&trees, 1}, at, 0.0, 7.0, 1 << 20)) {
-      EXPECT_FALSE(tree.is_group(part.seen.node));
+      EXPECT_FALSE(tree.is_cluster(part.seen.node));
     }
   }
 }
 
-TEST(LightTree, ManyLightsAtOnePlaceAreGrouped) {
+TEST(LightTree, ManyLightsAtOnePlaceAreOneCluster) {
   std::vector<LightBound> lights(1000);
   for (int k = 0; k < 1000; ++k) {
     lights[k].light = k;
@@ -236,11 +236,11 @@ TEST(LightTree, ManyLightsAtOnePlaceAreGrouped) {
 
 // 300 panels and 300 lamps behind screens: the mean over keys is the sum over all lights, and the
 // noise is what drawn_noise says.
-TEST(LightTree, GroupsGiveTheLightOfAllInTheMean) {
+TEST(LightTree, ClustersGiveTheLightOfAllInTheMean) {
   const Hall hall(300, 300);
   const ElementCaster caster(hall.mesh);
   const DirectLight light(hall.scene, hall.mesh);
-  ASSERT_TRUE(light.groups_emitters());
+  ASSERT_TRUE(light.has_emitter_clusters());
   constexpr int keys = 64;
   const auto by_key = [&](const SurfacePoint& at, double share, double& said) {
     Eigen::ArrayXd E(keys);
@@ -249,7 +249,7 @@ TEST(LightTree, GroupsGiveTheLightOfAllInTheMean) {
       EmitterVisibility visibility;
       const LightQuery query{.at = at,
                              .key = static_cast<std::uint64_t>(i),
-                             .shadows = {.min_rays = 64, .max_rays = 256, .group_share = share}};
+                             .shadows = {.min_rays = 64, .max_rays = 256, .cluster_share = share}};
       E[i] = light.irradiance(caster, query, &visibility).mean();
       said += visibility.drawn_noise * visibility.drawn_noise / keys;
     }
@@ -262,18 +262,18 @@ TEST(LightTree, GroupsGiveTheLightOfAllInTheMean) {
   int lit = 0;
   for (int k = 0; k < 24; ++k) {
     const SurfacePoint at = point(k);
-    double none = 0.0, of_groups = 0.0;
-    const Eigen::ArrayXd all = by_key(at, 0.0, none), grouped = by_key(at, 0.02, of_groups);
+    double none = 0.0, of_clusters = 0.0;
+    const Eigen::ArrayXd all = by_key(at, 0.0, none), clustered = by_key(at, 0.02, of_clusters);
     if (!(all.mean() > 0.0)) continue;
     ++lit;
     EXPECT_EQ(none, 0.0);
     // Four standard errors of both means.
-    EXPECT_NEAR(grouped.mean(), all.mean(),
-                4.0 * std::sqrt((variance(all) + variance(grouped)) / keys))
+    EXPECT_NEAR(clustered.mean(), all.mean(),
+                4.0 * std::sqrt((variance(all) + variance(clustered)) / keys))
         << k;
     const double squared = all.mean() * all.mean();
-    said += of_groups / squared;
-    found += std::max(0.0, variance(grouped) - variance(all)) / squared;
+    said += of_clusters / squared;
+    found += std::max(0.0, variance(clustered) - variance(all)) / squared;
   }
   EXPECT_GT(lit, 12);
   // Members from two halves of the chances differ by more than members drawn apart.
@@ -281,12 +281,12 @@ TEST(LightTree, GroupsGiveTheLightOfAllInTheMean) {
   EXPECT_LT(said, 8.0 * found);
 }
 
-TEST(LightTree, FewLightsHaveNoGroups) {
+TEST(LightTree, FewLightsHaveNoClusters) {
   const Hall hall(20, 20);
   const ElementCaster caster(hall.mesh);
   const DirectLight light(hall.scene, hall.mesh);
-  EXPECT_FALSE(light.groups_emitters());
-  const ShadowOptions fine{.group_share = 0.0}, coarse{.group_share = 0.5};
+  EXPECT_FALSE(light.has_emitter_clusters());
+  const ShadowOptions fine{.cluster_share = 0.0}, coarse{.cluster_share = 0.5};
   for (int k = 0; k < 20; ++k) {
     const Spectrum a = light.irradiance(caster, {.at = point(k), .shadows = fine}),
                    b = light.irradiance(caster, {.at = point(k), .shadows = coarse});
