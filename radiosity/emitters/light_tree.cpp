@@ -238,7 +238,7 @@ LightTree::Seen LightTree::seen(int node, const SurfacePoint& at) const {
   if (!(I > 0.0)) return {.node = node};
   const double bound = near > 0.0 ? I * std::min(1.0, (height + reach) / near) / (near * near)
                                   : std::numeric_limits<double>::infinity();
-  // From within a cluster, light comes from its middle as from its border.
+  // The middle of a cluster counts as no nearer than the ball about the cluster.
   const double away = std::max(distance, n.radius);
   const double along = static_cast<double>(n.intensity[static_cast<std::size_t>(steps.middle)]);
   const double about = away > 0.0 ? along * std::max(0.0, height) / (away * away * away) : 0.0;
