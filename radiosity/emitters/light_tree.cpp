@@ -85,7 +85,43 @@ std::pair<Vector3d, double> joined(const Vector3d& a, double of_a, const Vector3
   return {std::cos(turn) * a + std::sin(turn) * side.normalized(), half};
 }
 
+// Steps of IntensityByAngle, first to last, into which a point may lie; and that of the middle.
+struct Steps {
+  int first = 0, last = 0, middle = 0;
+};
+
+// Adds the angles between the node's axis and an axis of a light, and between directions from the
+// node's middle and from another of its points, by their sines and cosines. `to`: from the point to
+// the node's middle.
+Steps steps_to(const LightNode& node, const Vector3d& to, double distance) {
+  constexpr int end = steps - 1;
+  if (!(distance > node.radius)) return {.last = end};
+  const double cos_at = -node.axis.dot(to) / distance,
+               sin_at = std::sqrt(std::max(0.0, 1.0 - cos_at * cos_at));
+  const double sin_ball = node.radius / distance, cos_ball = std::sqrt(1.0 - sin_ball * sin_ball);
+  const double cos_all = node.cosine * cos_ball - node.sine * sin_ball,
+               sin_all = node.sine * cos_ball + node.cosine * sin_ball;
+  Steps result{.last = end, .middle = step_of_cosine(cos_at)};
+  if (sin_all < 0.0) return result;  // more than half a turn
+  if (cos_at < cos_all) result.first = step_of_cosine(cos_at * cos_all + sin_at * sin_all);
+  if (cos_at > -cos_all) result.last = step_of_cosine(cos_at * cos_all - sin_at * sin_all);
+  return result;
+}
+
+double greatest(const LightNode& node, const Steps& within) {
+  float greatest = 0.0f;
+  for (int k = within.first; k <= within.last; ++k) {
+    greatest = std::max(greatest, node.intensity[static_cast<std::size_t>(k)]);
+  }
+  return static_cast<double>(greatest);
+}
+
 }  // namespace
+
+double greatest_intensity(const LightNode& node, const Vector3d& point) {
+  const Vector3d to = node.middle - point;
+  return greatest(node, steps_to(node, to, to.norm()));
+}
 
 std::vector<LightBound> bounds_of(std::span<const Emitter> emitters) {
   std::vector<LightBound> bounds;
@@ -149,11 +185,23 @@ LightTree::LightTree(std::vector<LightBound> lights) {
   nodes_.reserve(2 * lights.size());
   nodes_.emplace_back();
   fill(0, lights);
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    const int child = nodes_[n].child;
+    if (child >= 0) {
+      for (const int half : {child, child + 1}) {
+        nodes_[static_cast<std::size_t>(half)].parent = static_cast<int>(n);
+      }
+      continue;
+    }
+    const auto light = static_cast<std::size_t>(nodes_[n].light);
+    leaf_of_.resize(std::max(leaf_of_.size(), light + 1), -1);
+    leaf_of_[light] = static_cast<int>(n);
+  }
 }
 
 // Halves a cluster at the median along the longest side of the box about the lights' middles.
 void LightTree::fill(int node, std::span<LightBound> lights) {
-  Node filled;
+  LightNode filled;
   if (lights.size() == 1) {
     const LightBound& light = lights.front();
     filled.middle = light.box.center();
@@ -176,8 +224,8 @@ void LightTree::fill(int node, std::span<LightBound> lights) {
     nodes_.resize(nodes_.size() + 2);
     fill(filled.child, {lights.begin(), half});
     fill(filled.child + 1, {half, lights.end()});
-    const Node &a = nodes_[static_cast<std::size_t>(filled.child)],
-               &b = nodes_[static_cast<std::size_t>(filled.child) + 1];
+    const LightNode &a = nodes_[static_cast<std::size_t>(filled.child)],
+                    &b = nodes_[static_cast<std::size_t>(filled.child) + 1];
     const Eigen::AlignedBox3d box = a.box().merged(b.box());
     filled.middle = box.center();
     filled.half = 0.5 * box.sizes();
@@ -192,33 +240,8 @@ void LightTree::fill(int node, std::span<LightBound> lights) {
   nodes_[static_cast<std::size_t>(node)] = filled;
 }
 
-// Adds the angles between the node's axis and an axis of a light, and between directions from the
-// node's middle and from another of its points, by their sines and cosines.
-LightTree::Steps LightTree::steps_to(const Node& node, const Vector3d& to, double distance) {
-  constexpr int end = steps - 1;
-  if (!(distance > node.radius)) return {.last = end};
-  const double cos_at = -node.axis.dot(to) / distance,
-               sin_at = std::sqrt(std::max(0.0, 1.0 - cos_at * cos_at));
-  const double sin_ball = node.radius / distance, cos_ball = std::sqrt(1.0 - sin_ball * sin_ball);
-  const double cos_all = node.cosine * cos_ball - node.sine * sin_ball,
-               sin_all = node.sine * cos_ball + node.cosine * sin_ball;
-  Steps result{.last = end, .middle = step_of_cosine(cos_at)};
-  if (sin_all < 0.0) return result;  // more than half a turn
-  if (cos_at < cos_all) result.first = step_of_cosine(cos_at * cos_all + sin_at * sin_all);
-  if (cos_at > -cos_all) result.last = step_of_cosine(cos_at * cos_all - sin_at * sin_all);
-  return result;
-}
-
-double LightTree::greatest(const Node& node, const Steps& steps) {
-  float greatest = 0.0f;
-  for (int k = steps.first; k <= steps.last; ++k) {
-    greatest = std::max(greatest, node.intensity[static_cast<std::size_t>(k)]);
-  }
-  return static_cast<double>(greatest);
-}
-
 LightTree::Seen LightTree::seen(int node, const SurfacePoint& at) const {
-  const Node& n = nodes_[static_cast<std::size_t>(node)];
+  const LightNode& n = this->node(node);
   const Vector3d to = n.middle - at.position;
   const double height = to.dot(at.normal), reach = n.half.dot(at.normal.cwiseAbs());
   if (!(height + reach > 0.0)) return {.node = node};
@@ -253,31 +276,18 @@ std::array<LightTree::Seen, 2> LightTree::halves(int node, const SurfacePoint& a
 // Halves are weighed by the intensity that the cluster's steps bound, and by cosine and distance of
 // their middles. The weight is 0 only where the bound is.
 LightTree::Draw LightTree::draw(int node, const SurfacePoint& at, double u) const {
-  const Node& cluster = nodes_[static_cast<std::size_t>(node)];
+  const LightNode& cluster = this->node(node);
   const Vector3d to_cluster = cluster.middle - at.position;
   const Steps steps = steps_to(cluster, to_cluster, to_cluster.norm());
   const Vector3d up = at.normal.cwiseAbs();
-  const auto weight = [&](const Node& n) {
+  const auto weight = [&](const LightNode& n) {
     const Vector3d to = n.middle - at.position;
     const double height = to.dot(at.normal) + n.half.dot(up);
     if (!(height > 0.0)) return 0.0;
     const double away = std::max(to.norm(), n.radius);
     return greatest(n, steps) * height / (away * away * away);
   };
-  Draw draw;
-  while (is_cluster(node)) {
-    const int child = nodes_[static_cast<std::size_t>(node)].child;
-    const double first = weight(nodes_[static_cast<std::size_t>(child)]),
-                 second = weight(nodes_[static_cast<std::size_t>(child) + 1]);
-    if (!(first + second > 0.0)) return {.light = -1};
-    const double share = first / (first + second);
-    const bool is_first = u < share;
-    u = is_first ? u / share : (u - share) / (1.0 - share);
-    draw.chance *= is_first ? share : 1.0 - share;
-    node = is_first ? child : child + 1;
-  }
-  draw.light = light(node);
-  return draw;
+  return draw_by(node, u, weight);
 }
 
 std::vector<CutPart> light_cut(std::span<const LightTree* const> trees, const SurfacePoint& at,

@@ -28,6 +28,23 @@ std::vector<LightBound> bounds_of(std::span<const Emitter> emitters);
 /// The bounds of lamps among free sources that are on; the first source has the number `first`.
 std::vector<LightBound> bounds_of(std::span<const FreeSource> sources, int first);
 
+/// A node of LightTree: a light, or a cluster of lights.
+struct LightNode {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero(), half = middle;  ///< of the box, m
+  double radius = 0.0;                                              ///< of the ball about it, m
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();                  ///< of the cone of all axes
+  double half_angle = 0.0, cosine = 1.0, sine = 0.0;                ///< of that cone
+  IntensityByAngle intensity{};                                     ///< W/sr, sum over lights
+  int parent = -1;                                                  ///< -1: this is the root
+  int child = -1;  ///< the first of two; -1: one light
+  int light = 0;   ///< the number of the one light
+
+  Eigen::AlignedBox3d box() const { return {middle - half, middle + half}; }
+};
+
+/// Bound of the intensity that the lights of a node send to a point, W/sr, mean of the bands.
+double greatest_intensity(const LightNode& node, const Eigen::Vector3d& point);
+
 /// Lights clustered by their places: a tree in which a node bounds what all of its lights can give
 /// a point (lightcuts; Walter et al. 2005). Where many lights shine, a point takes the light of
 /// distant clusters from a few of their members, drawn at random.
@@ -59,29 +76,57 @@ class LightTree {
   /// finite.
   Draw draw(int node, const SurfacePoint& at, double u) const;
 
- private:
-  struct Node {
-    Eigen::Vector3d middle = Eigen::Vector3d::Zero(), half = middle;  // of the box
-    double radius = 0.0;                                              // of the ball about it
-    Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();                  // of the cone of all axes
-    double half_angle = 0.0, cosine = 1.0, sine = 0.0;                // of that cone
-    IntensityByAngle intensity{};                                     // sum over lights
-    int child = -1;                                                   // of two; -1: one light
-    int light = 0;
+  /// Draws a light of a node for u in [0,1): the two halves of a cluster have chances in proportion
+  /// to `weight` of each, a function of a LightNode that is not negative (Conty Estevez & Kulla
+  /// 2018, "Importance sampling of many lights with adaptive tree splitting").
+  template <class Weight>
+  Draw draw_by(int node, double u, const Weight& weight) const;
+  /// The chance by which draw_by() draws a light from the root; 0 for a light that is not here.
+  template <class Weight>
+  double chance_by(int light, const Weight& weight) const;
+  const LightNode& node(int number) const { return nodes_[static_cast<std::size_t>(number)]; }
 
-    Eigen::AlignedBox3d box() const { return {middle - half, middle + half}; }
-  };
-  // Steps of IntensityByAngle, first to last, into which a point may lie; and that of the middle.
-  struct Steps {
-    int first = 0, last = 0, middle = 0;
-  };
+ private:
   void fill(int node, std::span<LightBound> lights);
   Seen seen(int node, const SurfacePoint& at) const;
-  static Steps steps_to(const Node& node, const Eigen::Vector3d& to, double distance);
-  static double greatest(const Node& node, const Steps& steps);
 
-  std::vector<Node> nodes_{};
+  std::vector<LightNode> nodes_{};
+  std::vector<int> leaf_of_{};  // node of each light; -1: none
 };
+
+template <class Weight>
+LightTree::Draw LightTree::draw_by(int node, double u, const Weight& weight) const {
+  Draw draw;
+  while (is_cluster(node)) {
+    const int child = this->node(node).child;
+    const double first = weight(this->node(child)), second = weight(this->node(child + 1));
+    if (!(first + second > 0.0)) return {.light = -1};
+    const double share = first / (first + second);
+    const bool is_first = u < share;
+    u = is_first ? u / share : (u - share) / (1.0 - share);
+    draw.chance *= is_first ? share : 1.0 - share;
+    node = is_first ? child : child + 1;
+  }
+  draw.light = light(node);
+  return draw;
+}
+
+template <class Weight>
+double LightTree::chance_by(int light, const Weight& weight) const {
+  const auto number = static_cast<std::size_t>(light);
+  if (light < 0 || number >= leaf_of_.size() || leaf_of_[number] < 0) return 0.0;
+  double chance = 1.0;
+  int child = leaf_of_[number];
+  while (node(child).parent >= 0) {
+    const int parent = node(child).parent, first = node(parent).child;
+    const double of_first = weight(node(first)), of_second = weight(node(first + 1));
+    if (!(of_first + of_second > 0.0)) return 0.0;
+    const double share = of_first / (of_first + of_second);
+    chance *= child == first ? share : 1.0 - share;
+    child = parent;
+  }
+  return chance;
+}
 
 /// A part of a cut: a single light, or a cluster.
 struct CutPart {

@@ -388,6 +388,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .chain = random_key(parent.chain, facets_[hit.facet].chain, sample.crosses),
                 .turns = parent.turns,
                 .lobe_density = sample.density,
+                .lobe = off_lobe ? parent.lobe : nullptr,
                 .bright = sample.density > 0.0 ? parent.bright : nullptr,
                 .is_hidden = parent.is_hidden || (!parent.is_sharp && !off_lobe &&
                                                   !(sample.crosses && is_clear_pane(what))),

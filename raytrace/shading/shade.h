@@ -221,6 +221,8 @@ class RayTree {
     /// Probability density of the direction, 1/sr, off a rough surface, which samples lamps as
     /// well; else 0.
     double lobe_density = 0.0;
+    /// The rough surface at the branch's origin, if lobe_density is above 0.
+    const LobeView* lobe = nullptr;
     /// View by which the rough surface at the branch's origin aims at bright patches as well; null:
     /// no such rays.
     const BrightPatches::View* bright = nullptr;
@@ -279,12 +281,12 @@ class RayTree {
                    const TreeState& state) const;
   void scatter(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
                const ShadingPoint& at, TreeState& state) const;
-  void add_lamp(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
-                const ShadingPoint& at, const Eigen::Array4d& u, float share,
+  void add_lamp(const Branch& branch, const SurfaceInteraction& interaction, const LobeView& view,
+                const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u, float share,
                 TreeState& state) const;
   void add_free_source(const Branch& branch, const SurfaceInteraction& interaction,
-                       const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u,
-                       float share, TreeState& state) const;
+                       const LobeView& view, const ElementHit& hit, const ShadingPoint& at,
+                       const Eigen::Array4d& u, float share, TreeState& state) const;
   void add_bright_patch(const Branch& branch, const SurfaceInteraction& interaction,
                         const ElementHit& hit, const ShadingPoint& at,
                         const BrightPatches::View& view, const Eigen::Array4d& u, float share,

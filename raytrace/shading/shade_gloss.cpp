@@ -67,6 +67,8 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
     view = bright_.view(at.position, interaction.normal, usual_samples);
   }
   const SkySites::Site* const sky = sky_site(branch, interaction, hit, at, state);
+  const LobeView lobe_view(at.position, interaction,
+                           lobe(facets_[hit.facet].material, hit.from_back));
   for (int i = 0; i < count; ++i) {
     const int index = (first + i) % gloss_point_count;
     const auto sample_key = random_key(key, static_cast<std::uint64_t>(index));
@@ -78,8 +80,10 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
         lobe(facets_[hit.facet].material, hit.from_back).density(interaction, sample.direction);
     const Eigen::Array4d lamp_u =
         gloss_points_.point(index, random_key(key, RandomPurpose::gloss_lamps)).cast<double>();
-    add_lamp(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), state);
-    add_free_source(branch, interaction, hit, at, lamp_u, 1.0f / static_cast<float>(count), state);
+    add_lamp(branch, interaction, lobe_view, hit, at, lamp_u, 1.0f / static_cast<float>(count),
+             state);
+    add_free_source(branch, interaction, lobe_view, hit, at, lamp_u,
+                    1.0f / static_cast<float>(count), state);
     if (!view.is_empty()) {
       const Eigen::Array4d bright_u =
           gloss_points_.point(index, random_key(key, RandomPurpose::gloss_patches)).cast<double>();
@@ -98,6 +102,7 @@ void RayTree::scatter(const Branch& branch, const SurfaceInteraction& interactio
                                  sample.crosses);
     Branch spread = branch;
     spread.is_sharp = false;
+    spread.lobe = &lobe_view;
     spread.bright = view.is_empty() ? nullptr : &view;
     spread.sky = sky;
     if (collects) {
@@ -143,10 +148,10 @@ const RoughLobe& RayTree::lobe(int material, bool from_back) const {
 // the lobe that meet the lamp carry the rest of the weight (balance heuristic of Veach & Guibas
 // 1995).
 void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interaction,
-                       const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u,
-                       float share, TreeState& state) const {
+                       const LobeView& view, const ElementHit& hit, const ShadingPoint& at,
+                       const Eigen::Array4d& u, float share, TreeState& state) const {
   if (branch.depth >= deepest_path(options_.max_depth, true)) return;
-  const auto lamp = lamps_.draw(at.position, hit.facet, u[0], u[1], u[2]);
+  const auto lamp = lamps_.draw(view, hit.facet, u[0], u[1], u[2]);
   if (!lamp) return;
   if (crosses_facet_alone(lamp->direction, interaction.normal, at.normal)) return;
   const int material = facets_[hit.facet].material;
@@ -175,26 +180,14 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
 }
 
 // Adds light of a source that is no surface off a rough surface. No direction of the lobe meets
-// such a source, so this sample has the full weight. The probability of a source is proportional to
-// its unobstructed irradiance at the point.
+// such a source, so this sample has the full weight.
 void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& interaction,
-                              const ElementHit& hit, const ShadingPoint& at,
+                              const LobeView& view, const ElementHit& hit, const ShadingPoint& at,
                               const Eigen::Array4d& u, float share, TreeState& state) const {
-  const std::vector<FreeSource>& sources = direct_light_.free_sources();
-  if (sources.empty() || branch.depth >= deepest_path(options_.max_depth, true)) return;
-  std::vector<double> sum;
-  sum.reserve(sources.size());
-  for (const FreeSource& source : sources) {
-    const double sent = sample_source(source, at.position, u[1], u[2]).irradiance *
-                        static_cast<double>(source.light.sum());
-    sum.push_back(sent + (sum.empty() ? 0.0 : sum.back()));
-  }
-  if (!(sum.back() > 0.0)) return;
-  const auto drawn = std::upper_bound(sum.begin(), sum.end() - 1, u[0] * sum.back()) - sum.begin();
-  const auto i = static_cast<std::size_t>(drawn);
-  const double chance = (sum[i] - (i > 0 ? sum[i - 1] : 0.0)) / sum.back();
-  if (!(chance > 0.0)) return;
-  const SourceSample source_sample = sample_source(sources[i], at.position, u[1], u[2]);
+  if (branch.depth >= deepest_path(options_.max_depth, true)) return;
+  const auto drawn = lamps_.draw_source(view, u[0]);
+  if (!drawn) return;
+  const SourceSample source_sample = sample_source(*drawn->source, at.position, u[1], u[2]);
   if (crosses_facet_alone(source_sample.direction, interaction.normal, at.normal)) return;
   const int material = facets_[hit.facet].material;
   const double density =
@@ -208,9 +201,9 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
                 .origin_group = hit.facet};
   // A lobe with density p averages radiance, int L p dw. A source of irradiance E and solid angle 0
   // contributes E p.
-  Spectrum seen = branch.weight * scattering_weight(interaction, sample) * sources[i].light *
+  Spectrum seen = branch.weight * scattering_weight(interaction, sample) * drawn->source->light *
                   direct_light_.passed(*state.caster, ray) *
-                  (share * static_cast<float>(density * source_sample.irradiance / chance));
+                  (share * static_cast<float>(density * source_sample.irradiance / drawn->chance));
   if (!(seen > 0.0f).any()) return;
   if (absorbs_) {
     Media media = branch.media;
@@ -303,6 +296,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   aimed.cone.start = cone_width(branch, at);
   aimed.blur = {.start = width_of(branch.blur, branch, at), .spread = spread_of_lobe(density)};
   aimed.lobe_density = 0.0;
+  aimed.lobe = nullptr;
   aimed.bright = nullptr;
   aimed.is_aimed = true;
   shade(aimed, met, there, state);
@@ -332,7 +326,7 @@ Spectrum RayTree::emission(const Branch& branch, const ElementHit& hit,
     return Spectrum::Zero(M.size());
   if (!(branch.lobe_density > 0.0) || !(M > 0.0f).any()) return M;
   if (!direct_light_.owns(hit.facet, hit.from_back)) return M;
-  const double lamps = lamps_.density(branch.ray.origin, at.position, hit.facet);
+  const double lamps = lamps_.density(*branch.lobe, at.position, hit.facet);
   return M * static_cast<float>(branch.lobe_density / (branch.lobe_density + lamps));
 }
 
