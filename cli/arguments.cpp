@@ -370,9 +370,10 @@ void RenderArguments::add_to(CLI::App& command) {
           "--pass", pass,
           "auto: light of lamps and sun anew at every pixel, that of the sky where the mesh "
           "does not follow it (default); direct: all direct light anew; gather: indirect "
-          "light anew too; interpolate: all light from the solution")
+          "light anew too; interpolate: all light from the solution; virtual-lights: no solution "
+          "needed")
       ->type_name("PASS")
-      ->check(one_of("pass", {"auto", "interpolate", "direct", "gather"}))
+      ->check(one_of("pass", {"auto", "interpolate", "direct", "gather", "virtual-lights"}))
       ->group(group);
   command
       .add_option("--shadow-rays", shadow_rays,
@@ -385,6 +386,12 @@ void RenderArguments::add_to(CLI::App& command) {
                   "final-gather rays per point, for --pass gather (default 256)")
       ->type_name("N")
       ->check(whole_number(1, most_gather_rays))
+      ->group(group);
+  command
+      .add_option("--virtual-lights", virtual_lights,
+                  "points that send on light, for --pass virtual-lights (default 4096)")
+      ->type_name("N")
+      ->check(whole_number(1, most_virtual_lights))
       ->group(group);
   command
       .add_option("--photons", photons,
@@ -428,11 +435,15 @@ void RenderArguments::add_to(CLI::App& command) {
 
 RenderOptions RenderArguments::options() const {
   RenderOptions options;
-  options.pass = pass == "interpolate" ? Pass::interpolate
-                 : pass == "direct"    ? Pass::direct
-                 : pass == "gather"    ? Pass::gather
-                                       : Pass::automatic;
+  // A draft takes all light of virtual lights from the mesh.
+  const bool is_draft = pass == "virtual-lights" && quality == "draft";
+  options.pass = pass == "interpolate" || is_draft ? Pass::interpolate
+                 : pass == "direct"                ? Pass::direct
+                 : pass == "gather"                ? Pass::gather
+                 : pass == "virtual-lights"        ? Pass::virtual_lights
+                                                   : Pass::automatic;
   options.gather_rays = gather_samples;
+  options.virtual_lights = virtual_lights;
   const PictureQuality chosen = effective_quality();
   options.photons = chosen.photons;
   options.max_depth = depth;
@@ -447,6 +458,7 @@ std::string RenderArguments::text() const {
   const PictureQuality chosen = effective_quality();
   std::string text = fmt::format("--pass {} --shadow-rays {}", pass, chosen.shadow_rays);
   if (pass == "gather") text += fmt::format(" --gather-samples {}", gather_samples);
+  if (pass == "virtual-lights") text += fmt::format(" --virtual-lights {}", virtual_lights);
   if (pass != "interpolate") text += fmt::format(" --photons {}", chosen.photons);
   if (depth != RenderOptions{}.max_depth) text += fmt::format(" --depth {}", depth);
   if (samples > 0) text += fmt::format(" --samples {}", samples);

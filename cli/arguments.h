@@ -62,6 +62,7 @@ struct RenderArguments {
   std::string quality = "good";
   std::optional<int> shadow_rays{};  ///< unset, like photons and noise: those of `quality`
   int gather_samples = 256;
+  int virtual_lights = RenderOptions{}.virtual_lights;
   std::optional<int> photons{};
   int depth = RenderOptions{}.max_depth;
   int samples = 0;                ///< most per pixel; 0: see SampleOptions
@@ -72,6 +73,8 @@ struct RenderArguments {
   void add_to(CLI::App& command);
   RenderOptions options() const;
   std::string text() const;
+  /// True if pictures need a solution.
+  bool needs_solution() const { return pass != "virtual-lights"; }
   /// The quality, with the options in place that are set themselves.
   PictureQuality effective_quality() const;
 };

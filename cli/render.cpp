@@ -1,5 +1,8 @@
 #include "raytrace/render.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <memory>
 
 #include "cli/arguments.h"
@@ -10,7 +13,9 @@
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "cli/time_limit.h"
+#include "mesh/build_patches.h"
 #include "raytrace/cameras/camera_ray.h"
+#include "raytrace/virtual_lights/virtual_lights.h"
 
 namespace lightwell {
 namespace {
@@ -23,6 +28,40 @@ struct RenderCommandArguments {
   double seconds = 0.0;  // 0: any time
 };
 
+// The light of a scene without a solution: at the vertices of a coarse mesh.
+SolvedScene sketch_step(const Scene& scene, const RenderArguments& arguments, Console& console,
+                        Report& report) {
+  constexpr int few_patches = 400;
+  const Stopwatch watch;
+  SolvedScene sketched{
+      .mesh = build_patches(scene, {.auto_patch_count = few_patches}, console.progress())};
+  report.add_phase("mesh", watch.seconds());
+  const ElementCaster caster(sketched.mesh);
+  const DirectLight direct_light(scene, sketched.mesh);
+  const LitScene lit{scene, caster, direct_light};
+  constexpr int few_lights = 1024, few_photons = 1 << 16;
+  VirtualLightOptions options{.count = std::min(few_lights, arguments.virtual_lights),
+                              .max_specular_depth = arguments.depth,
+                              .progress = console.progress()};
+  if (LightPaths(scene, caster, arguments.depth).has_specular()) {
+    options.caustics = trace_caustics(scene, caster, direct_light, few_photons, arguments.depth,
+                                      console.progress());
+  }
+  sketched.solution = sketch(lit, VirtualLights(lit, options), console.progress());
+  sketched.solution.provenance = {.scene_hash = scene_hash(scene),
+                                  .options = fmt::format("{} virtual lights", options.count)};
+  console.finish_phase();
+  report.add_phase("sketch", watch.seconds());
+  return sketched;
+}
+
+SolvedScene solved_scene(const RenderCommandArguments& arguments, const Scene& scene,
+                         Console& console, Report& report) {
+  return arguments.solution.empty()
+             ? sketch_step(scene, arguments.render, console, report)
+             : read_solution_step(arguments.solution, scene, console, report);
+}
+
 int render_scene(const RenderCommandArguments& arguments, Console& console) {
   const TimeLimit time(arguments.seconds);
   Report report(console.options());
@@ -34,7 +73,7 @@ int render_scene(const RenderCommandArguments& arguments, Console& console) {
   static_cast<void>(
       CameraRays(arguments.render.projection.view(camera, scene)));  // throws for a bad camera
   for (const std::filesystem::path& file : files) require_writable(file);
-  const SolvedScene solved = read_solution_step(arguments.solution, scene, console, report);
+  const SolvedScene solved = solved_scene(arguments, scene, console, report);
   const InterruptEndsEarly on_interrupt;
   console.show_time_left(time.seconds_left());
   report.add("camera", camera.name);
@@ -56,8 +95,14 @@ Action add_render(CLI::App& command) {
   const auto arguments = std::make_shared<RenderCommandArguments>();
   command.description(
       "Renders a picture of a solved scene: diffuse light from the solution,\n"
-      "mirrors and glass by ray tracing.");
-  add_solved_scene(command, arguments->scene, arguments->solution);
+      "mirrors and glass by ray tracing. --pass virtual-lights needs no solution.");
+  command.add_option("scene", arguments->scene, "the scene file the solution was made from")
+      ->required()
+      ->type_name("SCENE");
+  command
+      .add_option("solution", arguments->solution,
+                  "the solution, .vtp; none for --pass virtual-lights")
+      ->type_name("SOLUTION");
   command
       .add_option("-o,--output", arguments->outputs,
                   "the picture, .exr, .png or RADIANCE's .hdr; may be repeated")
@@ -74,6 +119,14 @@ Action add_render(CLI::App& command) {
   arguments->render.film.add_false_colour_to(command, group);
   arguments->checkpoint.add_to(command, CheckpointArguments::HelpOn::first, group);
   add_time_limit(command, arguments->seconds, group);
+  command.final_callback([arguments] {
+    if (!arguments->solution.empty() || !arguments->render.needs_solution()) return;
+    throw CLI::ValidationError(
+        "solution",
+        fmt::format("--pass {} shows the light of a solution; name one, as 'lightwell solve' "
+                    "writes it, or ask for --pass virtual-lights",
+                    arguments->render.pass));
+  });
   command.footer(
       "Example: lightwell render cornell/cornell.toml cornell.vtp --size 256x256 -o small.png");
   return [arguments](Console& console) { return render_scene(*arguments, console); };

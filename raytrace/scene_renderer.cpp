@@ -6,6 +6,7 @@
 #include "raytrace/caustics/caustic_map.h"
 #include "raytrace/shading/indirect_slant.h"
 #include "raytrace/shading/visible_lamps.h"
+#include "raytrace/virtual_lights/virtual_lights.h"
 
 namespace lightwell {
 
@@ -26,7 +27,7 @@ std::shared_ptr<const CausticMap> SceneRenderer::caustics(const RenderOptions& o
 }
 
 std::shared_ptr<const BandArray> SceneRenderer::slant(const RenderOptions& options) {
-  if (options.pass == Pass::gather) return nullptr;
+  if (options.pass == Pass::gather || options.pass == Pass::virtual_lights) return nullptr;
   const std::lock_guard lock(mutex_);
   if (!slant_ || slant_depth_ != options.max_depth) {
     slant_ = std::make_shared<const BandArray>(
@@ -45,11 +46,30 @@ std::shared_ptr<const VisibleLamps> SceneRenderer::visible_lamps() {
   return visible_lamps_;
 }
 
+std::shared_ptr<const VirtualLights> SceneRenderer::virtual_lights(const RenderOptions& options) {
+  if (options.pass != Pass::virtual_lights) return nullptr;
+  const std::lock_guard lock(mutex_);
+  if (!virtual_lights_ || virtual_count_ != options.virtual_lights ||
+      virtual_depth_ != options.max_depth || virtual_caustics_ != options.caustics) {
+    virtual_lights_ = std::make_shared<const VirtualLights>(
+        LitScene{scene_, caster_, direct_light_},
+        VirtualLightOptions{.count = options.virtual_lights,
+                            .max_specular_depth = options.max_depth,
+                            .caustics = options.caustics,
+                            .progress = options.run.progress});
+    virtual_count_ = options.virtual_lights;
+    virtual_depth_ = options.max_depth;
+    virtual_caustics_ = options.caustics;
+  }
+  return virtual_lights_;
+}
+
 Image SceneRenderer::render(const Camera& camera, RenderOptions options, RenderReport* report) {
   validate(options);
   options.caustics = caustics(options);
   options.slant = slant(options);
   options.visible_lamps = visible_lamps();
+  options.found_virtual_lights = virtual_lights(options);
   return lightwell::render(scene_, caster_, direct_light_, solution_, camera, options, report);
 }
 

@@ -31,6 +31,7 @@ class SceneRenderer {
   std::shared_ptr<const CausticMap> caustics(const RenderOptions& options);
   std::shared_ptr<const BandArray> slant(const RenderOptions& options);
   std::shared_ptr<const VisibleLamps> visible_lamps();
+  std::shared_ptr<const VirtualLights> virtual_lights(const RenderOptions& options);
 
   const Scene& scene_;
   const RadiositySolution& solution_;
@@ -42,6 +43,9 @@ class SceneRenderer {
   int slant_depth_ = 0;
   std::shared_ptr<const BandArray> slant_{};  // for paths of slant_depth_
   std::shared_ptr<const VisibleLamps> visible_lamps_{};
+  int virtual_count_ = 0, virtual_depth_ = 0;  // that virtual_lights_ are for
+  std::shared_ptr<const CausticMap> virtual_caustics_{};
+  std::shared_ptr<const VirtualLights> virtual_lights_{};
 };
 
 }  // namespace lightwell

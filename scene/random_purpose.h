@@ -86,6 +86,10 @@ enum class RandomPurpose : std::uint64_t {
   drawn_lights = 0xd4a3,
   pilot_lights = 0x9c06,    // (key of a query, purpose)
   light_clusters = 0x9c07,  // two members of a cluster; (key of a query, purpose, number)
+  // Virtual lights; (number, purpose, bounce) or (key of a point, purpose, number).
+  virtual_light_points = 0x51aa1,
+  virtual_light_paths = 0x51aa2,
+  virtual_light_rays = 0x51aa3,
 };
 
 /// True for every purpose. Two purposes of equal value are two equal cases, which no compiler
@@ -104,6 +108,9 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::gather_aims:
     case RandomPurpose::gap_rays:
     case RandomPurpose::gather_portals:
+    case RandomPurpose::virtual_light_points:
+    case RandomPurpose::virtual_light_paths:
+    case RandomPurpose::virtual_light_rays:
     case RandomPurpose::bright_openness:
     case RandomPurpose::balance_points:
     case RandomPurpose::importance_walks:

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 #include <stdexcept>
+#include <utility>
 
 #include "radiosity/emitters/emission_tree.h"
 #include "radiosity/emitters/emitter_point.h"
@@ -164,6 +165,18 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
     owned_[emitter.facet] = emitter.is_sphere ? Owned::front : Owned::whole;
   }
   exact_ = like ? like->exact_ : std::make_shared<const ExactShadows>(scene, mesh, emitters_);
+  cluster_lights();
+}
+
+DirectLight::DirectLight(const Scene& scene, std::vector<FreeSource> sources)
+    : free_sources_(std::move(sources)),
+      bases_(scene.materials),
+      bands_(scene.bands.count()),
+      samples_(most_probe_shadow_rays),
+      panes_(scene) {
+  const std::size_t facets = scene_facets(scene).size();
+  owned_.assign(facets, Owned::nothing);
+  first_column_.assign(facets, 0);
   cluster_lights();
 }
 

@@ -139,6 +139,9 @@ class DirectLight {
   DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels = {},
               const DirectLight* like = nullptr);
 
+  /// The light of `sources` alone, none of which is the sky's dome, all in channel 0.
+  DirectLight(const Scene& scene, std::vector<FreeSource> sources);
+
   const std::vector<Emitter>& emitters() const { return emitters_; }
   const std::vector<FreeSource>& free_sources() const { return free_sources_; }
   /// The dome of the sky; null if there is none.

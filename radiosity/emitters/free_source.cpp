@@ -115,6 +115,17 @@ SourceRay ray_from(const LampLight& light, const Eigen::Vector3d& on_lamp,
       .weight = drawn.weight};
 }
 
+double kernel(const VirtualLight& light, const Eigen::Vector3d& point,
+              const Eigen::Vector3d& normal) {
+  const Eigen::Vector3d to = light.position - point;
+  const double height = to.dot(normal), above = -to.dot(light.normal), r2 = to.squaredNorm();
+  if (!(height > 0.0 && above > 0.0)) return 0.0;
+  return std::numbers::inv_pi * std::min(height * above / (r2 * r2), light.most);
+}
+
+// The end t_max of a ray whose direction is the vector to the light, before the light's surface.
+constexpr double before_surface = 1.0 - 1e-5;
+
 // A direction towards the disc of the sun, uniform, for (u, v) in [0,1)^2.
 Eigen::Vector3d towards_sun(const Sun& sun, double u, double v) {
   const double half = 0.25 * sun.angle_degrees * std::numbers::pi / 180.0;
@@ -177,6 +188,7 @@ std::vector<FreeSource> free_sources(const Scene& scene, const BandArray& scale,
 
 bool has_sharp_shadows(const FreeSource& source) {
   if (source.is_distant()) return false;
+  if (std::holds_alternative<VirtualLight>(source.shape)) return true;
   return std::get<LampLight>(source.shape).lamp.opening.is_point();
 }
 
@@ -186,6 +198,9 @@ double unoccluded_kernel(const FreeSource& source, const Eigen::Vector3d& point,
     return std::max(0.0, sun->sun.direction.dot(normal));
   }
   if (source.is_dome()) return 0.0;
+  if (const auto* light = std::get_if<VirtualLight>(&source.shape)) {
+    return kernel(*light, point, normal);
+  }
   return kernel(std::get<LampLight>(source.shape), point, normal);
 }
 
@@ -197,6 +212,14 @@ ShadowSample shadow_sample(const FreeSource& source, const SurfacePoint& at, dou
             .weight = std::max(0.0, direction.dot(normal))};
   }
   if (source.is_dome()) return {};
+  if (const auto* light = std::get_if<VirtualLight>(&source.shape)) {
+    return {.ray = {.origin = point,
+                    .direction = light->position - point,
+                    .t_max = before_surface,
+                    .origin_group = facet,
+                    .target_group = light->facet},
+            .weight = kernel(*light, point, normal)};
+  }
   const auto& light = std::get<LampLight>(source.shape);
   const Eigen::Vector3d on_lamp = opening_point(light.lamp, u, v);
   const Eigen::Vector3d to = on_lamp - point;
@@ -214,6 +237,15 @@ SourceRay source_ray(const FreeSource& source, const Eigen::Array4f& u) {
     return sun_ray(*sun, sun->center, sun->radius, u);
   }
   if (source.is_dome()) return {};
+  if (const auto* light = std::get_if<VirtualLight>(&source.shape)) {
+    Eigen::Vector3d a, b;
+    tangent_frame(light->normal, a, b);
+    const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
+    return {.ray = {.origin = light->position,
+                    .direction = d.x() * a + d.y() * b + d.z() * light->normal,
+                    .origin_group = light->facet},
+            .weight = 1.0};
+  }
   const auto& light = std::get<LampLight>(source.shape);
   return ray_from(light, opening_point(light.lamp, u[2], u[3]),
                   draw_direction(light.lamp, u[0], u[1]));
@@ -225,6 +257,7 @@ std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eige
     return sun_ray(*sun, center, radius, u);
   }
   if (source.is_dome()) return std::nullopt;
+  if (std::holds_alternative<VirtualLight>(source.shape)) return source_ray(source, u);
   const auto& light = std::get<LampLight>(source.shape);
   const Eigen::Vector3d on_lamp = opening_point(light.lamp, u[2], u[3]);
   const Eigen::Vector3d to = center - on_lamp;
@@ -257,6 +290,7 @@ double total_weight(const FreeSource& source) {
     return std::numbers::pi * sun->radius * sun->radius;
   }
   if (source.is_dome()) return 0.0;
+  if (std::holds_alternative<VirtualLight>(source.shape)) return 1.0;
   return relative_flux(std::get<LampLight>(source.shape).lamp);
 }
 
@@ -268,6 +302,15 @@ SourceSample sample_source(const FreeSource& source, const Eigen::Vector3d& from
             .irradiance = 1.0};
   }
   if (source.is_dome()) return {};
+  if (const auto* light = std::get_if<VirtualLight>(&source.shape)) {
+    const Eigen::Vector3d to = light->position - from;
+    const double distance = to.norm();
+    if (!(distance > 0.0)) return {};
+    const Eigen::Vector3d direction = to / distance;
+    return {.direction = direction,
+            .distance = before_surface * distance,
+            .irradiance = kernel(*light, from, direction)};
+  }
   const auto& light = std::get<LampLight>(source.shape);
   const Eigen::Vector3d to = opening_point(light.lamp, u, v) - from;
   const double distance = to.norm();

@@ -33,6 +33,16 @@ struct SunLight {
 /// Of the functions below only is_distant() takes the dome; the others return nothing for it.
 struct DomeLight {};
 
+/// A point of a surface that sends on diffuse light (Keller 1997, "Instant radiosity"). `light` of
+/// the source is its flux, W: the intensity is light / pi times the cosine to the normal.
+struct VirtualLight {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< unit
+  int facet = -1;                                      ///< that holds the point
+  /// Limit of cos cos' / r^2, 1/m^2, which grows without bound near the point.
+  double most = 0.0;
+};
+
 /// A source without surface, for both passes: a kernel gives the irradiance of a point, and rays
 /// carry the flux. A new kind of source is an alternative of `shape` with its cases in
 /// free_source.cpp.
@@ -40,12 +50,12 @@ struct FreeSource {
   int number = 0;    ///< as free_source_count numbers them
   int channel = 0;   ///< of EmitterChannels
   Spectrum light{};  ///< factor of kernels and weights, scaled as relight() asks; for a lamp W/sr
-  std::variant<LampLight, SunLight, DomeLight> shape{};
+  std::variant<LampLight, SunLight, DomeLight, VirtualLight> shape{};
 
   bool is_on() const { return (light > 0.0f).any(); }
   bool is_dome() const { return std::holds_alternative<DomeLight>(shape); }
   /// True for sky and sun: light that misses the scene was never part of its energy.
-  bool is_distant() const { return !std::holds_alternative<LampLight>(shape); }
+  bool is_distant() const { return is_dome() || std::holds_alternative<SunLight>(shape); }
 };
 
 /// The scene's free sources in order, scaled by `scale` (see PatchMesh::source_scale). `channel_of`

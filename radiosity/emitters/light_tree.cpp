@@ -67,6 +67,21 @@ IntensityByAngle greatest_of_web(const PhotometricWeb& web) {
   return result;
 }
 
+// The cosine of an angle in front of a surface, else 0. Rounding leaves a cosine above 0 at a right
+// angle.
+double cosine(double angle) {
+  constexpr double rounding = 1e-12;
+  return std::max(0.0, std::cos(angle) - rounding);
+}
+
+LightBound bound_of(const VirtualLight& light, int number, float flux) {
+  return {.light = number,
+          .box = {light.position, light.position},
+          .axis = light.normal,
+          .intensity = falling(flux / pi, cosine),
+          .most = static_cast<double>(flux) / pi * light.most};
+}
+
 Eigen::AlignedBox3d box_of(const Lamp& lamp) {
   const Vector3d half = 0.5 * lamp.opening.along_c0 * lamp.axes.col(0).cwiseAbs() +
                         0.5 * lamp.opening.along_c90 * lamp.axes.col(1).cwiseAbs();
@@ -140,11 +155,7 @@ std::vector<LightBound> bounds_of(std::span<const Emitter> emitters) {
       }
       // A picture may be brighter than its mean where a point sees only a part of the facet, which
       // only single lights are near enough for.
-      bound.intensity = falling(M * emitter.area / pi, [](double angle) {
-        // Rounding leaves a cosine above 0 at a right angle.
-        constexpr double rounding = 1e-12;
-        return std::max(0.0, std::cos(angle) - rounding);
-      });
+      bound.intensity = falling(M * emitter.area / pi, cosine);
       if (emitter.emits_both_sides) {
         for (int k = 0; k < steps / 2; ++k) {
           bound.intensity[static_cast<std::size_t>(steps - 1 - k)] =
@@ -161,10 +172,16 @@ std::vector<LightBound> bounds_of(std::span<const FreeSource> sources, int first
   std::map<const PhotometricWeb*, IntensityByAngle> webs;
   std::vector<LightBound> bounds;
   for (std::size_t s = 0; s < sources.size(); ++s) {
+    if (!sources[s].is_on()) continue;
+    const int number = first + static_cast<int>(s);
+    if (const auto* virtual_light = std::get_if<VirtualLight>(&sources[s].shape)) {
+      bounds.push_back(bound_of(*virtual_light, number, sources[s].light.mean()));
+      continue;
+    }
     const auto* light = std::get_if<LampLight>(&sources[s].shape);
-    if (!light || !sources[s].is_on()) continue;
+    if (!light) continue;
     const Lamp& lamp = light->lamp;
-    LightBound bound{.light = first + static_cast<int>(s), .box = box_of(lamp), .axis = lamp.aim()};
+    LightBound bound{.light = number, .box = box_of(lamp), .axis = lamp.aim()};
     if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) {
       const auto [known, is_new] = webs.try_emplace(web->get());
       if (is_new) known->second = greatest_of_web(**web);
@@ -208,6 +225,7 @@ void LightTree::fill(int node, std::span<LightBound> lights) {
     filled.half = 0.5 * light.box.sizes();
     filled.axis = light.axis;
     filled.intensity = light.intensity;
+    filled.most = light.most;
     filled.light = light.light;
   } else {
     Eigen::AlignedBox3d middles;
@@ -230,6 +248,7 @@ void LightTree::fill(int node, std::span<LightBound> lights) {
     filled.middle = box.center();
     filled.half = 0.5 * box.sizes();
     std::tie(filled.axis, filled.half_angle) = joined(a.axis, a.half_angle, b.axis, b.half_angle);
+    filled.most = a.most + b.most;
     for (std::size_t k = 0; k < filled.intensity.size(); ++k) {
       filled.intensity[k] = a.intensity[k] + b.intensity[k];
     }
@@ -259,8 +278,9 @@ LightTree::Seen LightTree::seen(int node, const SurfacePoint& at) const {
   }
   const double I = greatest(n, steps);
   if (!(I > 0.0)) return {.node = node};
-  const double bound = near > 0.0 ? I * std::min(1.0, (height + reach) / near) / (near * near)
-                                  : std::numeric_limits<double>::infinity();
+  const double bound =
+      near > 0.0 ? std::min(n.most, I * std::min(1.0, (height + reach) / near) / (near * near))
+                 : n.most;
   // The middle of a cluster counts as no nearer than the ball about the cluster.
   const double away = std::max(distance, n.radius);
   const double along = static_cast<double>(n.intensity[static_cast<std::size_t>(steps.middle)]);

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct LightBound {
   Eigen::AlignedBox3d box{};                        ///< of all points that shine, m
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();  ///< unit
   IntensityByAngle intensity{};                     ///< W/sr, mean of the bands
+  /// The greatest irradiance that the light can give, W/m^2, mean of the bands.
+  double most = std::numeric_limits<double>::infinity();
 };
 
 /// The bounds of emitters that are on, numbered from 0.
@@ -35,9 +38,10 @@ struct LightNode {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitZ();                  ///< of the cone of all axes
   double half_angle = 0.0, cosine = 1.0, sine = 0.0;                ///< of that cone
   IntensityByAngle intensity{};                                     ///< W/sr, sum over lights
-  int parent = -1;                                                  ///< -1: this is the root
-  int child = -1;  ///< the first of two; -1: one light
-  int light = 0;   ///< the number of the one light
+  double most = 0.0;  ///< the greatest irradiance of all, W/m^2
+  int parent = -1;    ///< -1: this is the root
+  int child = -1;     ///< the first of two; -1: one light
+  int light = 0;      ///< the number of the one light
 
   Eigen::AlignedBox3d box() const { return {middle - half, middle + half}; }
 };

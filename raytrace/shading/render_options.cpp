@@ -18,6 +18,7 @@ void validate(const RenderOptions& options) {
   within("max_subdivision", options.max_subdivision, 0, deepest_subdivision);
   within("max_depth", options.max_depth, 0, deepest_tree);
   within("gather_rays", options.gather_rays, 1, most_gather_rays);
+  within("virtual_lights", options.virtual_lights, 1, most_virtual_lights);
   within("photons", options.photons, 0, most_photons);
   within("glossy_rays", options.glossy_rays, 1, 256);
   within("sampling.most", options.sampling.most, 0, SampleOptions::limit);

@@ -13,14 +13,17 @@
 namespace lightwell {
 
 class CausticMap;
+class VirtualLights;
 class VisibleLamps;
 
 /// Source of irradiance at a diffuse hit.
 enum class Pass {
-  interpolate,  ///< direct and indirect light interpolated from the solution
-  direct,       ///< direct light by shadow rays, indirect light interpolated
-  gather,       ///< direct light by shadow rays, indirect light by a final gather at every hit
-  automatic,    ///< as `direct`, but light of the sky's dome interpolated where DomeOnMesh is fine
+  interpolate,     ///< direct and indirect light interpolated from the solution
+  direct,          ///< direct light by shadow rays, indirect light interpolated
+  gather,          ///< direct light by shadow rays, indirect light by a final gather at every hit
+  virtual_lights,  ///< direct light by shadow rays, indirect light by VirtualLights, without a
+                   ///< solution
+  automatic,  ///< as `direct`, but light of the sky's dome interpolated where DomeOnMesh is fine
 };
 
 /// Options of many samples per pixel in place of subdivision: for pictures with a lens or motion,
@@ -47,6 +50,10 @@ struct RenderOptions {
   ShadowOptions shadows{};
   /// Rays over the hemisphere of a hit, for Pass::gather; 1 to most_gather_rays.
   int gather_rays = 256;
+  /// VirtualLights, for Pass::virtual_lights; 1 to most_virtual_lights.
+  int virtual_lights = 4096;
+  /// The virtual lights of the scene, shared as `caustics` is. Null: found for this picture.
+  std::shared_ptr<const VirtualLights> found_virtual_lights{};
   /// Photons from emitters through mirrors and glass, for caustics of Pass::direct and
   /// Pass::gather: see CausticMap. 0: the solution's caustics, as sharp as its mesh.
   int photons = 1 << 19;
@@ -75,6 +82,7 @@ struct RenderOptions {
 };
 
 constexpr int most_gather_rays = 1 << 16;
+constexpr int most_virtual_lights = 1 << 20;
 
 /// Greatest RenderOptions::max_subdivision.
 constexpr int deepest_subdivision = 6;

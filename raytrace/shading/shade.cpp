@@ -88,7 +88,8 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
   }
-  if (!relief_.is_empty() && options.pass != Pass::gather) {
+  const bool uses_solution = options.pass != Pass::gather && options.pass != Pass::virtual_lights;
+  if (!relief_.is_empty() && uses_solution) {
     slant_ = options.slant ? options.slant
                            : std::make_shared<const BandArray>(indirect_slant(
                                  scene, caster, direct_light, solution, options.max_depth));
@@ -98,6 +99,17 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
     caustics_ = options.caustics ? options.caustics
                                  : trace_caustics(scene, caster, direct_light, options.photons,
                                                   options.max_depth, options.run.progress);
+  }
+  if (options.pass == Pass::virtual_lights) {
+    virtual_ = options.found_virtual_lights;
+    if (!virtual_) {
+      virtual_ = std::make_shared<const VirtualLights>(
+          LitScene{scene, caster, direct_light},
+          VirtualLightOptions{.count = options.virtual_lights,
+                              .max_specular_depth = options.max_depth,
+                              .caustics = caustics_,
+                              .progress = options.run.progress});
+    }
   }
   for (const Material& material : scene.materials) {
     const auto& glass = material.dielectric;

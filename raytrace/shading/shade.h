@@ -21,6 +21,7 @@
 #include "raytrace/shading/pixel_gather.h"
 #include "raytrace/shading/render_options.h"
 #include "raytrace/shading/visible_lamps.h"
+#include "raytrace/virtual_lights/virtual_lights.h"
 #include "scene/coat.h"
 #include "scene/facet_normals.h"
 #include "scene/facet_relief.h"
@@ -128,7 +129,8 @@ struct SpecularSegment {
 /// Behind a coat that mirrors less than a quarter of the light, or blurs it, diffuse surfaces show
 /// the solution's irradiance: shadow rays there would cost more than those of the coated surface.
 /// Surfaces behind a rough surface do so too whose lobe spreads their light over an element of the
-/// mesh or more, since nothing is seen of what the mesh lacks there.
+/// mesh or more, since nothing is seen of what the mesh lacks there. In Pass::virtual_lights, which
+/// has no solution, one light of each kind stands for all there.
 ///
 /// A surface whose shares vary by a pattern has at each hit the numbers of the place (see
 /// material_at()).
@@ -372,6 +374,9 @@ class RayTree {
   bool is_blurred(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   float indirect_gain(const ElementHit& hit, const ShadingPoint& at,
                       const std::optional<ReliefSlope>& relief) const;
+  Arriving arriving_from_one_light(const ElementHit& hit, const ShadingPoint& at,
+                                   const Branch& branch, LightQuery query,
+                                   const TreeState& state) const;
   Spectrum indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
                             const std::optional<ReliefSlope>& relief) const;
   void add_caustics(const ElementHit& hit, const ShadingPoint& at, Spectrum& indirect) const;
@@ -394,7 +399,8 @@ class RayTree {
   bool with_layers_ = false;
   Eigen::Array3f white_rgb_;             ///< RGB of a reflectance of 1 under equal-energy light
   std::optional<PixelGather> gather_{};  ///< for Pass::gather
-  DomeOnMesh dome_{};                    ///< for Pass::automatic
+  std::shared_ptr<const VirtualLights> virtual_{};  ///< for Pass::virtual_lights
+  DomeOnMesh dome_{};                               ///< for Pass::automatic
   std::shared_ptr<const CausticMap> caustics_{};  ///< replaces the solution's caustics; null: none
   static constexpr int gloss_point_count = 1024;
   SobolPoints gloss_points_;  ///< samples of one key; further samples use a new scrambling

@@ -212,7 +212,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   constexpr float weak = 0.25f;
   const bool is_weak = branch.behind_coat > 0 && branch.weight.maxCoeff() < weak;
   const bool is_dim = is_weak || is_blurred(branch, hit, at);
-  if (options_.pass == Pass::interpolate || is_dim) {
+  if (options_.pass == Pass::interpolate || (is_dim && !virtual_)) {
     return arriving_from_mesh(hit, at, is_dim, normal, base, relief);
   }
   const float share = state.effort * branch.weight.maxCoeff();
@@ -231,6 +231,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
                    .key = random_key(state.key, branch.node, RandomPurpose::ray_tree_shadows),
                    .shadows = shadows,
                    .lights = has_dome ? Lights::all_but_dome : Lights::all};
+  if (is_dim) return arriving_from_one_light(hit, at, branch, query, state);
   const auto direct = [&] {
     Spectrum sum = direct_light_.irradiance(*state.caster, query);
     if (has_dome) sum += interpolate(mesh, dome_.irradiance, hit);
@@ -249,9 +250,28 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
          .facet = hit.facet,
          .relief = query.relief},
         random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers), share);
+  } else if (virtual_) {
+    const auto key = random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers);
+    E.indirect = virtual_->indirect_irradiance(
+        *state.caster,
+        {.at = query.at, .key = key, .effort = std::min(1.0f, share), .relief = query.relief});
   } else {
     E.indirect = indirect_of_mesh(hit, at, relief);
   }
+  add_caustics(hit, at, E.indirect);
+  return E;
+}
+
+// Light of Pass::virtual_lights where little of it is seen.
+RayTree::Arriving RayTree::arriving_from_one_light(const ElementHit& hit, const ShadingPoint& at,
+                                                   const Branch& branch, LightQuery query,
+                                                   const TreeState& state) const {
+  query.one_stands_for_all = true;
+  query.shadows = {.min_rays = 1, .max_rays = 1};
+  Arriving E{.direct = direct_light_.irradiance(*state.caster, query)};
+  const auto key = random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers);
+  E.indirect =
+      virtual_->indirect_irradiance(*state.caster, {.at = query.at, .key = key, .effort = 0.0f});
   add_caustics(hit, at, E.indirect);
   return E;
 }

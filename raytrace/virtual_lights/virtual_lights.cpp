@@ -1,0 +1,213 @@
+#include "raytrace/virtual_lights/virtual_lights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "radiosity/gather/final_gather.h"
+#include "raytrace/virtual_lights/virtual_light_paths.h"
+#include "scene/parallel.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+// The limit b at which a single light gives a point at most an eighth of the mean radiosity of the
+// surfaces: N lights on an area A carry A / N of that each.
+double kernel_limit(double area, int count) {
+  constexpr double most_share = 1.0 / 8.0;
+  return area > 0.0 ? most_share * std::numbers::pi * count / area : 0.0;
+}
+
+constexpr int rays_beyond_limit = 8;
+// The greatest share of a point's light that a cluster of virtual lights may give. Eight pixels in
+// a row have other members of clusters.
+constexpr double cluster_share = 0.1;
+
+// Adds the caustics at vertices.
+void add_caustics(const PatchMesh& mesh, const VertexGatherPoints& points,
+                  const CausticMap* caustics, RadiositySolution& solution) {
+  if (!caustics) return;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const int v = mesh.corners[e][c];
+      const GatherPoint point = points[v];
+      solution.caustic_irradiance.row(v) =
+          caustics->irradiance(point.position, point.normal, e).transpose();
+    }
+  }
+  solution.indirect_irradiance += solution.caustic_irradiance;
+}
+
+}  // namespace
+
+VirtualLights::VirtualLights(const LitScene& lit, const VirtualLightOptions& options)
+    : lit_(lit),
+      paths_(lit.scene, lit.caster, options.max_specular_depth, PathDetail::points),
+      caustics_(options.caustics),
+      most_(kernel_limit(area_of_virtual_lights(lit), options.count)),
+      lights_(lit.scene, find_virtual_lights(lit_, paths_, caustics_.get(), options.count, most_,
+                                             options.progress)) {
+  if (const FreeSource* dome = lit.direct_light.dome()) dome_ = dome->light;
+}
+
+Spectrum VirtualLights::indirect_irradiance(const ElementCaster& caster, const Query& query) const {
+  const bool is_single = !(query.effort > 0.0f);
+  constexpr double coarsest = 0.5;
+  const double effort = is_single ? 1.0 : static_cast<double>(query.effort);
+  const Spectrum E = lights_.irradiance(
+      caster, {.at = query.at,
+               .key = query.key,
+               .shadows = {.min_rays = 1,
+                           .max_rays = 1,
+                           .cluster_share = std::min(coarsest, cluster_share / effort)},
+               .one_stands_for_all = is_single,
+               .relief = query.relief});
+  const int rays =
+      is_single ? 1 : std::max(1, static_cast<int>(std::lround(effort * rays_beyond_limit)));
+  return E + beyond_limit(caster, query, rays);
+}
+
+// The light that the limit of the kernel cuts off, and that comes by way of mirrors and glass.
+Spectrum VirtualLights::beyond_limit(const ElementCaster& caster, const Query& query,
+                                     int rays) const {
+  Spectrum sum = Spectrum::Zero(lit_.scene.bands.count());
+  const auto& [position, normal, facet] = query.at;
+  const double reach = paths_.has_specular() || !(most_ > 0.0)
+                           ? std::numeric_limits<double>::infinity()
+                           : 1.0 / std::sqrt(most_);
+  Eigen::Vector3d a, b;
+  tangent_frame(normal, a, b);
+  const std::uint64_t key = random_key(query.key, RandomPurpose::virtual_light_rays);
+  const SobolPoints sobol(rays);
+  for (int i = 0; i < rays; ++i) {
+    const Eigen::Array4f u = sobol.point(i, key);
+    const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
+    const Ray ray{.origin = position,
+                  .direction = d.x() * a + d.y() * b + d.z() * normal,
+                  .t_max = reach,
+                  .origin_group = facet};
+    ElementHit hit;
+    caster.closest_hits({&ray, 1}, {&hit, 1});
+    if (hit.facet < 0) continue;
+    const Spectrum B =
+        found(caster, ray, hit, d.z(), random_key(key, static_cast<std::uint64_t>(i), 1));
+    sum += query.relief ? Spectrum(static_cast<float>(query.relief->gain(ray.direction)) * B) : B;
+  }
+  return sum / static_cast<float>(rays);
+}
+
+// Radiosity at the end of a ray as far as virtual lights do not send it. `cosine`: of the ray to
+// the normal at its start.
+Spectrum VirtualLights::found(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                              double cosine, std::uint64_t key) const {
+  const PatchMesh& mesh = lit_.mesh();
+  Spectrum B = Spectrum::Zero(lit_.scene.bands.count());
+  if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
+    Eigen::Vector3d normal = element_center(mesh, hit.element).normal;
+    if (const auto* pose = caster.pose_of(hit.facet)) normal = pose->linear() * normal;
+    const double kernel = cosine * std::max(0.0, -normal.dot(ray.direction)) / (hit.t * hit.t);
+    if (kernel > most_) {
+      const double share = (1.0 - most_ / kernel) * paths_.base_factor(caster, ray, hit);
+      B += static_cast<float>(share) *
+           radiosity(caster, hit, ray.origin + hit.t * ray.direction, normal, key);
+    }
+  }
+  if (!paths_.is_specular(hit.facet)) return B;
+  const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
+    // Shadow rays to virtual lights pass clear panes.
+    if (end.through_panes_only || end.hit.element < 0) return;
+    const Eigen::Vector3d normal = element_center(mesh, end.hit.element).normal;
+    B += static_cast<float>(end.base_factor) * end.throughput *
+         radiosity(caster, end.hit, end.position, normal, random_key(key, 1));
+  });
+  if (losses.sky.size() > 0 && dome_.size() > 0) {
+    B += std::numbers::pi_v<float> * dome_ * losses.sky;
+  }
+  return B;
+}
+
+// B = M + rho (E_direct + E), by one light of each kind. M counts where DirectLight leaves it to
+// rays.
+Spectrum VirtualLights::radiosity(const ElementCaster& caster, const ElementHit& hit,
+                                  const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
+                                  std::uint64_t key) const {
+  const PatchMesh& mesh = lit_.mesh();
+  const int p = mesh.patch[hit.element];
+  Spectrum B = Spectrum::Zero(mesh.emission.cols());
+  if (!lit_.direct_light.owns(hit.facet, hit.from_back)) B = mesh.emission.row(p).transpose();
+  const auto arriving = [&](const Eigen::Vector3d& side, int element, std::uint64_t own) {
+    const SurfacePoint at{position, side, hit.facet};
+    Spectrum E = lit_.direct_light.irradiance(
+        caster, {.at = at,
+                 .key = own,
+                 .shadows = {.min_rays = 1, .max_rays = 1},
+                 .one_stands_for_all = true,
+                 .base = lit_.direct_light.base_of(mesh.material[mesh.patch[element]])});
+    if (caustics_) E += caustics_->irradiance(position, side, element);
+    return Spectrum(
+        E + indirect_irradiance(caster, {.at = at, .key = random_key(own, 1), .effort = 0.0f}));
+  };
+  // Light that goes to and fro in a corner loses at each end what is not reflected.
+  const Spectrum rho = mesh.reflectance.row(p).transpose();
+  const float survival = std::min(0.9f, rho.maxCoeff());
+  if (survival > 0.0f && random_uniform(random_key(key, 2)) < static_cast<double>(survival)) {
+    B += rho / survival * arriving(normal, hit.element, random_key(key, 3));
+  }
+  const int behind = mesh.patch_behind(p);
+  if (behind < 0) return B;
+  const Spectrum tau = mesh.transmittance.row(p).transpose();
+  const float through = std::min(0.9f, tau.maxCoeff());
+  if (through > 0.0f && random_uniform(random_key(key, 4)) < static_cast<double>(through)) {
+    B += tau / through * arriving(-normal, mesh.first_element[behind], random_key(key, 5));
+  }
+  return B;
+}
+
+RadiositySolution sketch(const LitScene& lit, const VirtualLights& virtual_lights,
+                         const Progress& progress) {
+  const PatchMesh& mesh = lit.mesh();
+  const Scene& scene = lit.scene;
+  RadiositySolution solution{.bands = scene.bands,
+                             .metres_per_unit = scene.metres_per_unit,
+                             .unit_name = scene.unit_name,
+                             .relative_units = scene.relative_units};
+  solution.patch_radiosity = mesh.emission;
+  const BandArray dark = BandArray::Zero(mesh.vertex_count(), scene.bands.count());
+  solution.direct_irradiance = solution.indirect_irradiance = dark;
+  if (virtual_lights.has_specular()) solution.caustic_irradiance = dark;
+  const VertexGatherPoints points(mesh);
+  const auto light_vertex = [&](int v) {
+    const GatherPoint point = points[v];
+    const SurfacePoint at{point.position, point.normal, point.facet};
+    const auto key = random_key(static_cast<std::uint64_t>(v), RandomPurpose::virtual_light_rays);
+    solution.direct_irradiance.row(v) =
+        lit.direct_light
+            .irradiance(lit.caster,
+                        {.at = at,
+                         .key = key,
+                         .shadows = {.min_rays = 4, .max_rays = 8, .cluster_share = 0.2}})
+            .transpose();
+    // A quarter of the effort has twice the noise, which the picture interpolates.
+    constexpr float effort = 0.25f;
+    solution.indirect_irradiance.row(v) =
+        virtual_lights
+            .indirect_irradiance(lit.caster,
+                                 {.at = at, .key = random_key(key, 1), .effort = effort})
+            .transpose();
+  };
+  constexpr int slice = 4096, grain = 32;
+  for (int first = 0; first < mesh.vertex_count(); first += slice) {
+    report(progress, "sketch", static_cast<double>(first) / mesh.vertex_count());
+    parallel_for(std::min(slice, mesh.vertex_count() - first), grain, [&](int begin, int end) {
+      for (int v = first + begin; v < first + end; ++v) light_vertex(v);
+    });
+  }
+  report(progress, "sketch", 1.0);
+  add_caustics(mesh, points, virtual_lights.caustics(), solution);
+  return solution;
+}
+
+}  // namespace lightwell

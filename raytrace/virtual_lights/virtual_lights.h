@@ -1,0 +1,84 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+
+#include "mesh/elements/element_caster.h"
+#include "radiosity/emitters/direct_light.h"
+#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/paths/light_path.h"
+#include "radiosity/solution/solution.h"
+#include "raytrace/caustics/caustic_map.h"
+#include "scene/progress.h"
+#include "scene/relief.h"
+
+namespace lightwell {
+
+struct VirtualLightOptions {
+  int count = 4096;             ///< about as many lights, at least 1
+  int max_specular_depth = 10;  ///< most mirrors and clear surfaces on the way of light
+  std::shared_ptr<const CausticMap> caustics{};  ///< light by way of these; null: none
+  Progress progress{};
+};
+
+/// Instant radiosity (Keller 1997): indirect light at a point from virtual lights, without a
+/// solution.
+///
+///     E = sum_k flux_k V min(cos cos' / r^2, b) / pi + (1/n) sum_i B(y_i) (1 - b r^2 / (cos
+///     cos'))+
+///
+/// The first sum, of cuts through the light tree, leaves out what lights nearer than 1 / sqrt(b)
+/// would add without bound. A few cosine-distributed rays find that light (Kollig & Keller 2004,
+/// "Illumination in the presence of weak singularities"): B at the end y of a ray is
+/// rho (E_direct + E), computed there by one light and one further ray. The rays also find light by
+/// way of mirrors and glass. The mean has no bias for any number of lights; more lights leave less
+/// to rays.
+class VirtualLights {
+ public:
+  /// Keeps references to all that `lit` refers to.
+  VirtualLights(const LitScene& lit, const VirtualLightOptions& options);
+
+  /// Number of lights.
+  int count() const { return lights_.light_count(); }
+  /// Light by way of mirrors and glass; null: none.
+  const CausticMap* caustics() const { return caustics_.get(); }
+  /// True if the scene has mirrors or glass.
+  bool has_specular() const { return paths_.has_specular(); }
+
+  /// A point and the effort there.
+  struct Query {
+    SurfacePoint at{};
+    std::uint64_t key = 0;  ///< of the random numbers
+    /// Share of the whole effort, (0, 1]; 0: one light and one ray, for one of many samples.
+    float effort = 1.0f;
+    const ReliefSlope* relief = nullptr;  ///< light counts times its gain; null: flat
+  };
+  /// Indirect irradiance, W/m^2 per band. `caster` is that of the scene or its ElementCaster::at().
+  /// Caustics are not included.
+  Spectrum indirect_irradiance(const ElementCaster& caster, const Query& query) const;
+
+ private:
+  Spectrum beyond_limit(const ElementCaster& caster, const Query& query, int rays) const;
+  Spectrum found(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, double cosine,
+                 std::uint64_t key) const;
+  Spectrum radiosity(const ElementCaster& caster, const ElementHit& hit,
+                     const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
+                     std::uint64_t key) const;
+
+  LitScene lit_;
+  LightPaths paths_;
+  std::shared_ptr<const CausticMap> caustics_{};
+  double most_ = 0.0;  // b, 1/m^2
+  DirectLight lights_;
+  Spectrum dome_{};  // factor of the sky's dome; empty: no dome
+};
+
+/// Irradiance at the vertices of a mesh by virtual lights, as a solution without patch radiosities
+/// and without an estimate of its error: a first look at a scene, as fine as the mesh. Caustics are
+/// those of the virtual lights; 0 if there are none. The same bits for any number of threads.
+/// Throws Interrupted when progress says stop.
+RadiositySolution sketch(const LitScene& lit, const VirtualLights& virtual_lights,
+                         const Progress& progress = {});
+
+}  // namespace lightwell
