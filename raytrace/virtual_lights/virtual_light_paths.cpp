@@ -97,10 +97,10 @@ class Senders {
   double area_ = 0.0;
 };
 
-std::vector<Sender> draw_senders(const Senders& senders, const CausticMap* caustics, int count) {
+std::vector<Sender> draw_senders(const Senders& senders, const CausticMap* caustics, int count,
+                                 std::uint64_t key) {
   std::vector<Sender> drawn(static_cast<std::size_t>(count));
   const SobolPoints sobol(count);
-  const auto key = random_key(0, RandomPurpose::virtual_light_points);
   const auto share = static_cast<float>(senders.area() / count);
   constexpr int grain = 64;
   parallel_for(count, grain, [&](int begin, int end) {
@@ -117,12 +117,12 @@ std::vector<Sender> draw_senders(const Senders& senders, const CausticMap* caust
 // Gives senders paths in proportion to the square root of their flux by systematic sampling, and
 // shares out the flux among the paths. Paths of equal flux would leave too few lights in dim places
 // for what lies near these.
-void share_out(std::vector<Sender>& senders, int starts) {
+void share_out(std::vector<Sender>& senders, int starts, std::uint64_t key) {
   const auto root = [](const Sender& s) { return std::sqrt(static_cast<double>(s.flux.mean())); };
   double all = 0.0;
   for (const Sender& sender : senders) all += root(sender);
   if (!(all > 0.0)) return;
-  const double offset = random_uniform(random_key(1, RandomPurpose::virtual_light_points));
+  const double offset = random_uniform(random_key(key, 1));
   double before = 0.0;
   for (Sender& sender : senders) {
     const double due = starts * root(sender) / all;
@@ -230,7 +230,7 @@ double area_of_virtual_lights(const LitScene& lit) {
 
 std::vector<FreeSource> find_virtual_lights(const LitScene& lit, const LightPaths& paths,
                                             const CausticMap* caustics, int count, double most,
-                                            const Progress& progress) {
+                                            std::uint64_t key, const Progress& progress) {
   report(progress, "virtual lights", 0.0);
   const Senders sources(lit);
   if (!(sources.area() > 0.0)) return {};
@@ -238,9 +238,10 @@ std::vector<FreeSource> find_virtual_lights(const LitScene& lit, const LightPath
   constexpr double fewest = 1.0 / 16.0;
   const double starts_share = std::max(fewest, 1.0 - sources.mean_reflectance());
   const int starts = std::max(1, static_cast<int>(std::lround(count * starts_share)));
-  std::vector<Sender> senders = draw_senders(sources, caustics, draws_per_start * starts);
+  std::vector<Sender> senders = draw_senders(sources, caustics, draws_per_start * starts,
+                                             random_key(key, RandomPurpose::virtual_light_points));
   report(progress, "virtual lights", 0.5);
-  share_out(senders, starts);
+  share_out(senders, starts, random_key(key, RandomPurpose::virtual_light_points, 1));
   const PathTracer tracer(lit, paths, most);
   std::vector<std::vector<FreeSource>> found(senders.size());
   constexpr int grain = 64;
@@ -253,8 +254,8 @@ std::vector<FreeSource> find_virtual_lights(const LitScene& lit, const LightPath
           tracer.light(sender.point, static_cast<float>(sender.paths) * sender.flux));
       for (int path = 0; path < sender.paths; ++path) {
         tracer.follow(sender,
-                      random_key(static_cast<std::uint64_t>(i), RandomPurpose::virtual_light_paths,
-                                 static_cast<std::uint64_t>(path)),
+                      random_key(key, RandomPurpose::virtual_light_paths,
+                                 static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(path)),
                       found[s]);
       }
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "radiosity/emitters/free_source.h"
@@ -21,11 +22,11 @@ namespace lightwell {
 ///   next diffuse surface, and ends there with probability 1 - rho (Russian roulette).
 ///
 /// Each point on a path is a virtual light. The mean over random numbers is the flux that the
-/// surfaces send on. `most` is VirtualLight::most. The same lights for any number of threads.
-/// Throws Interrupted when progress says stop.
+/// surfaces send on. `most` is VirtualLight::most; `key`: of the random numbers. The same lights
+/// for any number of threads. Throws Interrupted when progress says stop.
 std::vector<FreeSource> find_virtual_lights(const LitScene& lit, const LightPaths& paths,
                                             const CausticMap* caustics, int count, double most,
-                                            const Progress& progress = {});
+                                            std::uint64_t key, const Progress& progress = {});
 
 /// The area of surfaces that a virtual light may lie on, both sides, m^2.
 double area_of_virtual_lights(const LitScene& lit);

@@ -49,7 +49,7 @@ VirtualLights::VirtualLights(const LitScene& lit, const VirtualLightOptions& opt
       caustics_(options.caustics),
       most_(kernel_limit(area_of_virtual_lights(lit), options.count)),
       lights_(lit.scene, find_virtual_lights(lit_, paths_, caustics_.get(), options.count, most_,
-                                             options.progress)) {
+                                             options.key, options.progress)) {
   if (const FreeSource* dome = lit.direct_light.dome()) dome_ = dome->light;
 }
 

@@ -19,6 +19,7 @@ struct VirtualLightOptions {
   int count = 4096;             ///< about as many lights, at least 1
   int max_specular_depth = 10;  ///< most mirrors and clear surfaces on the way of light
   std::shared_ptr<const CausticMap> caustics{};  ///< light by way of these; null: none
+  std::uint64_t key = 0;                         ///< of the random numbers: other lights for each
   Progress progress{};
 };
 
