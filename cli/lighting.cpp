@@ -105,7 +105,7 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
     if (!light) continue;
     LuminaireRow& row = row_of(light->lamp.name);
     ++row.count;
-    row.flux += total_weight(source) * luminous(scene.bands, source.light);
+    row.flux += total_weight(source) * luminous(scene.bands, mean_light(source));
     const auto i = static_cast<std::size_t>(source.number);
     const double known = i < design.watts.size() ? design.watts[i] : 0.0;
     row.watts += known;

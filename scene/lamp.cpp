@@ -58,7 +58,7 @@ Eigen::Matrix3d lamp_axes(const Eigen::Vector3d& aim, const Eigen::Vector3d& c0)
   return axes;
 }
 
-double relative_intensity(const Lamp& lamp, const Eigen::Vector3d& direction) {
+double relative_intensity(const Lamp& lamp, const Eigen::Vector3d& direction, double) {
   if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) {
     return (*web)->at(lamp.axes.transpose() * direction);
   }
@@ -68,6 +68,14 @@ double relative_intensity(const Lamp& lamp, const Eigen::Vector3d& direction) {
   return 1.0;
 }
 
+Spectrum relative_color(const Lamp&, const Eigen::Vector3d&, double) {
+  return {};
+}
+
+Spectrum mean_color(const Lamp&) {
+  return {};
+}
+
 double relative_flux(const Lamp& lamp) {
   if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) return (*web)->integral();
   if (const auto* cone = std::get_if<SpotCone>(&lamp.shape)) return cone_flux(*cone);
@@ -75,19 +83,33 @@ double relative_flux(const Lamp& lamp) {
 }
 
 Spectrum lamp_flux(const Lamp& lamp) {
-  return lamp.intensity * static_cast<float>(relative_flux(lamp));
+  return with_color(lamp.intensity, mean_color(lamp)) * static_cast<float>(relative_flux(lamp));
 }
 
-DrawnDirection draw_direction(const Lamp& lamp, double u, double v) {
+LampRay draw_ray(const Lamp& lamp, const Eigen::Array4f& u) {
+  LampRay ray{.origin = ray_origin(lamp, u[2], u[3])};
   if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) {
-    DrawnDirection drawn = (*web)->draw(u, v);
-    drawn.direction = lamp.axes * drawn.direction;
-    return drawn;
+    const DrawnDirection drawn = (*web)->draw(u[0], u[1]);
+    ray.direction = lamp.axes * drawn.direction;
+    ray.weight = drawn.weight;
+    return ray;
   }
   const auto* cone = std::get_if<SpotCone>(&lamp.shape);
   const double height = cone ? 1.0 - std::cos(cone->outer) : 2.0;
-  const Eigen::Vector3d direction = lamp.axes * cap_direction(height, u, v);
-  return {direction, two_pi * height * relative_intensity(lamp, direction)};
+  ray.direction = lamp.axes * cap_direction(height, u[0], u[1]);
+  ray.weight = two_pi * height * relative_intensity(lamp, ray.direction);
+  return ray;
+}
+
+Eigen::Vector3d ray_origin(const Lamp& lamp, double u, double v) {
+  return opening_point(lamp, u, v);
+}
+
+LampRay ray_along(const Lamp& lamp, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                  double solid_angle) {
+  return {.origin = origin,
+          .direction = direction,
+          .weight = solid_angle * relative_intensity(lamp, direction)};
 }
 
 Eigen::Vector3d opening_point(const Lamp& lamp, double u, double v) {

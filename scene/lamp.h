@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <variant>
@@ -71,8 +72,23 @@ struct Lamp {
 Eigen::Matrix3d lamp_axes(const Eigen::Vector3d& aim,
                           const Eigen::Vector3d& c0 = Eigen::Vector3d::Zero());
 
-/// Value of the lamp's shape in a unit direction of the scene: intensity over `intensity`.
-double relative_intensity(const Lamp& lamp, const Eigen::Vector3d& direction);
+/// Value of the lamp's shape in a unit direction of the scene, at `distance` metres from the lamp:
+/// intensity over `intensity`, mean of red, green and blue.
+double relative_intensity(const Lamp& lamp, const Eigen::Vector3d& direction,
+                          double distance = std::numeric_limits<double>::infinity());
+
+/// Colour of the light that leaves in a direction: the intensity of a band is `intensity` times
+/// relative_intensity() times the colour. Empty: 1 in every band.
+Spectrum relative_color(const Lamp& lamp, const Eigen::Vector3d& direction,
+                        double distance = std::numeric_limits<double>::infinity());
+
+/// Mean of relative_color() over all light of the lamp. Empty: 1 in every band.
+Spectrum mean_color(const Lamp& lamp);
+
+/// `light` times a colour, of which an empty one is 1 in every band.
+inline Spectrum with_color(const Spectrum& light, const Spectrum& color) {
+  return color.size() > 0 ? Spectrum(light * color) : light;
+}
 
 /// Integral of relative_intensity() over all directions, sr. Flux is `intensity` times the
 /// integral.
@@ -81,9 +97,26 @@ double relative_flux(const Lamp& lamp);
 /// Flux of a lamp, W per band.
 Spectrum lamp_flux(const Lamp& lamp);
 
-/// Random direction of the scene and its weight, from numbers `u`, `v` in [0,1). The density of a
-/// web follows its values; cones and even lamps are sampled uniformly over their directions.
-DrawnDirection draw_direction(const Lamp& lamp, double u, double v);
+/// A ray that leaves a lamp. It carries `intensity` times weight times colour, in the mean over its
+/// random numbers.
+struct LampRay {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();      ///< m
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+  double weight = 0.0;                                   ///< sr
+  Spectrum color{};                                      ///< empty: 1 in every band
+};
+
+/// A ray in proportion to all of the lamp's light, from numbers in [0,1): two for its direction and
+/// two for its origin. The density of directions follows the values of a web; it is even over cones
+/// and even lamps.
+LampRay draw_ray(const Lamp& lamp, const Eigen::Array4f& u);
+
+/// Random origin of rays, m, as draw_ray() has it for the last two of its numbers.
+Eigen::Vector3d ray_origin(const Lamp& lamp, double u, double v);
+
+/// The ray from a ray_origin() in a unit direction that stands for `solid_angle`, sr.
+LampRay ray_along(const Lamp& lamp, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                  double solid_angle);
 
 /// Uniform random point of the opening, metres, from numbers `u`, `v` in [0,1).
 Eigen::Vector3d opening_point(const Lamp& lamp, double u, double v);

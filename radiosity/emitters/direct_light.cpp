@@ -34,11 +34,12 @@ struct LightShadow {
   int least = 0, most = 0;        // rays
   std::optional<double> share{};  // visible; empty: rays are needed
   EmissionTree::View view{};      // of an emitter that shines by a picture; else without parts
-  Spectrum pictured{};            // mean exitance of what the point sees of the picture
+  // Mean exitance of what the point sees of the picture; of a source, what it sends to the point.
+  Spectrum pictured{};
 
   bool has_picture() const { return !view.parts.empty(); }
   const Spectrum& light() const {
-    if (has_picture()) return pictured;
+    if (pictured.size() > 0) return pictured;
     return emitter ? emitter->exitance : source->light;
   }
 };
@@ -289,7 +290,7 @@ Eigen::ArrayX2d DirectLight::light_with_factor(const SurfacePoint& at,
     const double F = emitter ? unoccluded_form_factor(*emitter, at)
                              : unoccluded_kernel(*source, at.position, at.normal);
     if (!(F > 0.0)) continue;
-    Spectrum light = emitter ? emitter->exitance : source->light;
+    Spectrum light = emitter ? emitter->exitance : light_towards(*source, at.position);
     if (emitter && emitter->picture) {
       light = pictured_light(*emitter, emitter->picture->view(at, F), F);
     }
@@ -348,6 +349,7 @@ DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const Lig
     shadow.F = shadow.emitter ? unoccluded_form_factor(*shadow.emitter, query.at)
                               : unoccluded_kernel(*shadow.source, point, normal);
     if (!(shadow.F > 0.0)) continue;
+    if (shadow.source) shadow.pictured = light_towards(*shadow.source, point);
     if (shadow.emitter && shadow.emitter->picture) {
       shadow.view = shadow.emitter->picture->view(query.at, shadow.F);
       if (!shadow.has_picture()) continue;  // black as far as it is above the horizon

@@ -27,7 +27,7 @@ double point_kernel(const Lamp& lamp, const Eigen::Vector3d& on_lamp, const Eige
   const double height = to.dot(normal), r2 = to.squaredNorm();
   if (!(height > 0.0 && r2 > 0.0)) return 0.0;
   const double r = std::sqrt(r2);
-  return relative_intensity(lamp, -to / r) * height / (r2 * r);
+  return relative_intensity(lamp, -to / r, r) * height / (r2 * r);
 }
 
 constexpr std::array<double, 3> gauss_node = {0.1127016653792583, 0.5, 0.8872983346207417};
@@ -108,11 +108,11 @@ double clear_share(const LampLight& light, double distance) {
   return std::max(1.0 - light.clearance / distance, 0.0);
 }
 
-SourceRay ray_from(const LampLight& light, const Eigen::Vector3d& on_lamp,
-                   const DrawnDirection& drawn) {
-  return {
-      .ray = {.origin = on_lamp + light.clearance * drawn.direction, .direction = drawn.direction},
-      .weight = drawn.weight};
+SourceRay ray_from(const LampLight& light, const LampRay& sent) {
+  return {.ray = {.origin = sent.origin + light.clearance * sent.direction,
+                  .direction = sent.direction},
+          .weight = sent.weight,
+          .color = sent.color};
 }
 
 double kernel(const VirtualLight& light, const Eigen::Vector3d& point,
@@ -204,6 +204,15 @@ double unoccluded_kernel(const FreeSource& source, const Eigen::Vector3d& point,
   return kernel(std::get<LampLight>(source.shape), point, normal);
 }
 
+Spectrum light_towards(const FreeSource& source, const Eigen::Vector3d& point) {
+  const auto* light = std::get_if<LampLight>(&source.shape);
+  if (!light) return source.light;
+  const Eigen::Vector3d from = point - light->lamp.position;
+  const double r = from.norm();
+  if (!(r > 0.0)) return source.light;
+  return with_color(source.light, relative_color(light->lamp, from / r, r));
+}
+
 ShadowSample shadow_sample(const FreeSource& source, const SurfacePoint& at, double u, double v) {
   const auto& [point, normal, facet] = at;
   if (const auto* sun = std::get_if<SunLight>(&source.shape)) {
@@ -247,8 +256,7 @@ SourceRay source_ray(const FreeSource& source, const Eigen::Array4f& u) {
             .weight = 1.0};
   }
   const auto& light = std::get<LampLight>(source.shape);
-  return ray_from(light, opening_point(light.lamp, u[2], u[3]),
-                  draw_direction(light.lamp, u[0], u[1]));
+  return ray_from(light, draw_ray(light.lamp, u));
 }
 
 std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eigen::Vector3d& center,
@@ -259,14 +267,14 @@ std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eige
   if (source.is_dome()) return std::nullopt;
   if (std::holds_alternative<VirtualLight>(source.shape)) return source_ray(source, u);
   const auto& light = std::get<LampLight>(source.shape);
-  const Eigen::Vector3d on_lamp = opening_point(light.lamp, u[2], u[3]);
+  const Eigen::Vector3d on_lamp = ray_origin(light.lamp, u[2], u[3]);
   const Eigen::Vector3d to = center - on_lamp;
   const double distance = to.norm();
   // Close to the sphere, or inside, its cone is no better than all directions.
   constexpr double widest_sine = 0.8;
   SourceRay sent;
   if (!(radius < widest_sine * distance)) {
-    sent = ray_from(light, on_lamp, draw_direction(light.lamp, u[0], u[1]));
+    sent = ray_from(light, draw_ray(light.lamp, u));
   } else {
     const double sine = radius / distance;
     const double height = sine * sine / (1.0 + std::sqrt(1.0 - sine * sine));
@@ -277,9 +285,8 @@ std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eige
     tangent_frame(axis, a, b);
     const Eigen::Vector3d direction =
         across * (std::cos(phi) * a + std::sin(phi) * b) + cosine * axis;
-    sent = ray_from(
-        light, on_lamp,
-        {direction, 2.0 * std::numbers::pi * height * relative_intensity(light.lamp, direction)});
+    sent =
+        ray_from(light, ray_along(light.lamp, on_lamp, direction, 2.0 * std::numbers::pi * height));
   }
   if (!(sent.weight > 0.0)) return std::nullopt;
   return sent;
@@ -292,6 +299,11 @@ double total_weight(const FreeSource& source) {
   if (source.is_dome()) return 0.0;
   if (std::holds_alternative<VirtualLight>(source.shape)) return 1.0;
   return relative_flux(std::get<LampLight>(source.shape).lamp);
+}
+
+Spectrum mean_light(const FreeSource& source) {
+  const auto* light = std::get_if<LampLight>(&source.shape);
+  return light ? with_color(source.light, mean_color(light->lamp)) : source.light;
 }
 
 SourceSample sample_source(const FreeSource& source, const Eigen::Vector3d& from, double u,
@@ -316,9 +328,10 @@ SourceSample sample_source(const FreeSource& source, const Eigen::Vector3d& from
   const double distance = to.norm();
   if (!(distance > 0.0)) return {};
   const Eigen::Vector3d direction = to / distance;
-  return {.direction = direction,
-          .distance = distance * clear_share(light, distance),
-          .irradiance = relative_intensity(light.lamp, -direction) / (distance * distance)};
+  return {
+      .direction = direction,
+      .distance = distance * clear_share(light, distance),
+      .irradiance = relative_intensity(light.lamp, -direction, distance) / (distance * distance)};
 }
 
 }  // namespace lightwell

@@ -67,9 +67,9 @@ std::vector<FreeSource> free_sources(const Scene& scene, const BandArray& scale,
 /// True if light arrives at a point from one direction only, so that one shadow ray suffices.
 bool has_sharp_shadows(const FreeSource& source);
 
-/// The kernel of E = light * kernel at an unobstructed point: shape(omega) cos / r^2 for a point
-/// lamp; for an opening the mean over the opening, to about 1e-4 by Gauss's rule on parts that are
-/// small against their distance.
+/// The kernel of E = light_towards() * kernel at an unobstructed point: shape(omega) cos / r^2 for
+/// a point lamp; for an opening the mean over the opening, to about 1e-4 by Gauss's rule on parts
+/// that are small against their distance.
 double unoccluded_kernel(const FreeSource& source, const Eigen::Vector3d& point,
                          const Eigen::Vector3d& normal);
 
@@ -77,11 +77,17 @@ double unoccluded_kernel(const FreeSource& source, const Eigen::Vector3d& point,
 /// the kernel of that sample point.
 ShadowSample shadow_sample(const FreeSource& source, const SurfacePoint& at, double u, double v);
 
-/// A ray that leaves the source with `light * weight` watts, in the mean over its random numbers.
+/// A ray that leaves the source with `light * weight * color` watts, in the mean over its random
+/// numbers.
 struct SourceRay {
   Ray ray{};
   double weight = 0.0;
+  Spectrum color{};  ///< empty: 1 in every band
 };
+
+/// The light that kernels and sample points of the source multiply at a point: FreeSource::light
+/// times the colour that the source sends there.
+Spectrum light_towards(const FreeSource& source, const Eigen::Vector3d& point);
 
 /// A ray in proportion to all of the source's light; the mean weight is total_weight().
 SourceRay source_ray(const FreeSource& source, const Eigen::Array4f& u);
@@ -91,14 +97,17 @@ SourceRay source_ray(const FreeSource& source, const Eigen::Array4f& u);
 std::optional<SourceRay> source_ray_towards(const FreeSource& source, const Eigen::Vector3d& center,
                                             double radius, const Eigen::Array4f& u);
 
-/// The flux of the source over `light`; for a lamp in sr.
+/// The flux of the source over mean_light(); for a lamp in sr.
 double total_weight(const FreeSource& source);
+
+/// FreeSource::light times the mean colour of the source.
+Spectrum mean_light(const FreeSource& source);
 
 /// Light that arrives from one sample point of a source, for reflection at a rough surface.
 struct SourceSample {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, towards the source
   double distance = 0.0;                                 ///< m, to the source
-  double irradiance = 0.0;  ///< across the direction: `light` times this, W/m^2
+  double irradiance = 0.0;  ///< across the direction: light_towards() times this, W/m^2
 };
 SourceSample sample_source(const FreeSource& source, const Eigen::Vector3d& from, double u,
                            double v);

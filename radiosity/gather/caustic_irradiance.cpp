@@ -68,7 +68,8 @@ class CausticPower {
     const int count = rays_of_light_[lit_.direct_light.emitters().size() + number];
     send(count, key, source.channel * bands_, [&](int r) {
       const SourceRay sent = source_ray(source, sobol_.point(r, key));
-      return std::pair(sent.ray, Spectrum(source.light * static_cast<float>(sent.weight / count)));
+      return std::pair(sent.ray, Spectrum(with_color(source.light, sent.color) *
+                                          static_cast<float>(sent.weight / count)));
     });
   }
 
@@ -85,7 +86,7 @@ class CausticPower {
       channel.push_back(direct.first_column(emitter.facet) / static_cast<int>(bands_));
     }
     for (const FreeSource& source : direct.free_sources()) {
-      power.push_back(double{source.light.mean()} * total_weight(source));
+      power.push_back(double{mean_light(source).mean()} * total_weight(source));
       channel.push_back(source.channel);
     }
     std::vector<double> of_channel(static_cast<std::size_t>(direct.channel_count()), 0.0);

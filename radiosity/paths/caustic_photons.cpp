@@ -26,9 +26,9 @@ struct Source {
   bool is_back = false;
   const FreeSource* free = nullptr;
 
-  // `origin`: where the ray leaves the emitter.
-  Spectrum light(const Eigen::Vector3d& origin) const {
-    return free ? free->light : exitance_at(*emitter, origin);
+  // The light that the weight of a ray of the source multiplies.
+  Spectrum light(const SourceRay& sent) const {
+    return free ? with_color(free->light, sent.color) : exitance_at(*emitter, sent.ray.origin);
   }
 };
 
@@ -204,7 +204,7 @@ class PhotonGun {
     caster_.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.facet < 0 || targets_.of_facet(hit.facet) != beam.target) return;
     const Spectrum power =
-        beam.source.light(ray.origin) * static_cast<float>(sent->weight / beam.stands_for);
+        beam.source.light(*sent) * static_cast<float>(sent->weight / beam.stands_for);
     const auto branch_key =
         random_key(key, RandomPurpose::photon_paths, static_cast<std::uint64_t>(i));
     paths_.follow(ray, hit, branch_key, [&](const LightArrival& at) {

@@ -31,20 +31,35 @@ struct PassedOn {
   Spectrum weight{};
 };
 struct CastPiece {
-  double sent = 0.0, missed = 0.0, met_black = 0.0;
+  CastPiece() = default;
+  explicit CastPiece(Eigen::Index bands)
+      : sent(Eigen::ArrayXd::Zero(bands)),
+        missed(sent),
+        met_black(sent),
+        absorbed(sent),
+        escaped(sent) {}
+
+  Eigen::ArrayXd sent, missed, met_black;  // per band
   std::vector<Arrival> straight{};
-  std::vector<PassedOn> by_specular{};
-  Eigen::ArrayXd absorbed{}, escaped{};  // by way of mirrors and glass
+  std::vector<PassedOn> in_bands{};  // by way of mirrors and glass, or of a lamp's colours
+  Eigen::ArrayXd absorbed, escaped;  // by way of mirrors and glass
 };
+
+// A colour per band; 1 for an empty one.
+Eigen::ArrayXd factor(const Spectrum& color, Eigen::Index bands) {
+  if (color.size() > 0) return color.cast<double>();
+  return Eigen::ArrayXd::Ones(bands);
+}
 
 CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, const LightPaths& paths,
                      const SobolPoints& sobol, std::uint64_t key, int begin, int end) {
   const PatchMesh& mesh = caster.mesh();
   const Eigen::Index bands = source.light.size();
-  CastPiece piece{.absorbed = Eigen::ArrayXd::Zero(bands), .escaped = Eigen::ArrayXd::Zero(bands)};
+  CastPiece piece(bands);
   constexpr int batch = 128;
   std::vector<Ray> rays(batch);
   std::vector<double> weight(batch);
+  std::vector<Spectrum> color(batch);
   std::vector<ElementHit> hits(batch);
   for (int first = begin; first < end; first += batch) {
     const int n = std::min(batch, end - first);
@@ -52,7 +67,8 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
       const SourceRay sent = source_ray(source, sobol.point(first + r, key));
       rays[r] = sent.ray;
       weight[r] = sent.weight;
-      piece.sent += sent.weight;
+      color[r] = sent.color;
+      piece.sent += sent.weight * factor(sent.color, bands);
     }
     const auto count = static_cast<std::size_t>(n);
     caster.closest_elements({rays.data(), count}, {hits.data(), count});
@@ -61,16 +77,21 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
       const double w = weight[r];
       if (!(w > 0.0)) continue;
       if (hit.facet < 0) {
-        piece.missed += w;
+        piece.missed += w * factor(color[r], bands);
         continue;
       }
       const bool is_specular = paths.is_specular(hit.facet);
       if (hit.element < 0 && !is_specular) {
-        piece.met_black += w;
+        piece.met_black += w * factor(color[r], bands);
         continue;
       }
       if (hit.element >= 0 && paths.is_diffuse(hit.facet) && !source.is_distant()) {
-        piece.straight.push_back({mesh.patch[hit.element], w});
+        const int patch = mesh.patch[hit.element];
+        if (color[r].size() > 0) {
+          piece.in_bands.push_back({patch, color[r] * static_cast<float>(w)});
+        } else {
+          piece.straight.push_back({patch, w});
+        }
       }
       if (!is_specular) continue;
       const auto branch =
@@ -78,11 +99,12 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
       const PathLosses losses = paths.follow(rays[r], hit, branch, [&](const LightArrival& at) {
         // Collector::receive() counts the light of the sun straight through panes.
         if (source.is_distant() && at.through_panes_only) return;
-        piece.by_specular.push_back(
-            {mesh.patch[at.hit.element], at.throughput * static_cast<float>(w)});
+        piece.in_bands.push_back({mesh.patch[at.hit.element],
+                                  with_color(at.throughput, color[r]) * static_cast<float>(w)});
       });
-      piece.absorbed += w * (losses.absorbed + losses.cut).cast<double>();
-      piece.escaped += w * losses.escaped.cast<double>();
+      const Eigen::ArrayXd lost = w * factor(color[r], bands);
+      piece.absorbed += lost * (losses.absorbed + losses.cut).cast<double>();
+      piece.escaped += lost * losses.escaped.cast<double>();
     }
   }
   return piece;
@@ -91,23 +113,26 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
 // The fate of all rays of a source.
 struct Sums {
   Sums(const PatchMesh& mesh, Eigen::Index bands)
-      : straight(Eigen::ArrayXd::Zero(mesh.patch_count())),
-        by_specular(Eigen::ArrayXXd::Zero(bands, mesh.patch_count())),
-        absorbed(Eigen::ArrayXd::Zero(bands)),
-        escaped(absorbed),
+      : sent(Eigen::ArrayXd::Zero(bands)),
+        missed(sent),
+        met_black(sent),
+        straight(Eigen::ArrayXd::Zero(mesh.patch_count())),
+        in_bands(Eigen::ArrayXXd::Zero(bands, mesh.patch_count())),
+        absorbed(sent),
+        escaped(sent),
         is_met(static_cast<std::size_t>(mesh.patch_count()), 0) {}
 
   void add(const CastPiece& piece) {
     for (const Arrival& at : piece.straight) touch(at.patch);
-    for (const PassedOn& at : piece.by_specular) touch(at.patch);
+    for (const PassedOn& at : piece.in_bands) touch(at.patch);
     sent += piece.sent;
     missed += piece.missed;
     met_black += piece.met_black;
     absorbed += piece.absorbed;
     escaped += piece.escaped;
     for (const Arrival& at : piece.straight) straight[at.patch] += at.weight;
-    for (const PassedOn& at : piece.by_specular) {
-      by_specular.col(at.patch) += at.weight.cast<double>();
+    for (const PassedOn& at : piece.in_bands) {
+      in_bands.col(at.patch) += at.weight.cast<double>();
     }
   }
 
@@ -115,18 +140,16 @@ struct Sums {
   void clear() {
     for (const int patch : met) {
       straight[patch] = 0.0;
-      by_specular.col(patch).setZero();
+      in_bands.col(patch).setZero();
       is_met[static_cast<std::size_t>(patch)] = 0;
     }
     met.clear();
-    sent = missed = met_black = 0.0;
-    absorbed.setZero();
-    escaped.setZero();
+    for (Eigen::ArrayXd* sum : {&sent, &missed, &met_black, &absorbed, &escaped}) sum->setZero();
   }
 
-  double sent = 0.0, missed = 0.0, met_black = 0.0;
+  Eigen::ArrayXd sent, missed, met_black;
   Eigen::ArrayXd straight;
-  Eigen::ArrayXXd by_specular;  // bands x patches
+  Eigen::ArrayXXd in_bands;  // bands x patches
   Eigen::ArrayXd absorbed, escaped;
   std::vector<int> met{};  // patches
 
@@ -188,7 +211,7 @@ class Collector {
         const Shot* shot = pieces[first + p].shot;
         sums.add(found[p]);
         if (first + p + 1 < pieces.size() && pieces[first + p + 1].shot == shot) continue;
-        if (sums.sent > 0.0) add(*shot->source, sums);
+        if ((sums.sent > 0.0).any()) add(*shot->source, sums);
         sums.clear();
       }
     }
@@ -258,14 +281,16 @@ class Collector {
   }
 
  private:
-  // The power of the rays is scaled to exactly the flux of the source.
+  // The power of the rays is scaled to exactly the flux of the source in each band.
   void add(const FreeSource& source, const Sums& sums) {
     const Eigen::Index column = source.channel * bands_;
-    const Eigen::ArrayXd watts = total_weight(source) / sums.sent * source.light.cast<double>();
+    const Eigen::ArrayXd mean = mean_light(source).cast<double>();
+    const Eigen::ArrayXd watts =
+        (sums.sent > 0.0).select(total_weight(source) / sums.sent * mean, 0.0);
     const auto of = [&](Eigen::ArrayXd& sum) { return sum.segment(column, bands_); };
     Eigen::ArrayXXd& power = source.is_distant() ? from_afar_ : of_lamps_;
     for (const int i : sums.met) {
-      power.col(i).segment(column, bands_) += watts * (sums.straight[i] + sums.by_specular.col(i));
+      power.col(i).segment(column, bands_) += watts * (sums.straight[i] + sums.in_bands.col(i));
     }
     if (source.is_distant()) return;  // see receive()
     of(light_.emitted) += watts * sums.sent;
@@ -336,7 +361,7 @@ FreeLight cast_free_light(const Scene& scene, const ElementCaster& caster, const
   const std::vector<FreeSource>& sources = direct_light.free_sources();
   if (sources.empty()) return {};
   const auto power = [](const FreeSource& source) {
-    return total_weight(source) * static_cast<double>(source.light.sum());
+    return total_weight(source) * static_cast<double>(mean_light(source).sum());
   };
   double all = 0.0;
   for (const FreeSource& source : sources) all += source.is_distant() ? 0.0 : power(source);

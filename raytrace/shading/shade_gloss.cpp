@@ -201,7 +201,8 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
                 .origin_group = hit.facet};
   // A lobe with density p averages radiance, int L p dw. A source of irradiance E and solid angle 0
   // contributes E p.
-  Spectrum seen = branch.weight * scattering_weight(interaction, sample) * drawn->source->light *
+  Spectrum seen = branch.weight * scattering_weight(interaction, sample) *
+                  light_towards(*drawn->source, at.position) *
                   direct_light_.passed(*state.caster, ray) *
                   (share * static_cast<float>(density * source_sample.irradiance / drawn->chance));
   if (!(seen > 0.0f).any()) return;

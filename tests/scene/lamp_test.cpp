@@ -23,7 +23,9 @@ double drawn_flux(const Lamp& lamp) {
   double sum = 0.0;
   constexpr int draws = 1 << 16;
   for (int i = 0; i < draws; ++i) {
-    sum += draw_direction(lamp, (i + 0.5) / draws, std::fmod(i * 0.6180339887498949, 1.0)).weight;
+    const auto u = static_cast<float>((i + 0.5) / draws);
+    const auto v = static_cast<float>(std::fmod(i * 0.6180339887498949, 1.0));
+    sum += draw_ray(lamp, {u, v, 0.5f, 0.5f}).weight;
   }
   return sum / draws;
 }
