@@ -26,6 +26,7 @@
 #include "scene/io/read_scene.h"
 #include "scene/io/text_file.h"
 #include "scene/picture_cells.h"
+#include "scene/projected_picture.h"
 
 namespace lightwell {
 namespace {
@@ -94,17 +95,34 @@ Json sky_json(const Scene& scene) {
   return json;
 }
 
+// Pixels and beam of a projected picture, and the share of the light that passes it.
+void add_projector(const ProjectedPicture& projected, double metres_per_unit, Json& json) {
+  const Texture& picture = projected.slide().picture();
+  const ProjectorOptics& optics = projected.optics();
+  json["pixels"] = {picture.width(), picture.height()};
+  json["beam"] = optics.beam * 180.0 / std::numbers::pi;
+  if (std::isfinite(optics.focus)) {
+    json["focus"] = optics.focus / metres_per_unit;
+    json["lens"] = optics.lens / metres_per_unit;
+  }
+  json["passes_picture"] = projected.flux().mean() / projected.open_flux();
+}
+
 Json lamps_json(const Scene& scene) {
   Json lamps = Json::array();
   for (const Lamp& lamp : scene.lamps) {
     const Spectrum flux = lamp_flux(lamp);
     const Eigen::Vector3d at = lamp.position / scene.metres_per_unit;
-    const char* const kind = std::holds_alternative<SharedWeb>(lamp.shape)  ? "measured"
-                             : std::holds_alternative<SpotCone>(lamp.shape) ? "spot"
-                                                                            : "point";
+    const char* const kind = std::holds_alternative<SharedWeb>(lamp.shape)       ? "measured"
+                             : std::holds_alternative<SpotCone>(lamp.shape)      ? "spot"
+                             : std::holds_alternative<SharedPicture>(lamp.shape) ? "projector"
+                                                                                 : "point";
     Json json = {{"name", lamp.name}, {"is", kind}, {"position", {at.x(), at.y(), at.z()}}};
     if (!lamp.opening.is_point()) {
       json["opening"] = {lamp.opening.along_c0, lamp.opening.along_c90};
+    }
+    if (const auto* picture = std::get_if<SharedPicture>(&lamp.shape)) {
+      add_projector(**picture, scene.metres_per_unit, json);
     }
     if (lamp.body.is_known()) {
       json["body"] = {lamp.body.along_c0, lamp.body.along_c90, lamp.body.height};

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "scene/limits.h"
+#include "scene/projected_picture.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -42,6 +43,12 @@ Eigen::Vector3d cap_direction(double height, double u, double v) {
   return {sine * std::cos(two_pi * v), sine * std::sin(two_pi * v), -cosine};
 }
 
+// The bands of r, g, b over the mean of the three.
+Spectrum color_of(const ProjectedPicture& picture, const Eigen::Array3d& rgb) {
+  const double mean = rgb.mean();
+  return picture.in_bands(mean > 0.0 ? Eigen::Array3d(rgb / mean) : rgb);
+}
+
 }  // namespace
 
 Eigen::Matrix3d lamp_axes(const Eigen::Vector3d& aim, const Eigen::Vector3d& c0) {
@@ -58,7 +65,10 @@ Eigen::Matrix3d lamp_axes(const Eigen::Vector3d& aim, const Eigen::Vector3d& c0)
   return axes;
 }
 
-double relative_intensity(const Lamp& lamp, const Eigen::Vector3d& direction, double) {
+double relative_intensity(const Lamp& lamp, const Eigen::Vector3d& direction, double distance) {
+  if (const auto* picture = std::get_if<SharedPicture>(&lamp.shape)) {
+    return (*picture)->towards(lamp.axes.transpose() * direction, distance).mean();
+  }
   if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) {
     return (*web)->at(lamp.axes.transpose() * direction);
   }
@@ -68,15 +78,21 @@ double relative_intensity(const Lamp& lamp, const Eigen::Vector3d& direction, do
   return 1.0;
 }
 
-Spectrum relative_color(const Lamp&, const Eigen::Vector3d&, double) {
-  return {};
+Spectrum relative_color(const Lamp& lamp, const Eigen::Vector3d& direction, double distance) {
+  const auto* picture = std::get_if<SharedPicture>(&lamp.shape);
+  if (!picture) return {};
+  return color_of(**picture, (*picture)->towards(lamp.axes.transpose() * direction, distance));
 }
 
-Spectrum mean_color(const Lamp&) {
-  return {};
+Spectrum mean_color(const Lamp& lamp) {
+  const auto* picture = std::get_if<SharedPicture>(&lamp.shape);
+  return picture ? color_of(**picture, (*picture)->flux()) : Spectrum();
 }
 
 double relative_flux(const Lamp& lamp) {
+  if (const auto* picture = std::get_if<SharedPicture>(&lamp.shape)) {
+    return (*picture)->flux().mean();
+  }
   if (const auto* web = std::get_if<SharedWeb>(&lamp.shape)) return (*web)->integral();
   if (const auto* cone = std::get_if<SpotCone>(&lamp.shape)) return cone_flux(*cone);
   return 2.0 * two_pi;
@@ -94,6 +110,14 @@ LampRay draw_ray(const Lamp& lamp, const Eigen::Array4f& u) {
     ray.weight = drawn.weight;
     return ray;
   }
+  if (const auto* picture = std::get_if<SharedPicture>(&lamp.shape)) {
+    const Eigen::Vector3d lens_point = lamp.axes.transpose() * (ray.origin - lamp.position);
+    const ProjectedPicture::Drawn drawn = (*picture)->draw(lens_point, u[0], u[1]);
+    ray.direction = lamp.axes * drawn.direction;
+    ray.weight = drawn.weight.mean();
+    ray.color = color_of(**picture, drawn.weight);
+    return ray;
+  }
   const auto* cone = std::get_if<SpotCone>(&lamp.shape);
   const double height = cone ? 1.0 - std::cos(cone->outer) : 2.0;
   ray.direction = lamp.axes * cap_direction(height, u[0], u[1]);
@@ -102,11 +126,22 @@ LampRay draw_ray(const Lamp& lamp, const Eigen::Array4f& u) {
 }
 
 Eigen::Vector3d ray_origin(const Lamp& lamp, double u, double v) {
+  if (const auto* picture = std::get_if<SharedPicture>(&lamp.shape)) {
+    return lamp.position + lamp.axes * (*picture)->lens_point(u, v);
+  }
   return opening_point(lamp, u, v);
 }
 
 LampRay ray_along(const Lamp& lamp, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                   double solid_angle) {
+  if (const auto* picture = std::get_if<SharedPicture>(&lamp.shape)) {
+    const Eigen::Array3d rgb = (*picture)->along(lamp.axes.transpose() * (origin - lamp.position),
+                                                 lamp.axes.transpose() * direction);
+    return {.origin = origin,
+            .direction = direction,
+            .weight = solid_angle * rgb.mean(),
+            .color = color_of(**picture, rgb)};
+  }
   return {.origin = origin,
           .direction = direction,
           .weight = solid_angle * relative_intensity(lamp, direction)};

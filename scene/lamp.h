@@ -12,6 +12,8 @@
 
 namespace lightwell {
 
+class ProjectedPicture;
+
 /// The same intensity in all directions.
 struct EvenIntensity {};
 
@@ -28,7 +30,10 @@ struct SpotCone {
 /// A measured distribution, shared by all lamps of one kind. Never null in a scene.
 using SharedWeb = std::shared_ptr<const PhotometricWeb>;
 
-using IntensityShape = std::variant<EvenIntensity, SpotCone, SharedWeb>;
+/// A picture that lamps project; of lamps without opening. Never null in a scene.
+using SharedPicture = std::shared_ptr<const ProjectedPicture>;
+
+using IntensityShape = std::variant<EvenIntensity, SpotCone, SharedWeb, SharedPicture>;
 
 /// Luminous opening of a lamp: a rectangle or an ellipse about the lamp's position, across its
 /// axis. Every point of the opening emits the same share of the intensity, whatever the direction.
@@ -57,7 +62,9 @@ struct Lamp {
   /// Rotation whose columns are the directions of C0, of C90 and of the zenith (gamma = 180) in the
   /// scene. A spot's axis is gamma = 0, opposite to the last column.
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
-  Spectrum intensity{};  ///< W/sr, >= 0; with a web, W/sr for each unit of its values
+  /// W/sr, >= 0; with a web, W/sr for each unit of its values; with a picture, on the axis through
+  /// white.
+  Spectrum intensity{};
   IntensityShape shape{};
   LampOpening opening{};
   LampBody body{};
@@ -107,8 +114,8 @@ struct LampRay {
 };
 
 /// A ray in proportion to all of the lamp's light, from numbers in [0,1): two for its direction and
-/// two for its origin. The density of directions follows the values of a web; it is even over cones
-/// and even lamps.
+/// two for its origin. The density of directions follows the values of a web or a picture; it is
+/// even over cones and even lamps.
 LampRay draw_ray(const Lamp& lamp, const Eigen::Array4f& u);
 
 /// Random origin of rays, m, as draw_ray() has it for the last two of its numbers.

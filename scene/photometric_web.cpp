@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 
 #include "scene/degree.h"
+#include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
@@ -134,20 +136,9 @@ void PhotometricWeb::tabulate() {
 
 DrawnDirection PhotometricWeb::draw(double u, double v) const {
   if (!(integral_ > 0.0)) return {};
-  const auto pick = [](const double* cdf, int count, double x, double& within, double& size) {
-    const double wanted = x * cdf[count - 1];
-    int i = static_cast<int>(std::upper_bound(cdf, cdf + count, wanted) - cdf);
-    i = std::min(i, count - 1);
-    while (i > 0 && !(cdf[i] > cdf[i - 1])) --i;
-    const double low = i > 0 ? cdf[i - 1] : 0.0;
-    size = cdf[i] - low;
-    within = std::clamp((wanted - low) / size, 0.0, 1.0);
-    return i;
-  };
-  double y = 0.0, x = 0.0, of_row = 0.0, of_cell = 0.0;
-  const int r = pick(row_cdf_.data(), bands_of_gamma, u, y, of_row);
-  const int s =
-      pick(cell_cdf_.data() + static_cast<std::ptrdiff_t>(r) * sectors, sectors, v, x, of_cell);
+  const auto [r, y, of_row] = draw_from_table(row_cdf_, u);
+  const std::size_t first = static_cast<std::size_t>(r) * sectors;
+  const auto [s, x, of_cell] = draw_from_table(std::span(cell_cdf_).subspan(first, sectors), v);
   const double step = zenith / bands_of_gamma * degree, turn = 2.0 * std::numbers::pi / sectors;
   const double top = std::cos(r * step), bottom = std::cos((r + 1) * step);
   const double cosine = top + y * (bottom - top);

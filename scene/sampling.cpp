@@ -1,5 +1,6 @@
 #include "scene/sampling.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -134,6 +135,18 @@ void tangent_frame(const Eigen::Vector3d& n, Eigen::Vector3d& first, Eigen::Vect
   const double b = n.x() * n.y() * a;
   first = {1.0 + sign * n.x() * n.x() * a, sign * b, -sign * n.x()};
   second = {b, sign + n.y() * n.y() * a, -n.y()};
+}
+
+TableDraw draw_from_table(std::span<const double> cdf, double u) {
+  const double wanted = u * cdf.back();
+  auto i = static_cast<std::size_t>(std::ranges::upper_bound(cdf, wanted) - cdf.begin());
+  i = std::min(i, cdf.size() - 1);
+  while (i > 0 && !(cdf[i] > cdf[i - 1])) --i;
+  const double low = i > 0 ? cdf[i - 1] : 0.0;
+  const double share = cdf[i] - low;
+  return {.index = static_cast<int>(i),
+          .within = std::clamp((wanted - low) / share, 0.0, 1.0),
+          .share = share};
 }
 
 Eigen::Vector3d triangle_point(float u, float v) {

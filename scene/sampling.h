@@ -42,6 +42,16 @@ Eigen::Vector3d cosine_direction(float u, float v);
 /// et al. 2017: continuous except where n_z changes sign, and no branch).
 void tangent_frame(const Eigen::Vector3d& n, Eigen::Vector3d& first, Eigen::Vector3d& second);
 
+/// An entry of a table, drawn in proportion to its share.
+struct TableDraw {
+  int index = 0;
+  double within = 0.0;  ///< u stretched over the entry, [0,1]
+  double share = 0.0;   ///< of the entry, in the unit of the table
+};
+/// Draws from the running sum `cdf` of shares, whose last is above 0, by a number `u` in [0,1).
+/// Entries without a share are not drawn.
+TableDraw draw_from_table(std::span<const double> cdf, double u);
+
 /// Barycentric weights of a uniform point of a triangle.
 Eigen::Vector3d triangle_point(float u, float v);
 

@@ -1,5 +1,6 @@
 #include <bit>
 
+#include "scene/projected_picture.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -164,6 +165,11 @@ void add_lamps(const Scene& scene, Hash& hash) {
       for (const double x : (*web)->planes()) hash.add(x);
       for (const double x : (*web)->gammas()) hash.add(x);
       for (const double x : (*web)->values().reshaped()) hash.add(x);
+    } else if (const auto* picture = std::get_if<SharedPicture>(&lamp.shape)) {
+      const auto& [beam, focus, lens, shutters] = (*picture)->optics();
+      const auto& [left, right, top, bottom] = shutters;
+      hash.add((*picture)->slide().picture().hash());
+      for (const double x : {beam, focus, lens, left, right, top, bottom}) hash.add(x);
     }
     hash.add(lamp.opening.along_c0);
     hash.add(lamp.opening.along_c90);

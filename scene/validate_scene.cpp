@@ -10,6 +10,7 @@
 #include "scene/errors.h"
 #include "scene/limits.h"
 #include "scene/material_at.h"
+#include "scene/projected_picture.h"
 #include "scene/round_shape.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
@@ -399,6 +400,15 @@ void check_lamp(const Scene& scene, const Lamp& lamp) {
           fmt::format("its cone is {:g} inside and {:g} outside; 0 <= inside <= outside <= pi, "
                       "with outside above 0",
                       cone->inner, cone->outer));
+    }
+  }
+  if (const auto* picture = std::get_if<SharedPicture>(&lamp.shape)) {
+    if (!*picture) refuse("its picture is empty");
+    if (!opening.is_point()) {
+      refuse("it projects a picture and has an opening; such a lamp is a point, so remove one");
+    }
+    if ((*picture)->in_bands(Eigen::Array3d::Ones()).size() != scene.bands.count()) {
+      refuse("its picture is in other bands than the scene");
     }
   }
   const auto* web = std::get_if<SharedWeb>(&lamp.shape);

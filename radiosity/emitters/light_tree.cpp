@@ -7,6 +7,8 @@
 #include <map>
 #include <numbers>
 
+#include "scene/projected_picture.h"
+
 namespace lightwell {
 namespace {
 
@@ -80,6 +82,17 @@ LightBound bound_of(const VirtualLight& light, int number, float flux) {
           .axis = light.normal,
           .intensity = falling(flux / pi, cosine),
           .most = static_cast<double>(flux) / pi * light.most};
+}
+
+// The greatest intensity of a lamp that projects a picture within each step, mean of the bands.
+// Bands of a colour rise with each of its red, green and blue.
+IntensityByAngle greatest_of_picture(const ProjectedPicture& picture, const Spectrum& light) {
+  IntensityByAngle result{};
+  const std::vector<Eigen::Array3d> greatest = picture.greatest_by_angle(steps);
+  for (std::size_t k = 0; k < result.size(); ++k) {
+    result[k] = (light * picture.in_bands(greatest[k])).mean();
+  }
+  return result;
 }
 
 Eigen::AlignedBox3d box_of(const Lamp& lamp) {
@@ -186,6 +199,10 @@ std::vector<LightBound> bounds_of(std::span<const FreeSource> sources, int first
       const auto [known, is_new] = webs.try_emplace(web->get());
       if (is_new) known->second = greatest_of_web(**web);
       bound.intensity = known->second;
+    } else if (const auto* picture = std::get_if<SharedPicture>(&lamp.shape)) {
+      bound.intensity = greatest_of_picture(**picture, sources[s].light);
+      bounds.push_back(bound);
+      continue;
     } else {
       const Vector3d across = lamp.axes.col(0);
       bound.intensity = falling(1.0, [&](double angle) {

@@ -398,15 +398,15 @@ class PointLight {
       const auto path = solve(goal, key, chain, clearance);
       if (!path) continue;
       double intensity = 1.0;
+      Spectrum light = source.light;
       if (lamp) {
-        // The same point of the lamp, from a metre away in the direction of the path.
-        const SourceSample near = sample_source(source, goal.position - path->exit, u, v);
-        const double r = near.distance + clearance;
-        intensity = near.irradiance * r * r;
+        // A picture is as sharp as at the end of a straight path that spreads as much.
+        const double distance = std::sqrt(path->spread);
+        intensity = relative_intensity(lamp->lamp, -path->exit, distance);
+        light = with_color(light, relative_color(lamp->lamp, -path->exit, distance));
       }
       const double kernel = intensity * path->direction.dot(at_.normal) / path->spread;
-      (chain.is_straight ? straight : E) +=
-          path->weight * source.light * static_cast<float>(kernel);
+      (chain.is_straight ? straight : E) += path->weight * light * static_cast<float>(kernel);
       if (!chain.is_straight) continue;
       found.push_back(key);
       towards = path->direction;

@@ -9,6 +9,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
+#include "scene/projected_picture.h"
 #include "scene/scene.h"
 #include "tests/scene/expected_messages.h"
 #include "tests/temporary_folder.h"
@@ -198,6 +199,104 @@ TEST_F(TomlLamps, MistakesAreToldWithTheirPlace) {
   expect_error(lamp + "file = \"none.ies\"\naim = [0, 0, -1]", {"none.ies", "cannot be used"});
   expect_error(lamp + "lumens = 5\ncolour = 0", {"colour", "black"});
   expect_error(lamp + "lumens = 5\ncolor = 1", {"color", "colour"});
+}
+
+// two-pixels.png is white on its left, black on its right.
+class TomlProjectors : public TomlLamps {
+ protected:
+  TomlProjectors() {
+    std::filesystem::copy_file(std::filesystem::path(LIGHTWELL_TEST_DATA) / "scene/two-pixels.png",
+                               folder_ / "two.png");
+  }
+  std::string lamp(const std::string& more, const std::string& beam = "beam = 40") const {
+    return "[[lamps]]\nposition = [200, 100, 150]\naim = [0, 1, 0]\nlumens = 1000\n"
+           "picture = \"two.png\"\n" +
+           beam + "\n" + more;
+  }
+};
+
+// The flux is that without the picture; half of the picture is black, and half of its white is cut.
+TEST_F(TomlProjectors, FluxIsThatWithoutThePicture) {
+  for (const char* bands : {"", "[bands]\nkind = \"spectral\"\ncount = 20\n"}) {
+    const Scene whole = read(lamp("") + bands), cut = read(lamp("shutters = { left = 0.25 }"));
+    EXPECT_NEAR(luminous(whole.bands, lamp_flux(whole.lamps.at(0))), 500.0, 0.01);
+    EXPECT_NEAR(luminous(cut.bands, lamp_flux(cut.lamps.at(0))), 250.0, 0.01);
+  }
+}
+
+TEST_F(TomlProjectors, UpTurnsThePicture) {
+  const auto sees = [&](const std::string& more, double x, double z) {
+    const Scene scene = read(lamp(more));
+    return relative_intensity(scene.lamps.at(0), Eigen::Vector3d(x, 1.0, z).normalized()) > 0.0;
+  };
+  // Looking along +y with +z up, left is -x; with -z up it is +x. With +x up, left is +z.
+  EXPECT_TRUE(sees("", -0.1, 0.0));
+  EXPECT_FALSE(sees("", 0.1, 0.0));
+  EXPECT_TRUE(sees("up = [0, 0, -3]", 0.1, 0.0));
+  EXPECT_FALSE(sees("up = [0, 0, -3]", -0.1, 0.0));
+  EXPECT_TRUE(sees("up = [2, 1, 0]", 0.0, 0.1));
+  EXPECT_FALSE(sees("up = [2, 1, 0]", 0.0, -0.1));
+}
+
+TEST_F(TomlProjectors, OpticsAreReadInTheUnitOfTheFile) {
+  const Scene scene = read(lamp("focus = 300\nlens = 8\nshutters = { top = 0.2, right = 0.1 }"));
+  const auto& picture = *std::get<SharedPicture>(scene.lamps.at(0).shape);
+  EXPECT_NEAR(picture.optics().focus, 3.0, 1e-12);
+  EXPECT_NEAR(picture.optics().lens, 0.08, 1e-12);
+  EXPECT_NEAR(picture.optics().beam, 40.0 * pi / 180.0, 1e-12);
+  EXPECT_EQ(picture.optics().shutters.top, 0.2);
+  EXPECT_EQ(picture.optics().shutters.right, 0.1);
+  const Scene usual = read(lamp("focus = 300"));
+  EXPECT_EQ(std::get<SharedPicture>(usual.lamps.at(0).shape)->optics().lens, 0.1);
+}
+
+TEST_F(TomlProjectors, LampsShareTheirPicture) {
+  const Scene scene = read(lamp("") + lamp("focus = 200"));
+  const auto& a = *std::get<SharedPicture>(scene.lamps.at(0).shape);
+  const auto& b = *std::get<SharedPicture>(scene.lamps.at(1).shape);
+  EXPECT_EQ(&a.slide(), &b.slide());
+}
+
+TEST_F(TomlProjectors, HashTellsPicturesApart) {
+  const auto hash = [&](const std::string& more) { return scene_hash(read(lamp(more))); };
+  EXPECT_NE(hash(""), hash("shutters = { left = 0.1 }"));
+  EXPECT_NE(hash("focus = 200"), hash("focus = 210"));
+  EXPECT_NE(hash("focus = 200"), hash("focus = 200\nlens = 5"));
+  EXPECT_NE(hash(""), scene_hash(read(lamp("", "beam = 41"))));
+}
+
+TEST_F(TomlProjectors, MistakesAreToldWithTheirPlace) {
+  const auto refuses = [&](const std::string& more, const std::string& part) {
+    expect_error(lamp(more), {"room.toml:", "lamp 'lamp1'", part});
+  };
+  expect_error(lamp("", ""), {"lamp 'lamp1'", "needs a 'beam'"});
+  expect_error(lamp("", "beam = 0"), {"room.toml:12", "beam of lamp 'lamp1'", "0.1", "170"});
+  expect_error(lamp("", "beam = 180"), {"beam of lamp 'lamp1'", "170"});
+  refuses("focus = 0", "focus");
+  refuses("focus = -2", "focus");
+  refuses("lens = 3", "'focus'");
+  refuses("focus = 5\nlens = 6", "wider than the 'focus'");
+  refuses("focus = 5\nlens = 0", "lens");
+  refuses("shutters = { left = 0.6, right = 0.4 }", "leave nothing of the picture");
+  refuses("shutters = { top = 0.6, bottom = 0.5 }", "'bottom' 0.5");
+  refuses("shutters = { top = 1.5 }", "top");
+  refuses("shutters = { up = 0.1 }", "up");
+  refuses("cone = [10, 20]", "contradicts 'picture'");
+  refuses("file = \"a.ies\"", "contradicts 'picture'");
+  refuses("opening = [1, 1]", "leaves a point");
+  refuses("c0 = [1, 0, 0]", "'up' turns it");
+  refuses("up = [0, 2, 0]", "parallel");
+  const std::string plain = "[[lamps]]\nposition = [200, 100, 150]\nlumens = 5\n";
+  for (const char* key : {"beam = 4", "focus = 4", "lens = 4", "shutters = {}", "up = [0, 0, 1]"}) {
+    expect_error(plain + key, {"room.toml:10", "belongs to a 'picture'"});
+  }
+  const std::string other = plain + "aim = [0, 1, 0]\nbeam = 30\npicture = ";
+  expect_error(other + "\"none.png\"",
+               {"room.toml:12", "picture of lamp", "none.png", "no such file"});
+  folder_.write("text.png", "no picture");
+  expect_error(other + "\"text.png\"", {"room.toml:12", "no PNG, JPEG, EXR or HDR"});
+  folder_.write("torn.png", "\x89PNG\r\n\x1a\n torn");
+  expect_error(other + "\"torn.png\"", {"room.toml:12", "torn.png", "cannot be used"});
 }
 
 TEST_F(TomlLamps, RadiantFilesMakeTheSceneRelative) {

@@ -110,7 +110,10 @@ Scene read_toml(const std::filesystem::path& path) {
   if (const auto lamps = document.find("lamps")) {
     if (!lamps->is_array()) lamps->fail("must be an array of tables; write [[lamps]]");
     number = 0;
-    for (const auto& lamp : lamps->elements("lamp")) read_toml_lamp(lamp, ++number, bands, scene);
+    TomlProjectors projectors(bands);
+    for (const auto& lamp : lamps->elements("lamp")) {
+      read_toml_lamp(lamp, ++number, bands, projectors, scene);
+    }
   }
   std::vector<char> have_shutter;
   if (const auto cameras = document.find("cameras")) {

@@ -9,6 +9,7 @@
 #include "scene/errors.h"
 #include "scene/io/luminaires/luminaire_file.h"
 #include "scene/limits.h"
+#include "scene/projected_picture.h"
 
 namespace lightwell {
 namespace {
@@ -19,14 +20,29 @@ Eigen::Vector3d read_direction(const TomlValue& value) {
   return direction.stableNormalized();
 }
 
-// Lamp axes from the keys 'aim' or 'look_at', and 'c0'.
+// Axes that turn the top of a picture upwards, by the key 'up'.
+Eigen::Matrix3d picture_axes(const TomlTable& table, const Eigen::Vector3d& aim) {
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  if (const auto given = table.find("up")) {
+    up = read_direction(*given);
+    if (!(up.cross(aim).norm() > parallel_sine)) {
+      given->fail("is parallel to the direction the lamp is aimed in; it must point across it");
+    }
+  } else if (!(up.cross(aim).norm() > parallel_sine)) {
+    up = Eigen::Vector3d::UnitY();
+  }
+  return lamp_axes(aim, aim.cross(up));
+}
+
+// Lamp axes from the keys 'aim' or 'look_at', and 'c0' or 'up'.
 Eigen::Matrix3d read_axes(const TomlTable& table, const Eigen::Vector3d& position,
                           bool has_direction) {
   const auto given = table.present({"aim", "look_at"});
   if (!has_direction) {
     for (const auto& key : table.present({"aim", "look_at", "c0"})) {
       table.require(key).fail(
-          "turns a lamp that shines alike to all sides; give a 'file' or a 'cone', or remove it");
+          "turns a lamp that shines alike to all sides; give a 'file', a 'cone' or a 'picture', or "
+          "remove it");
     }
     return Eigen::Matrix3d::Identity();
   }
@@ -43,6 +59,7 @@ Eigen::Matrix3d read_axes(const TomlTable& table, const Eigen::Vector3d& positio
                                      : "has no length; give a direction");
   }
   aim.stableNormalize();
+  if (table.has("picture")) return picture_axes(table, aim);
   const auto c0 = table.find("c0");
   if (!c0) return lamp_axes(aim);
   const Eigen::Vector3d direction = read_direction(*c0);
@@ -91,6 +108,12 @@ void read_body(const TomlTable& table, double metres_per_unit, Lamp& lamp) {
                .is_round = lamp.opening.is_round};
 }
 
+// The flux of a lamp of intensity 1, sr; of one with a picture, without it.
+double open_flux(const Lamp& lamp) {
+  const auto* picture = std::get_if<SharedPicture>(&lamp.shape);
+  return picture ? (*picture)->open_flux() : relative_flux(lamp);
+}
+
 // Sets intensity, W/sr per unit of the shape, from exactly one of the four keys.
 void read_strength(const TomlTable& table, const TomlBands& bands, Lamp& lamp) {
   const auto given = table.present({"intensity", "candela", "power", "lumens"});
@@ -113,8 +136,25 @@ void read_strength(const TomlTable& table, const TomlBands& bands, Lamp& lamp) {
     lamp.intensity =
         colour * static_cast<float>(value.number_at_least(0.0) / luminous(bands.bands, colour));
   }
-  if (is_flux) lamp.intensity /= static_cast<float>(relative_flux(lamp));
+  if (is_flux) lamp.intensity /= static_cast<float>(open_flux(lamp));
   if (!lamp.intensity.isFinite().all()) value.fail("is too large a number");
+}
+
+// Sets distribution and intensity of a lamp without a photometric file.
+void read_shape(const TomlTable& table, const TomlBands& bands, double metres_per_unit,
+                TomlProjectors& projectors, Lamp& lamp) {
+  if (!table.has("picture")) {
+    for (const auto& key : table.present({"beam", "focus", "lens", "shutters", "up"})) {
+      table.require(key).fail("belongs to a 'picture'; give one, or remove it");
+    }
+    if (const auto cone = table.find("cone")) lamp.shape = read_toml_cone(*cone);
+    read_strength(table, bands, lamp);
+    return;
+  }
+  const TomlProjector projector = projectors.read(table, metres_per_unit);
+  lamp.shape = projector.picture;
+  read_strength(table, bands, lamp);
+  lamp.intensity *= projector.brightest;
 }
 
 // Sets a lamp's distribution and intensity from a photometric file.
@@ -146,27 +186,27 @@ void read_measured(const TomlTable& table, const TomlBands& bands, Scene& scene,
 }  // namespace
 
 void read_toml_lamp(const TomlValue& value, std::size_t number, const TomlBands& bands,
-                    Scene& scene) {
+                    TomlProjectors& projectors, Scene& scene) {
   const auto given = value.member("name");
   Lamp lamp{.name = given ? given->name() : fmt::format("lamp{}", number)};
   const TomlTable table =
       value.renamed(fmt::format("lamp '{}'", lamp.name))
-          .table({"name", "position", "aim", "look_at", "c0", "file", "lamp_set", "cone",
-                  "intensity", "candela", "power", "lumens", "colour", "factor", "opening", "round",
-                  "body", "watts", "visible"});
+          .table({"name",    "position",  "aim",      "look_at", "c0",      "file",    "lamp_set",
+                  "cone",    "intensity", "candela",  "power",   "lumens",  "colour",  "factor",
+                  "opening", "round",     "body",     "watts",   "visible", "picture", "beam",
+                  "focus",   "lens",      "shutters", "up"});
   const Eigen::Vector3d position = table.require("position").vector();
   lamp.position = scene.metres_per_unit * position;
-  const bool is_measured = table.has("file");
-  if (const auto set = table.find("lamp_set"); set && !is_measured) {
+  const bool is_measured = table.has("file") && !table.has("picture");
+  if (const auto set = table.find("lamp_set"); set && !table.has("file")) {
     set->fail("belongs to a 'file'; give one, or remove it");
   }
   if (is_measured) {
     read_measured(table, bands, scene, lamp);
   } else {
-    if (const auto cone = table.find("cone")) lamp.shape = read_toml_cone(*cone);
-    read_strength(table, bands, lamp);
+    read_shape(table, bands, scene.metres_per_unit, projectors, lamp);
   }
-  lamp.axes = read_axes(table, position, is_measured || table.has("cone"));
+  lamp.axes = read_axes(table, position, is_measured || table.has("cone") || table.has("picture"));
   read_opening(table, scene.metres_per_unit, lamp);
   read_body(table, scene.metres_per_unit, lamp);
   if (const auto factor = table.find("factor")) {

@@ -10,6 +10,7 @@
 
 #include "mesh/build_patches.h"
 #include "mesh/elements/element_caster.h"
+#include "scene/projected_picture.h"
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 
@@ -38,8 +39,21 @@ SharedWeb narrow_web() {
       std::vector<double>{0.0, 90.0}, std::vector<double>{0.0, 17.0, 17.5, 18.0, 130.0}, values);
 }
 
+/// A picture of 8 x 6 texels of many colours; every other one in focus at 3 m alone.
+SharedPicture picture(int k) {
+  std::vector<Texture::Code> codes;
+  for (int i = 0; i < 8 * 6 * 3; ++i) {
+    codes.push_back(static_cast<Texture::Code>(65535.0 * uniform(i, 40)));
+  }
+  ProjectorOptics optics{.beam = 0.2 + uniform(k, 41), .shutters = {.left = 0.3 * uniform(k, 42)}};
+  if (k % 2 == 0) optics.focus = 3.0;
+  return std::make_shared<const ProjectedPicture>(
+      std::make_shared<const PictureSums>(std::make_shared<const Texture>(8, 6, 3, codes)), optics,
+      RgbBasis());
+}
+
 /// A black hall of 20 x 20 x 6 m with screens, `panels` that face everywhere, and `lamps`: spots,
-/// lamps with openings, measured ones and even ones.
+/// lamps with openings, measured ones, coloured ones that project a picture, and even ones.
 struct Hall {
   Scene scene;
   PatchMesh mesh;
@@ -75,6 +89,10 @@ struct Hall {
                                                1.0f + 9.0f * static_cast<float>(uniform(k, 17)))};
       if (k % 3 == 0) lamp.shape = SpotCone{.inner = 0.2, .outer = 0.3 + uniform(k, 18)};
       if (k % 6 == 2) lamp.shape = narrow_web();
+      if (k % 6 == 5) {
+        lamp.shape = picture(k / 6);
+        lamp.intensity *= Eigen::Array3f(1.0f, 0.2f, 0.5f);
+      }
       if (k % 3 == 1) lamp.opening = {.along_c0 = 0.6 * uniform(k, 19), .along_c90 = 0.1};
       scene.lamps.push_back(lamp);
     }
@@ -101,7 +119,8 @@ std::vector<double> unoccluded(const DirectLight& light, const SurfacePoint& at)
     E.push_back(light.unoccluded_form_factor(emitter, at) * emitter.exitance.mean());
   }
   for (const FreeSource& source : light.free_sources()) {
-    E.push_back(unoccluded_kernel(source, at.position, at.normal) * source.light.mean());
+    E.push_back(unoccluded_kernel(source, at.position, at.normal) *
+                light_towards(source, at.position).mean());
   }
   return E;
 }
