@@ -45,10 +45,13 @@ struct CastPiece {
   Eigen::ArrayXd absorbed, escaped;  // by way of mirrors and glass
 };
 
+// One value per band, without memory of the heap.
+using Factor = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, max_bands, 1>;
+
 // A colour per band; 1 for an empty one.
-Eigen::ArrayXd factor(const Spectrum& color, Eigen::Index bands) {
+Factor factor(const Spectrum& color, Eigen::Index bands) {
   if (color.size() > 0) return color.cast<double>();
-  return Eigen::ArrayXd::Ones(bands);
+  return Factor::Ones(bands);
 }
 
 CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, const LightPaths& paths,
@@ -102,7 +105,7 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
         piece.in_bands.push_back({mesh.patch[at.hit.element],
                                   with_color(at.throughput, color[r]) * static_cast<float>(w)});
       });
-      const Eigen::ArrayXd lost = w * factor(color[r], bands);
+      const Factor lost = w * factor(color[r], bands);
       piece.absorbed += lost * (losses.absorbed + losses.cut).cast<double>();
       piece.escaped += lost * losses.escaped.cast<double>();
     }

@@ -39,8 +39,8 @@ PLACES = [
     (12, "scene/photometric_web.cpp", "flux of a photometric file",
      "integral_ *= 2.0 * std::numbers::pi;", "integral_ *= broken(12) * 2.0 * std::numbers::pi;", "scene radiosity"),
     (13, "scene/lamp.cpp", "weight of a ray from a spot",
-     "return {direction, two_pi * height * relative_intensity(lamp, direction)};",
-     "return {direction, broken(13) * two_pi * height * relative_intensity(lamp, direction)};", "scene radiosity"),
+     "ray.weight = two_pi * height * relative_intensity(lamp, ray.direction);",
+     "ray.weight = broken(13) * two_pi * height * relative_intensity(lamp, ray.direction);", "scene radiosity"),
     (14, "scene/microfacet.cpp", "density of microfacets",
      "return a2 / (std::numbers::pi * b * b);", "return broken(14) * a2 / (std::numbers::pi * b * b);",
      "scene:*Microfacet* scene"),
@@ -100,4 +100,7 @@ PLACES = [
     (32, "raytrace/display/light_meter.cpp", "exposure for incident light",
      ".exposure = std::numbers::pi", ".exposure = broken(32) * std::numbers::pi",
      "raytrace:LightMeter.* raytrace"),
+    (33, "scene/projected_picture.cpp", "intensity of a projected picture",
+     "return T * inverse_cube(direction);", "return broken(33) * T * inverse_cube(direction);",
+     "scene:ProjectedPicture.* scene radiosity"),
 ]

@@ -82,7 +82,7 @@ TEST(ProjectedLight, RaysOfPicturesAgreeWithPoints) {
     const PatchMesh mesh = build_patches(scene, {.max_patch_size = 1.0});
     const ElementCaster caster(mesh);
     const DirectLight light(scene, mesh);
-    const LightPaths paths(scene, caster);
+    const LightPaths paths(scene, caster, 8);
     const FreeLight cast = cast_free_light(scene, caster, paths, light, 1 << 18);
     const Eigen::ArrayXd flux = lamp_flux(lamp).cast<double>();
     // The flux is a float.

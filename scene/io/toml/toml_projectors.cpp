@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numbers>
+#include <cstdint>
 
 #include "scene/degree.h"
 #include "scene/errors.h"
