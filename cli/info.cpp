@@ -95,7 +95,8 @@ Json sky_json(const Scene& scene) {
   return json;
 }
 
-// Pixels and beam of a projected picture, and the share of the light that passes it.
+// Pixels and beam of a projected picture, and the share of the light that passes it where its
+// brightest value counts as open.
 void add_projector(const ProjectedPicture& projected, double metres_per_unit, Json& json) {
   const Texture& picture = projected.slide().picture();
   const ProjectorOptics& optics = projected.optics();

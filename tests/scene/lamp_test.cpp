@@ -299,6 +299,22 @@ TEST_F(TomlProjectors, MistakesAreToldWithTheirPlace) {
   expect_error(other + "\"torn.png\"", {"room.toml:12", "torn.png", "cannot be used"});
 }
 
+// 4097 x 4097 pixels, one row more than the most, as runs of a RADIANCE picture.
+TEST_F(TomlProjectors, RefusesPicturesThatAreTooLarge) {
+  std::string row = {2, 2, 4097 / 256, 4097 % 256};
+  for (int channel = 0; channel < 4; ++channel) {
+    for (int run = 0; run < 32; ++run) row += {static_cast<char>(128 + 127), '\x80'};
+    row += {static_cast<char>(128 + 33), '\x80'};
+  }
+  std::string huge = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 4097 +X 4097\n";
+  for (int y = 0; y < 4097; ++y) huge += row;
+  folder_.write("huge.hdr", huge);
+  expect_error(
+      "[[lamps]]\nposition = [200, 100, 150]\naim = [0, 1, 0]\nlumens = 5\nbeam = 30\n"
+      "picture = \"huge.hdr\"\n",
+      {"room.toml:12", "4097 x 4097", "16777216", "smaller"});
+}
+
 TEST_F(TomlLamps, RadiantFilesMakeTheSceneRelative) {
   std::filesystem::copy_file(
       std::filesystem::path(LIGHTWELL_TEST_DATA) / "luminaires/uv_LLIA001477-002.ies",
