@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "cli/arguments.h"
+#include "cli/outputs.h"
 #include "cli/quoted.h"
 #include "scene/errors.h"
 
@@ -89,24 +90,24 @@ std::string ChannelArguments::text() const {
   return text;
 }
 
-void add_channel_settings(CLI::App& command, ChannelSettings& settings) {
+void add_channel_settings(CLI::App& command, std::vector<NamedSetting>& settings) {
   add_each(
       command,
       {.name = "--channel",
-       .help = "factor (0.3, off, on), colour (#ffd9b0) or both (0.3,#ffd9b0) of a channel; may be "
-               "repeated",
+       .help = "factor (0.3, off, on), colour (#ffd9b0) or both (0.3,#ffd9b0) of a channel, or of "
+               "those that a pattern matches; may be repeated",
        .type = "NAME=VALUE"},
       [&settings](const std::string& text) {
         const auto [name, value] =
             split_words("--channel", text, text.rfind('='),
                         "NAME=VALUE, such as desk=0.3, ceiling=#ffd9b0 or sun=off");
-        for (const auto& [other, setting] : settings) {
-          if (other != name) continue;
+        for (const NamedSetting& other : settings) {
+          if (other.channels != name) continue;
           throw CLI::ValidationError(
               "--channel", fmt::format("'{}' is set twice; give one value for each channel", name));
         }
         try {
-          settings.emplace_back(name, channel_setting(value));
+          settings.push_back({.channels = name, .setting = channel_setting(value)});
         } catch (const std::invalid_argument& error) {
           throw CLI::ValidationError("--channel", error.what());
         }
@@ -114,17 +115,30 @@ void add_channel_settings(CLI::App& command, ChannelSettings& settings) {
 }
 
 std::vector<Spectrum> channel_scales(const RadiositySolution& solution,
-                                     const ChannelSettings& settings, const std::string& file) {
-  std::vector<Spectrum> scales = effective_scales(solution);
+                                     std::vector<NamedSetting> settings, const std::string& file) {
+  for (NamedSetting& setting : settings) setting.place = file;
+  return apply_settings(solution, settings, effective_scales(solution));
+}
+
+CLI::Option* add_cues(CLI::App& command, std::string& cues, const std::string& help) {
+  return command.add_option("--cues", cues, help)
+      ->type_name("FILE")
+      ->check(with_extension({".toml"}));
+}
+
+std::vector<WordedCue> read_cue_file(const std::string& cues) {
+  note_input(cues);
+  return read_cues(cues);
+}
+
+std::vector<Cue> cues_of(const RadiositySolution& solution, const std::vector<WordedCue>& worded,
+                         const std::string& file) {
   try {
-    for (const auto& [name, setting] : settings) {
-      const auto c = static_cast<std::size_t>(find_channel(solution, name));
-      scales[c] = channel_scale(solution.channels[c], solution.bands, setting);
-    }
+    require_channels(solution);
   } catch (const InputError& error) {
     throw InputError(fmt::format("{}: {}", file, error.what()));
   }
-  return scales;
+  return cues_for(solution, worded);
 }
 
 Json channels_json(const RadiositySolution& solution) {

@@ -2,12 +2,12 @@
 
 #include <CLI/CLI.hpp>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cli/report.h"
+#include "radiosity/solution/channel_settings.h"
+#include "radiosity/solution/cues.h"
 #include "radiosity/solution/emitter_channels.h"
-#include "radiosity/solution/relight.h"
 
 namespace lightwell {
 
@@ -28,16 +28,24 @@ struct ChannelArguments {
   void add(const std::string& text);
 };
 
-/// Names of channels with their settings.
-using ChannelSettings = std::vector<std::pair<std::string, ChannelSetting>>;
-
 /// Adds --channel NAME=VALUE, which may be repeated.
-void add_channel_settings(CLI::App& command, ChannelSettings& settings);
+void add_channel_settings(CLI::App& command, std::vector<NamedSetting>& settings);
 
 /// Scale per channel and band for relight(); a channel without a setting keeps its scale. Throws
-/// InputError that names `file`, the solution's, if a setting names an unknown channel.
+/// InputError that names `file`, the solution's, as apply_settings() does.
 std::vector<Spectrum> channel_scales(const RadiositySolution& solution,
-                                     const ChannelSettings& settings, const std::string& file);
+                                     std::vector<NamedSetting> settings, const std::string& file);
+
+/// Adds --cues FILE.
+CLI::Option* add_cues(CLI::App& command, std::string& cues, const std::string& help);
+
+/// Reads the cues of a file, which outputs must not replace.
+std::vector<WordedCue> read_cue_file(const std::string& cues);
+
+/// The cues of a file for the channels of a solution. Throws InputError as cues_for() does, and one
+/// that names `file`, the solution's, if that has no channels.
+std::vector<Cue> cues_of(const RadiositySolution& solution, const std::vector<WordedCue>& worded,
+                         const std::string& file);
 
 /// Channels for JSON, an object each: name, emitted flux times the scale (watts and lumens; power
 /// in a scene of relative units), scale per band, names of its surfaces and lamps.

@@ -87,7 +87,7 @@ void warn_of_outcome(const RadiositySolution& solution, const SolveReport& solve
 
 // A note on branches of the ray tree that ended at the maximum depth; without --verbose only if the
 // light of these branches could be visible.
-void note_depth_cut(const Camera& camera, const RenderReport& rendered, int max_depth,
+void note_depth_cut(const std::string& label, const RenderReport& rendered, int max_depth,
                     Console& console) {
   if (!(rendered.depth_cut > 0)) return;
   // A share below one grey level of an 8-bit picture is invisible.
@@ -95,7 +95,7 @@ void note_depth_cut(const Camera& camera, const RenderReport& rendered, int max_
   const std::string cut = fmt::format(
       "{}: {} branches of the ray tree ended after {} mirrors and glass surfaces; about {:.2g} % "
       "of the picture's light is missing",
-      camera.name, rendered.depth_cut, max_depth, 100.0 * rendered.cut_share);
+      label, rendered.depth_cut, max_depth, 100.0 * rendered.cut_share);
   if (rendered.cut_share > visible) {
     console.say("note: " + cut + ". A larger '--depth' follows more");
   } else {
@@ -104,8 +104,8 @@ void note_depth_cut(const Camera& camera, const RenderReport& rendered, int max_
 }
 
 // Whether the picture is as asked for; warns of one that is not.
-bool is_as_asked(const Camera& camera, const RenderArguments& asked, const PictureInTime& picture,
-                 Console& console, Report& report) {
+bool is_as_asked(const std::string& label, const RenderArguments& asked,
+                 const PictureInTime& picture, const Feedback& feedback) {
   const bool is_whole = picture.rows == picture.image.height;
   const std::string options = picture.arguments.text();
   if (is_whole && options == asked.text()) return true;
@@ -116,8 +116,8 @@ bool is_as_asked(const Camera& camera, const RenderArguments& asked, const Pictu
         "of the solution",
         picture.rows, picture.image.height);
   }
-  console.say(fmt::format("warning: {}: for want of time the picture is {}", camera.name, what));
-  report.add("cut_short_" + camera.name, {{"options", options}, {"rows", picture.rows}});
+  feedback.console.say(fmt::format("warning: {}: for want of time the picture is {}", label, what));
+  feedback.report.add("cut_short_" + label, {{"options", options}, {"rows", picture.rows}});
   return false;
 }
 
@@ -275,7 +275,8 @@ bool render_step(RenderableScene& renderable, const PictureTask& task, Checkpoin
   const RenderArguments& asked = task.arguments;
   const auto& [console, report] = feedback;
   const Stopwatch watch;
-  console.say_verbose(fmt::format("rendering {} with {}", camera.name, asked.text()));
+  const std::string& label = task.label.empty() ? camera.name : task.label;
+  console.say_verbose(fmt::format("rendering {} with {}", label, asked.text()));
   RenderOptions options;
   options.layers = asked.film.rendered_layers(renderable.scene);
   options.run = {.progress = checkpoint.watched(console.progress()),
@@ -290,20 +291,21 @@ bool render_step(RenderableScene& renderable, const PictureTask& task, Checkpoin
     checkpoint.rethrow_stopped();
   }
   console.finish_phase();
-  const Picture picture{.image = rendered.image,
-                        .solution = renderable.solved.solution,
-                        .camera = view,
-                        .render_options = rendered.arguments.text(),
-                        .exposure_ev = asked.exposure_ev,
-                        .incident = renderable.renderer.incident_light(view)};
+  const Picture picture{
+      .image = rendered.image,
+      .solution = renderable.solved.solution,
+      .camera = view,
+      .render_options = rendered.arguments.text(),
+      .exposure_ev = asked.exposure_ev,
+      .incident = task.incident ? task.incident : renderable.renderer.incident_light(view)};
   for (const fs::path& file : task.files) {
     write_picture(file, picture, asked.film);
     report.add_file(file);
   }
-  report.add_phase("render_" + camera.name, watch.seconds());
-  report.add("depth_cut_" + camera.name, rendered.rendered.cut_share);
-  note_depth_cut(camera, rendered.rendered, asked.depth, console);
-  return is_as_asked(camera, asked, rendered, console, report);
+  report.add_phase("render_" + label, watch.seconds());
+  report.add("depth_cut_" + label, rendered.rendered.cut_share);
+  note_depth_cut(label, rendered.rendered, asked.depth, console);
+  return is_as_asked(label, asked, rendered, feedback);
 }
 
 int exit_code(const RadiositySolution& solution) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -81,6 +82,10 @@ struct PictureTask {
   const RenderArguments& arguments;
   const std::vector<std::filesystem::path>& files;
   std::function<double()> seconds_left{};  ///< RunControl::seconds_left
+  std::string label{};  ///< of the picture in report and messages; empty: the camera's name
+  /// Light that exposure and white balance of the .png go by, for pictures to be compared; empty:
+  /// what falls on what the camera sees.
+  std::optional<IncidentLight> incident{};
 };
 
 /// Renders a picture and writes its files. Finished tiles that the checkpoint holds are reused;

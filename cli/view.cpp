@@ -33,7 +33,8 @@ struct ViewArguments {
   double exposure_ev = 0.0;
   WhitePoint white;
   double text_scale = 0.0;
-  ChannelSettings channels;
+  std::vector<NamedSetting> channels;
+  std::string cues;
   ChannelArguments kept_apart;
   MeshArguments mesh;
   std::vector<int> shots;
@@ -193,8 +194,23 @@ int view(const ViewArguments& arguments, Console& console) {
   ViewOptions options = view_options(arguments, scene);
   options.names = clean_up.names.get();
   const bool is_film = arguments.frames > 0 || arguments.turntable > 0;
+  if (arguments.frames > 0 && arguments.path.empty() && arguments.cues.empty()) {
+    throw InputError(
+        "'--frames' needs what the film shows: a path that the camera takes ('--path'), or the "
+        "fades of cues ('--cues')");
+  }
+  std::vector<WordedCue> cues;
+  if (!arguments.cues.empty()) cues = read_cue_file(arguments.cues);
+  if (!arguments.cues.empty() && arguments.solution.empty()) {
+    throw InputError("'--cues' needs a solution: lightwell view SCENE SOLUTION.vtp --cues FILE");
+  }
   if (is_film && arguments.solution.empty()) {
     throw InputError("a film needs a solution: lightwell view SCENE SOLUTION.vtp --frames ...");
+  }
+  if (!cues.empty() && !arguments.offscreen.empty() && !is_film) {
+    throw InputError(
+        "'--cues' with '--offscreen' needs the number of pictures of the fades, as in '--frames "
+        "100'; 'lightwell relight --cues' makes a picture of each cue");
   }
   const std::string first_picture =
       is_film ? frame_name(arguments.offscreen, 0).string() : arguments.offscreen;
@@ -221,13 +237,16 @@ int view(const ViewArguments& arguments, Console& console) {
   if (!arguments.channels.empty()) {
     relight(solved, channel_scales(solved.solution, arguments.channels, arguments.solution));
   }
+  if (!cues.empty()) options.cues = cues_of(solved.solution, cues, arguments.solution);
   if (arguments.offscreen.empty()) {
     show_window(solved, options);
     return exit_done;
   }
   const Stopwatch watch;
   if (is_film) {
-    const FilmOptions film{arguments.path, std::max(arguments.frames, arguments.turntable)};
+    const FilmOptions film{.path = arguments.path,
+                           .frames = std::max(arguments.frames, arguments.turntable),
+                           .turntable = arguments.turntable > 0};
     for (const fs::path& file :
          write_film(solved, options, film, arguments.offscreen, console.progress())) {
       report.add_file(file);
@@ -346,11 +365,11 @@ void add_pictures(CLI::App& command, ViewArguments& arguments) {
   auto* const frames =
       command
           .add_option("--frames", arguments.frames,
-                      "with --offscreen out-%04d.png: number of pictures along the path")
+                      "with --offscreen out-%04d.png: number of pictures along path or cues")
           ->type_name("N")
           ->check(whole_number(1, 1000000));
   path->needs(frames);
-  frames->needs(path)->needs(offscreen);
+  frames->needs(offscreen);
   command
       .add_option("--turntable", arguments.turntable,
                   "with --offscreen out-%04d.png: number of pictures around the scene")
@@ -383,7 +402,8 @@ void add_live(CLI::App& command, ViewArguments& arguments) {
           "electric light), off, or NAME=PATTERN of emitters, which may be repeated");
   arguments.mesh.add_to(command, live);
   // Left out of --help, which has to fit a screen.
-  for (const char* const rare : {"--max-element-size", "--elements-per-patch-edge"}) {
+  for (const char* const rare :
+       {"--max-element-size", "--elements-per-patch-edge", "--no-ambient"}) {
     command.get_option(rare)->group("");
   }
 }
@@ -408,6 +428,7 @@ Action add_view(CLI::App& command) {
   add_start(command, *arguments);
   add_pictures(command, *arguments);
   add_channel_settings(command, arguments->channels);
+  add_cues(command, arguments->cues, "lighting cues that keys step through, .toml (keys . , ;)");
   command
       .add_option("-o,--output", arguments->output,
                   "where Ctrl+S and Enter save the solution (default: a free name here), .vtp")

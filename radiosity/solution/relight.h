@@ -28,6 +28,9 @@ ChannelSetting channel_setting(std::string_view text);
 Spectrum channel_scale(const LightChannel& channel, const Bands& bands,
                        const ChannelSetting& setting);
 
+/// Throws InputError for a solution without channels.
+void require_channels(const RadiositySolution& solution);
+
 /// Index of the channel named `name`. Throws InputError that lists all names, or that states that
 /// the solution has no channels.
 int find_channel(const RadiositySolution& solution, std::string_view name);

@@ -30,20 +30,26 @@ LightBoard::LightBoard(const RadiositySolution& solution) : bands_(solution.band
     light.energy = channel.energy;
     channels_.push_back(std::move(light));
     names_.push_back(channel.name);
-    Dimmer dimmer;
-    dimmer.factor = channel.scale.size() > 0 ? channel.scale.maxCoeff() : 1.0f;
-    if (channel.scale.size() == 3 && bands_.wavelengths_nm.empty()) {
+  }
+  follow(effective_scales(solution));
+}
+
+void LightBoard::follow(const std::vector<Spectrum>& scales) {
+  dimmers_.assign(channels_.size(), {});
+  for (std::size_t c = 0; c < channels_.size(); ++c) {
+    const Spectrum& scale = scales[c];
+    Dimmer& dimmer = dimmers_[c];
+    dimmer.factor = scale.size() > 0 ? scale.maxCoeff() : 1.0f;
+    if (scale.size() == 3 && bands_.wavelengths_nm.empty()) {
       // Ratio of scaled to full luminous flux: colour and dimmer together.
-      const Spectrum flux = channel.energy.row(0).transpose().cast<float>();
+      const Spectrum flux = channels_[c].energy.row(0).transpose().cast<float>();
       const double own = luminous(bands_, flux);
-      const double now = luminous(bands_, channel.scale * flux);
+      const double now = luminous(bands_, scale * flux);
       if (own > 0.0) dimmer.factor = static_cast<float>(now / own);
     }
     const bool is_on = dimmer.factor > 0.0f;
-    dimmer.colour =
-        is_on ? Spectrum(channel.scale / dimmer.factor) : constant_spectrum(bands_, 1.0f);
+    dimmer.colour = is_on ? Spectrum(scale / dimmer.factor) : constant_spectrum(bands_, 1.0f);
     dimmer.before = is_on ? dimmer.factor : 1.0f;
-    dimmers_.push_back(dimmer);
   }
 }
 

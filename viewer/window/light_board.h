@@ -29,6 +29,8 @@ class LightBoard {
   /// filter).
   std::string next_colour();
 
+  /// Follows scales that were set elsewhere, per channel and band.
+  void follow(const std::vector<Spectrum>& scales);
   /// Scales of all channels, per band, as relight() takes them.
   std::vector<Spectrum> scales() const;
   /// A line with each channel's name and factor, the chosen channel in brackets. Empty without

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -130,6 +131,70 @@ void write_snapshot(const SolvedScene& solved, const ViewOptions& asked,
   write_png(png, options.width, options.height, AnnotatedPictures(view, options).draw());
 }
 
+namespace {
+
+std::vector<Camera> film_cameras(const FilmOptions& film, const ViewOptions& options,
+                                 const SolutionView& view) {
+  if (!film.path.empty()) {
+    const CameraPath path = read_views(film.path).path;
+    if (path.empty()) {
+      throw InputError(
+          fmt::format("{}: there is no path in it; record one in the window with the key J",
+                      film.path.string()));
+    }
+    std::vector<Camera> cameras = frames_along(path, film.frames);
+    for (Camera& camera : cameras) camera = fit_to_window(camera, options.width, options.height);
+    return cameras;
+  }
+  if (!film.turntable) return std::vector<Camera>(film.frames, view.start_camera());
+  const Eigen::Vector3d center = 0.5 * (view.bounds().low + view.bounds().high);
+  return turntable(view.start_camera(), center, view.up_axis(), film.frames);
+}
+
+/// The light of a film's pictures: that of the solution, or of its cues.
+class FilmLight {
+ public:
+  FilmLight(SolutionView& view, const SolvedScene& solved, const std::vector<Cue>& cues)
+      : view_(view), cues_(cues), sequence_(solved.solution, cues) {
+    if (cues.empty()) return;
+    if (!(sequence_.seconds() > 0.0)) {
+      throw InputError("the cues take no time; give them a 'fade' or a 'hold' for a film");
+    }
+    own_ = std::make_unique<SolvedScene>(solved);
+    view_.follow(*own_);
+  }
+  /// `look` with the exposure of the brightest cue seen from `camera`.
+  Look metered(const Look& look, const Camera& camera) {
+    Look metered = view_.metered(look, camera);
+    for (const Cue& cue : cues_) {
+      show(cue.scales);
+      const Look by_cue = view_.metered(look, camera);
+      const bool is_brighter =
+          by_cue.incident &&
+          (!metered.incident || by_cue.incident->exposure < metered.incident->exposure);
+      if (is_brighter) metered = by_cue;
+    }
+    return metered;
+  }
+  /// Shows the light at a share, in [0,1], of the cues' duration.
+  void show_share(double share) {
+    if (!cues_.empty()) show(sequence_.at(share * sequence_.seconds()));
+  }
+
+ private:
+  void show(const std::vector<Spectrum>& scales) {
+    relight(*own_, scales);
+    view_.light_changed();
+  }
+
+  SolutionView& view_;
+  const std::vector<Cue>& cues_;
+  CueSequence sequence_;
+  std::unique_ptr<SolvedScene> own_{};  // null without cues
+};
+
+}  // namespace
+
 std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& asked,
                                               const FilmOptions& film, const std::string& pattern,
                                               const Progress& progress) {
@@ -137,27 +202,17 @@ std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const V
   const ViewOptions options = for_pictures(asked);
   std::vector<std::filesystem::path> files;
   for (int i = 0; i < film.frames; ++i) files.push_back(frame_name(pattern, i));
-  CameraPath path;
-  if (!film.path.empty()) {
-    path = read_views(film.path).path;
-    if (path.empty()) {
-      throw InputError(
-          fmt::format("{}: there is no path in it; record one in the window with the key J",
-                      film.path.string()));
-    }
-  }
   const DisplayConnection display;
   SolutionView view(solved, options);
-  const Eigen::Vector3d center = 0.5 * (view.bounds().low + view.bounds().high);
-  const std::vector<Camera> cameras =
-      path.empty() ? turntable(view.start_camera(), center, view.up_axis(), film.frames)
-                   : frames_along(path, film.frames);
+  const std::vector<Camera> cameras = film_cameras(film, options, view);
+  FilmLight light(view, solved, options.cues);
   AnnotatedPictures pictures(view, options);
-  Look look = view.metered(view.look(), cameras.front());
+  Look look = light.metered(view.look(), cameras.front());
+  const double last = std::max<double>(1.0, static_cast<double>(cameras.size()) - 1.0);
   for (std::size_t i = 0; i < cameras.size(); ++i) {
     report(progress, "draw", static_cast<double>(i) / static_cast<double>(cameras.size()));
-    look.camera =
-        path.empty() ? cameras[i] : fit_to_window(cameras[i], options.width, options.height);
+    light.show_share(static_cast<double>(i) / last);
+    look.camera = cameras[i];
     view.set_look(look);
     write_png(files[i], options.width, options.height, pictures.draw());
   }

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "radiosity/solution/cues.h"
 #include "radiosity/solve.h"
 #include "scene/scene.h"
 #include "viewer/export/appearance.h"
@@ -66,6 +67,7 @@ struct ViewOptions {
   bool walk = false;          ///< begin on foot, with gravity and collisions
   bool look_through = false;  ///< begin without surfaces that receive no light
   bool from_outside = false;  ///< begin outside, looking through, with all of the scene in view
+  std::vector<Cue> cues{};    ///< of the solution, which keys step through and films show
   Annotations annotations{};  ///< for pictures off screen
 };
 
@@ -81,16 +83,19 @@ inline double text_scale_of(const ViewOptions& options) {
 /// with advice, if no display can be opened.
 void show_window(const SolvedScene& solved, const ViewOptions& options);
 
-/// Pictures of a film: along a recorded path, or around the scene (a turntable).
+/// Pictures of a film: along a recorded path, around the scene (a turntable), or of a camera that
+/// stands still; with ViewOptions::cues the light goes through all cues meanwhile.
 struct FilmOptions {
-  std::filesystem::path path{};  ///< file with a path (see read_views()); empty: a turntable
+  std::filesystem::path path{};  ///< file with a path (see read_views()); empty: none
   int frames = 0;                ///< number of pictures, > 0, at even steps
+  bool turntable = false;
 };
 
-/// Draws the pictures of a film as write_snapshot() does, all with the first one's exposure. Files
+/// Draws the pictures of a film as write_snapshot() does, all with the first one's exposure, and
+/// with cues with that of the first one's view in the brightest cue. Files
 /// are numbered from 0 by a pattern such as "out-%04d.png" (see frame_name()). Returns the names of
 /// the files. Throws as write_snapshot(), read_views() and frame_name() do, and InputError for an
-/// empty path.
+/// empty path, and for cues without duration.
 std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& options,
                                               const FilmOptions& film, const std::string& pattern,
                                               const Progress& progress = {});

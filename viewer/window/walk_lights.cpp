@@ -48,18 +48,49 @@ void WalkWindow::light_up(int steps) {
 }
 
 void WalkWindow::relight_now() {
+  cues_.stop();
+  relight_to(lights_.scales());
+}
+
+void WalkWindow::relight_to(const std::vector<Spectrum>& scales) {
   still_.discard();
   if (!own_) {
     own_ = std::make_unique<SolvedScene>(view_->solved());
-    relight(*own_, lights_.scales());
+    relight(*own_, scales);
     view_->follow(*own_);
   } else {
-    relight(*own_, lights_.scales());
+    relight(*own_, scales);
     view_->light_changed();
   }
   pointer_.light_changed(*view_, true);
   update_pointer();
   update_text();
+}
+
+void WalkWindow::next_cue() {
+  if (!cues_.has_cues()) return say("there are no cues; --cues FILE gives them");
+  cues_.go(solved().solution);
+}
+
+void WalkWindow::previous_cue() {
+  if (!cues_.has_cues()) return next_cue();
+  cues_.back(solved().solution);
+}
+
+void WalkWindow::switch_cues() {
+  if (!cues_.has_cues()) return next_cue();
+  cues_.switch_playing(solved().solution);
+}
+
+void WalkWindow::fade(double seconds) {
+  const std::string before = cues_.text();
+  if (const auto scales = cues_.advance(seconds, solved().solution)) {
+    lights_.follow(*scales);
+    relight_to(*scales);
+  } else if (cues_.text() != before) {
+    update_text();
+    changed_ = true;
+  }
 }
 
 void WalkWindow::save_solution() {

@@ -87,6 +87,7 @@ WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> ow
       physics_(walk_body(view_->bounds(), view_->up_axis(), options.eye_height), view_->up_axis()),
       walking_(options.walk),
       lights_(view_->solved().solution),
+      cues_(options.cues),
       pointer_(options.scene, options.names),
       overlay_(text_scale_of(options)),
       window_(opened ? opened->window : vtkSmartPointer<vtkRenderWindow>::New()),
@@ -190,6 +191,7 @@ void WalkWindow::tick(double seconds) {
     update_pointer();
   }
   watch();
+  fade(seconds);
   advance_still();
   if (!message_.empty()) {
     message_seconds_ -= seconds;
@@ -398,6 +400,7 @@ void WalkWindow::update_text() {
     status_ += fmt::format("   ray-tracing {:.0f} %", 100.0 * still_.progress());
   }
   if (live_) status_ += "   " + text_of(live_state_);
+  if (cues_.has_cues()) status_ += "   " + cues_.text();
   if (lights_.has_channels()) status_ += "   " + lights_.text();
   if (!message_.empty()) status_ += "   " + message_;
   overlay_.set_status(status_, size().first);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "viewer/window/camera_path.h"
+#include "viewer/window/cue_player.h"
 #include "viewer/window/light_board.h"
 #include "viewer/window/live_solve.h"
 #include "viewer/window/marks.h"
@@ -151,8 +152,16 @@ class WalkWindow {
   void next_colour();
   /// Changes the chosen channel, or without a chosen channel the exposure, by thirds of a stop.
   void light_up(int steps);
+  /// Shows the light as the keys have set it, which ends a fade.
   void relight_now();
+  void relight_to(const std::vector<Spectrum>& scales);
   void save_solution();
+
+  // Lighting cues.
+  void next_cue();
+  void previous_cue();
+  void switch_cues();
+  void fade(double seconds);
 
   // Progressive refinement.
   void watch();
@@ -178,6 +187,7 @@ class WalkWindow {
   CameraPath recorded_{};
   double path_seconds_ = 0.0;
   LightBoard lights_;
+  CuePlayer cues_;
   PointerTools pointer_;
   LiveLight arrived_{};
   LiveState live_state_{};

@@ -12,6 +12,7 @@
 #include "scene/io/text_file.h"
 #include "scene/io/toml/toml_camera.h"
 #include "scene/io/toml/toml_design.h"
+#include "scene/io/toml/toml_document.h"
 #include "scene/io/toml/toml_lamps.h"
 #include "scene/io/toml/toml_materials.h"
 #include "scene/io/toml/toml_motions.h"
@@ -22,30 +23,6 @@
 
 namespace lightwell {
 namespace {
-
-// The parser calls itself for each part of a dotted key, and has no limit. Keys of a scene have few
-// parts.
-void refuse_deep_keys(const TextFile& file) {
-  constexpr std::ptrdiff_t most_parts = 100;
-  file.for_each_line([&](int line, std::string_view text) {
-    constexpr std::string_view in_keys =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.\"'[] \t";
-    const std::string_view key = text.substr(0, text.find_first_not_of(in_keys));
-    if (std::ranges::count(key, '.') < most_parts) return;
-    throw InputError(fmt::format("{}:{}: the key has more than {} parts", file.path().string(),
-                                 line, most_parts));
-  });
-}
-
-toml::table parse(const TextFile& file) {
-  refuse_deep_keys(file);
-  try {
-    return toml::parse(file.text(), file.path().string());
-  } catch (const toml::parse_error& error) {
-    throw InputError(fmt::format("{}:{}:{}: {}", file.path().string(), error.source().begin.line,
-                                 error.source().begin.column, error.description()));
-  }
-}
 
 double metres_in(const std::string& unit) {
   if (unit == "mm") return 0.001;
@@ -72,7 +49,7 @@ std::vector<TomlMaterial> read_toml_materials(const TomlTable& document, const T
 
 Scene read_toml(const std::filesystem::path& path) {
   const TextFile file(path);
-  const toml::table root = parse(file);
+  const toml::table root = parse_toml(file);
   const TomlValue all(file.path(), root, "");
   const TomlTable document = all.table({"title", "unit", "bands", "materials", "motions",
                                         "surfaces", "lamps", "sky", "cameras", "grids", "report"});
@@ -136,7 +113,7 @@ Scene read_toml(const std::filesystem::path& path) {
 LightingDesign read_lighting_design(const Scene& scene) {
   if (lower_extension(scene.file) != ".toml") return {};
   const TextFile file(scene.file);
-  const toml::table root = parse(file);
+  const toml::table root = parse_toml(file);
   const TomlValue all(file.path(), root, "");
   LightingDesign design;
   if (const auto grids = all.member("grids")) design.grids = read_toml_grids(*grids, scene);

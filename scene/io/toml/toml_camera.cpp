@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/io/camera_name.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/toml/toml_motions.h"
 #include "scene/limits.h"
@@ -184,17 +183,7 @@ Camera read_toml_camera(const TomlValue& value, std::size_t number, const Scene&
   const auto given = value.member("name");
   const auto kind = value.member("projection");
   Camera camera = usual_camera(kind ? read_projection(*kind) : Projection::perspective,
-                               given ? given->name() : fmt::format("camera{}", number));
-  if (camera.name.find_first_of("/\\") != std::string::npos || camera.name.starts_with('.')) {
-    given->fail(
-        fmt::format("is '{}'; pictures are called after it, so it must not contain a slash "
-                    "or start with a dot",
-                    camera.name));
-  }
-  if (camera.name.size() > longest_camera_name) {
-    given->fail(fmt::format("is of {} bytes; pictures are called after it, so give at most {}",
-                            camera.name.size(), longest_camera_name));
-  }
+                               given ? given->file_name() : fmt::format("camera{}", number));
   const TomlTable table =
       value.renamed(fmt::format("camera '{}'", camera.name))
           .table({"name",   "position",        "direction",  "look_at",        "up",     "fov",

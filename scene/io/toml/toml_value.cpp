@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/errors.h"
+#include "scene/io/camera_name.h"
 #include "scene/io/nearest_name.h"
 
 namespace lightwell {
@@ -113,6 +114,21 @@ std::string TomlValue::string() const {
 std::string TomlValue::name() const {
   std::string value = string();
   if (value.empty()) fail("is empty; give a name or leave the key out");
+  return value;
+}
+
+std::string TomlValue::file_name() const {
+  std::string value = name();
+  if (value.find_first_of("/\\") != std::string::npos || value.starts_with('.')) {
+    fail(
+        fmt::format("is '{}'; files are called after it, so it must not contain a slash or start "
+                    "with a dot",
+                    value));
+  }
+  if (value.size() > longest_camera_name) {
+    fail(fmt::format("is of {} bytes; files are called after it, so give at most {}", value.size(),
+                     longest_camera_name));
+  }
   return value;
 }
 

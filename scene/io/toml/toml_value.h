@@ -34,6 +34,9 @@ class TomlValue {
   bool boolean() const;
   std::string string() const;
   std::string name() const;  ///< a string that is not empty
+  /// A name that files can be called after: without slashes, no dot first, at most
+  /// longest_camera_name bytes.
+  std::string file_name() const;
   /// A string among `words`.
   std::string one_of(std::initializer_list<const char*> words) const;
   Eigen::Vector3d vector() const;  ///< [x, y, z]

@@ -139,7 +139,7 @@ TEST(Film, WritesAPictureAFrame) {
   const auto files = write_film(solved_box(), options, {folder / "v.json", 3}, pattern);
   ASSERT_EQ(files.size(), 3u);
   EXPECT_TRUE(std::filesystem::exists(folder / "f-02.png"));
-  write_film(solved_box(), options, {{}, 4}, pattern);
+  write_film(solved_box(), options, {.frames = 4, .turntable = true}, pattern);
   EXPECT_TRUE(std::filesystem::exists(folder / "f-03.png"));
   write_views(folder / "none.json", {});
   EXPECT_THROW(write_film(solved_box(), options, {folder / "none.json", 3}, pattern), InputError);

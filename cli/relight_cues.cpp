@@ -1,0 +1,130 @@
+#include "cli/relight_cues.h"
+
+#include <optional>
+
+#include "cli/checkpoint.h"
+#include "cli/interrupt.h"
+#include "cli/outputs.h"
+#include "radiosity/solution/solution_file.h"
+#include "raytrace/cameras/camera_ray.h"
+
+namespace lightwell {
+namespace fs = std::filesystem;
+namespace {
+
+// The scene of pictures and the camera that they are seen by.
+struct Seen {
+  Scene scene{};
+  Camera camera{};
+};
+
+std::optional<Seen> read_seen(const RelightByCues& task, const Feedback& feedback) {
+  if (task.scene.empty()) return {};
+  Seen seen{.scene = read_scene_step(task.scene, feedback.console, feedback.report)};
+  seen.camera = choose_camera(seen.scene, task.camera);
+  // Throws for a bad camera.
+  static_cast<void>(CameraRays(task.render.projection.view(seen.camera, seen.scene)));
+  return seen;
+}
+
+struct CueFiles {
+  fs::path solution{};
+  std::vector<fs::path> pictures{};
+};
+
+std::vector<CueFiles> name_files(const std::vector<WordedCue>& cues, const OutputFolder& folder,
+                                 bool has_pictures) {
+  std::vector<CueFiles> named;
+  for (const WordedCue& cue : cues) {
+    CueFiles& files = named.emplace_back();
+    files.solution = folder / (cue.name + ".vtp");
+    if (has_pictures) files.pictures = {folder / (cue.name + ".exr"), folder / (cue.name + ".png")};
+    require_writable(files.solution);
+    for (const fs::path& picture : files.pictures) require_writable(picture);
+  }
+  return named;
+}
+
+SolvedScene read_relightable(const RelightByCues& task, const std::optional<Seen>& seen,
+                             const Feedback& feedback) {
+  if (seen) {
+    return read_solution_step(task.solution, seen->scene, feedback.console, feedback.report);
+  }
+  const Stopwatch watch;
+  note_input(task.solution);
+  SolvedScene solved = read_solution(task.solution);
+  feedback.report.add_solution(solved, false);
+  feedback.report.add_phase("read_solution", watch.seconds());
+  return solved;
+}
+
+// The light of the cue with the most light on what the camera sees. Leaves `solved` relit.
+std::optional<IncidentLight> meter_brightest(const RelightByCues& task, const Seen& seen,
+                                             const std::vector<Cue>& cues, SolvedScene& solved) {
+  const Camera view = task.render.projection.view(seen.camera, seen.scene);
+  const RenderableScene renderable(seen.scene, solved);
+  std::optional<IncidentLight> brightest;
+  for (const Cue& cue : cues) {
+    relight(solved, cue.scales);
+    const auto light = renderable.renderer.incident_light(view);
+    if (light && (!brightest || light->exposure < brightest->exposure)) brightest = light;
+  }
+  return brightest;
+}
+
+Json cue_json(const Cue& cue, const SolvedScene& solved, const CueFiles& files) {
+  Json scales = Json::object();
+  for (const LightChannel& channel : solved.solution.channels) {
+    scales[channel.name] = std::vector<float>(channel.scale.begin(), channel.scale.end());
+  }
+  Json pictures = Json::array();
+  for (const fs::path& picture : files.pictures) pictures.push_back(picture.string());
+  return {{"name", cue.name},           {"wait", cue.wait}, {"fade_up", cue.fade_up},
+          {"fade_down", cue.fade_down}, {"hold", cue.hold}, {"solution", files.solution.string()},
+          {"pictures", pictures},       {"scales", scales}};
+}
+
+}  // namespace
+
+void relight_by_cues(const RelightByCues& task, const Feedback& feedback) {
+  const auto& [console, report] = feedback;
+  const std::vector<WordedCue> worded = read_cue_file(task.cues);
+  const std::optional<Seen> seen = read_seen(task, feedback);
+  const OutputFolder folder(task.folder);
+  const std::vector<CueFiles> files = name_files(worded, folder, seen.has_value());
+  if (seen) task.render.film.check(seen->scene, files.front().pictures);
+  SolvedScene solved = read_relightable(task, seen, feedback);
+  relight(solved, channel_scales(solved.solution, task.settings, task.solution));
+  const std::vector<Cue> cues = cues_of(solved.solution, worded, task.solution);
+
+  std::optional<IncidentLight> incident;
+  if (seen) incident = meter_brightest(task, *seen, cues, solved);
+  double relighting = 0.0, writing = 0.0;  // s
+  Json made = Json::array();
+  for (std::size_t i = 0; i < cues.size(); ++i) {
+    Stopwatch watch;
+    relight(solved, cues[i].scales);
+    relighting += watch.lap();
+    write_solution(files[i].solution, solved);
+    writing += watch.lap();
+    report.add_file(files[i].solution);
+    made.push_back(cue_json(cues[i], solved, files[i]));
+    if (seen) {
+      Checkpoint none({}, {}, {}, console);
+      RenderableScene renderable(seen->scene, solved);
+      render_step(renderable,
+                  {.camera = seen->camera,
+                   .arguments = task.render,
+                   .files = files[i].pictures,
+                   .label = cues[i].name,
+                   .incident = incident},
+                  none, feedback);
+    }
+    stop_if_interrupted();
+  }
+  report.add_phase("relight", relighting);
+  report.add_phase("write_solutions", writing);
+  report.add("cues", std::move(made));
+}
+
+}  // namespace lightwell
