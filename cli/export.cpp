@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "cli/arguments.h"
+#include "cli/channels.h"
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/lux_range.h"
@@ -17,12 +18,13 @@
 #include "radiosity/solution/solution_file.h"
 #include "scene/io/remarks.h"
 #include "scene/io/text_file.h"
+#include "viewer/export/baked_channels.h"
 
 namespace lightwell {
 namespace {
 
 struct ExportArguments {
-  std::string solution, scene;
+  std::string solution, scene, cues;
   std::vector<std::string> outputs;
   double exposure_ev = 0.0;
   std::optional<LuxRange> range;
@@ -143,6 +145,8 @@ int export_model(const ExportArguments& arguments, Console& console) {
   if (!arguments.scene.empty()) {
     scene = read_scene_step(arguments.scene, console, report, &clean_up);
   }
+  std::vector<WordedCue> cues;
+  if (!arguments.cues.empty()) cues = read_cue_file(arguments.cues);
   const SolvedScene solved = arguments.scene.empty()
                                  ? read_alone(arguments.solution, console, report)
                                  : read_solution_step(arguments.solution, scene, console, report);
@@ -155,6 +159,10 @@ int export_model(const ExportArguments& arguments, Console& console) {
     if (model) continue;
     model = bake_model(solved, scene, arguments.exposure_ev, clean_up.names.get(),
                        is_page ? Sides::lit : arguments.sides);
+  }
+  if (!cues.empty()) {
+    exported.page->cues =
+        bake_cues(solved.solution, cues_of(solved.solution, cues, arguments.solution));
   }
   const BakedModel& model = exported.of(lower_extension(arguments.outputs.front()));
   report.add("exported", {{"vertices", model.vertex_count()},
@@ -231,8 +239,10 @@ void check(const CLI::App& command, const ExportArguments& arguments) {
     throw CLI::ValidationError(
         "--sides", "is for models, and a page draws no backs; add '-o FILE.glb', or remove it");
   }
-  if (command.count("--white-balance") > 0 && std::ranges::none_of(arguments.outputs, is_page)) {
-    throw CLI::ValidationError("--white-balance", "is for pages; add '-o FILE.html', or remove it");
+  for (const char* const of_pages : {"--white-balance", "--cues"}) {
+    if (command.count(of_pages) > 0 && std::ranges::none_of(arguments.outputs, is_page)) {
+      throw CLI::ValidationError(of_pages, "is for pages; add '-o FILE.html', or remove it");
+    }
   }
   if (!arguments.lightmap) return;
   const bool has_glb = std::ranges::any_of(
@@ -273,6 +283,7 @@ Action add_export(CLI::App& command) {
   add_white_balance(command, arguments->white,
                     "light that the page shows as white at first: as-lit (default), auto, or a "
                     "temperature such as 2700K");
+  add_cues(command, arguments->cues, "lighting cues that the page steps through and plays, .toml");
   add_sides(command, arguments->sides);
   add_lightmap(command, *arguments);
   command.callback([arguments, &command] { check(command, *arguments); });

@@ -56,7 +56,7 @@ int relight_solution(const RelightArguments& arguments, Console& console) {
 
 void check(const CLI::App& command, const RelightArguments& arguments) {
   if (arguments.settings.empty() && arguments.cues.empty()) {
-    throw CLI::ValidationError("--channel", "or --cues is needed: what is to be relit, and how");
+    throw CLI::ValidationError("relight", "needs --channel or --cues: what is to change, and how");
   }
   if (!arguments.cues.empty()) return;
   if (command.count("--pictures") > 0) {

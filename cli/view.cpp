@@ -194,11 +194,6 @@ int view(const ViewArguments& arguments, Console& console) {
   ViewOptions options = view_options(arguments, scene);
   options.names = clean_up.names.get();
   const bool is_film = arguments.frames > 0 || arguments.turntable > 0;
-  if (arguments.frames > 0 && arguments.path.empty() && arguments.cues.empty()) {
-    throw InputError(
-        "'--frames' needs what the film shows: a path that the camera takes ('--path'), or the "
-        "fades of cues ('--cues')");
-  }
   std::vector<WordedCue> cues;
   if (!arguments.cues.empty()) cues = read_cue_file(arguments.cues);
   if (!arguments.cues.empty() && arguments.solution.empty()) {
@@ -435,6 +430,11 @@ Action add_view(CLI::App& command) {
       ->type_name("FILE")
       ->check(with_extension({".vtp"}));
   add_live(command, *arguments);
+  command.callback([arguments] {
+    if (arguments->frames == 0 || !arguments->path.empty() || !arguments->cues.empty()) return;
+    throw CLI::ValidationError(
+        "--frames", "needs what the film shows: the path of a camera, --path, or cues, --cues");
+  });
   command.footer("Example: lightwell view cornell/cornell.toml cornell.vtp");
   return [arguments](Console& console) { return view(*arguments, console); };
 }

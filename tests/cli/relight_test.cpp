@@ -223,7 +223,7 @@ TEST_F(RelightCommand, MistakesAreExplained) {
       {"Negative", relight_it + Words{"desk=-0.5"}, 2, "'-0.5' is no setting"},
       {"Black", relight_it + Words{"desk=#000000"}, 2, "write off"},
       {"Twice", relight_it + Words{"desk=1", "--channel", "desk=2"}, 2, "'desk' is set twice"},
-      {"NoChannel", {"relight", "S.vtp", "-o", "T.vtp"}, 2, "--channel is required"},
+      {"NoChannel", {"relight", "S.vtp", "-o", "T.vtp"}, 2, "needs --channel or --cues"},
       {"NoSolution", {"relight", "none.vtp", "-o", "T.vtp", "--channel", "a=1"}, 3, "none.vtp"},
       {"NoEmitter", solve_it + Words{"--channels", "desk=dsk lamp"}, 3,
        "Did you mean 'desk lamp'?"},

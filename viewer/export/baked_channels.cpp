@@ -1,8 +1,11 @@
 #include "viewer/export/baked_channels.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
+#include "scene/errors.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/sky_grid.h"
 
@@ -196,6 +199,31 @@ std::vector<BakedLampFace> bake_lamps(const SolvedScene& solved,
     }
   }
   return lit;
+}
+
+std::vector<BakedCue> bake_cues(const RadiositySolution& solution, const std::vector<Cue>& cues) {
+  std::vector<BakedCue> baked;
+  for (const Cue& cue : cues) {
+    BakedCue& to = baked.emplace_back(BakedCue{.name = cue.name,
+                                               .weights = {},
+                                               .fade_up = cue.fade_up,
+                                               .fade_down = cue.fade_down,
+                                               .wait = cue.wait,
+                                               .hold = cue.hold});
+    for (std::size_t c = 0; c < cue.scales.size(); ++c) {
+      const Split split = split_channels(solution.bands, cue.scales[c]);
+      const Spectrum within = factor_within(solution, static_cast<int>(c));
+      const bool is_on = (split.weight > 0.0f).any();
+      if (is_on && (split.within - within).abs().maxCoeff() > 1e-6f) {  // rounding of scales
+        throw InputError(fmt::format(
+            "cue '{}': channel '{}' has another spectrum in the solution, of which a page holds "
+            "one; relight the solution with '--channel {}=on' first",
+            cue.name, solution.channels[c].name, solution.channels[c].name));
+      }
+      to.weights.push_back(split.weight);
+    }
+  }
+  return baked;
 }
 
 std::vector<BakedChannel> bake_channels(const SolvedScene& solved,

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "radiosity/solution/cues.h"
 #include "raytrace/shading/drawn_lamps.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_model.h"
@@ -34,6 +35,10 @@ std::optional<BakedSky> bake_sky(const SolvedScene& solved, const Scene& scene);
 std::vector<BakedLampFace> bake_lamps(const SolvedScene& solved,
                                       const std::vector<Material>& materials,
                                       const DrawnLamps& lamps);
+
+/// Cues of a solution for the model that is baked from it. Throws InputError for a cue that needs
+/// another spectrum of a channel than the solution has, which weights cannot give.
+std::vector<BakedCue> bake_cues(const RadiositySolution& solution, const std::vector<Cue>& cues);
 
 /// Light of each channel at the mesh's vertices in `mesh_vertex`, in their order. Empty without
 /// channels.

@@ -66,6 +66,13 @@ struct BakedChannel {
   Eigen::Array3f weight = Eigen::Array3f::Ones();  ///< effective; spectral: three equal numbers
 };
 
+/// A lighting cue (see Cue) for the channels of a model.
+struct BakedCue {
+  std::string name{};
+  std::vector<Eigen::Array3f> weights{};  ///< of all channels, as BakedChannel::weight
+  double fade_up = 0.0, fade_down = 0.0, wait = 0.0, hold = 0.0;  ///< s
+};
+
 /// Sky, ground and sun around the scene. Radiance is linear Rec. 709 RGB, W/(m^2 sr), before the
 /// weight of the dome's or the sun's channel. Directions are unit vectors in the scene's axes.
 struct BakedSky {
@@ -105,6 +112,8 @@ struct BakedModel {
   RgbArray picture_gain{};               ///< factor from `radiance` to that of a white texel
 
   std::vector<BakedChannel> channels{};  ///< the light above by channel; empty: not separated
+
+  std::vector<BakedCue> cues{};  ///< for pages; see bake_cues()
 
   /// Of the scene's lamps; numbered where another lamp or a surface has that name.
   std::vector<std::string> lamp_names{};

@@ -106,6 +106,21 @@ Json append_bases(const BakedModel& model, std::string& bytes) {
   return bases;
 }
 
+Json cues(const BakedModel& model) {
+  Json result = Json::array();
+  for (const BakedCue& cue : model.cues) {
+    Json weights = Json::array();
+    for (const Eigen::Array3f& weight : cue.weights) weights.push_back(numbers(weight));
+    result.push_back({{"name", cue.name},
+                      {"wait", cue.wait},
+                      {"fade_up", cue.fade_up},
+                      {"fade_down", cue.fade_down},
+                      {"hold", cue.hold},
+                      {"weights", std::move(weights)}});
+  }
+  return result;
+}
+
 // Appends picture coordinates, picture gains and the pictures as PNG.
 void append_pictures(const BakedModel& model, PageData& page) {
   if (model.pictures.empty()) return;
@@ -287,6 +302,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range, const WhitePo
   append_positions(model, box, page);
   append_faces(model, page);
   page.about["bases"] = append_bases(model, page.bytes);
+  if (!model.cues.empty()) page.about["cues"] = cues(model);
   if (!model.lux_within.empty()) {
     page.about["lux_within"] = append_halves(model.lux_within, page.bytes);
   }

@@ -23,6 +23,7 @@ void CuePlayer::back(const RadiositySolution& solution) {
   if (cue_ < 1) return;
   playing_ = false;
   begin(cue_ - 1, cues_[static_cast<std::size_t>(cue_ - 1)].scales, solution);
+  seconds_ = fade_->seconds;  // without its wait
 }
 
 void CuePlayer::switch_playing(const RadiositySolution& solution) {

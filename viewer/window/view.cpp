@@ -163,8 +163,10 @@ class FilmLight {
     own_ = std::make_unique<SolvedScene>(solved);
     view_.follow(*own_);
   }
-  /// `look` with the exposure of the brightest cue seen from `camera`.
+  /// `look` with the exposure of the brightest light, of the first picture or a cue, on what
+  /// `camera` sees.
   Look metered(const Look& look, const Camera& camera) {
+    show_share(0.0);
     Look metered = view_.metered(look, camera);
     for (const Cue& cue : cues_) {
       show(cue.scales);

@@ -24,10 +24,9 @@ double read_time(const TomlTable& table, const char* key, double otherwise) {
   return time ? time->number_within(0.0, longest_time) : otherwise;
 }
 
-WordedCue read_cue(const TomlValue& value, std::set<std::string>& names) {
+WordedCue read_cue(const TomlValue& value, std::size_t number, std::set<std::string>& names) {
   const auto given = value.member("name");
-  if (!given) value.fail("lacks the key 'name'");
-  WordedCue cue{.name = plain_text(given->file_name())};
+  WordedCue cue{.name = given ? plain_text(given->file_name()) : fmt::format("cue{}", number)};
   const TomlTable table =
       value.renamed(fmt::format("cue '{}'", cue.name))
           .table({"name", "channels", "others", "fade", "fade_up", "fade_down", "wait", "hold"});
@@ -65,7 +64,9 @@ std::vector<WordedCue> read_cues(const std::filesystem::path& path) {
   if (!tables->is_array()) tables->fail("must be an array of tables; write [[cues]]");
   std::vector<WordedCue> cues;
   std::set<std::string> names;
-  for (const TomlValue& value : tables->elements("cue")) cues.push_back(read_cue(value, names));
+  for (const TomlValue& value : tables->elements("cue")) {
+    cues.push_back(read_cue(value, cues.size() + 1, names));
+  }
   if (cues.empty()) tables->fail("is empty; add at least one [[cues]] table");
   return cues;
 }

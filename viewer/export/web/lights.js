@@ -21,12 +21,20 @@ function hex_of(rgb) {
 class Channel {
   /** `lumens`: flux of red, green and blue; of a channel that takes no colour, one number. */
   constructor(basis, lumens) {
-    const weight = basis.weight;
     this.basis = basis;
     this.lumens = lumens;
+    this.factor = 1;
+    this.tint = [1, 1, 1];
+    this.take(basis.weight);
+  }
+
+  /** Follows a weight. A channel that is off keeps factor and tint. */
+  take(weight) {
+    this.basis.weight = weight;
     this.on = weight.some((w) => w > 0);
-    this.factor = this.on ? this.flux(weight) / this.flux([1, 1, 1]) || Math.max(...weight) : 1;
-    this.tint = this.on ? weight.map((w) => w / this.factor) : [1, 1, 1];
+    if (!this.on) return;
+    this.factor = this.flux(weight) / this.flux([1, 1, 1]) || Math.max(...weight);
+    this.tint = weight.map((w) => w / this.factor);
   }
 
   get takes_colour() { return this.lumens.length === 3; }
@@ -43,10 +51,11 @@ class Channel {
   apply() { this.basis.weight = this.tint.map((t) => (this.on ? this.factor * t : 0)); }
 }
 
-/** The panel. Calls `changed` when a weight has. */
+/** The panel. Calls `changed` when a weight has, before that `by_hand` if a control changed it. */
 class Lights {
   constructor(model, changed) {
     this.changed = changed;
+    this.by_hand = () => {};
     this.panel = element('lights');
     const described = model.about.bases;
     this.channels = model.bases.flatMap((basis, i) =>
@@ -54,8 +63,21 @@ class Lights {
     if (this.channels.length === 0) return;
     element('open-lights').hidden = false;
     for (const channel of this.channels) this.add_row(channel);
-    const opens = this.channels.length <= most_open_at_first && !small_screen.matches;
+    const is_short = this.channels.length <= most_open_at_first || model.about.cues;
+    const opens = is_short && !small_screen.matches;
     if (opens) toggle_panel('lights', true);
+  }
+
+  weights() { return this.channels.map((channel) => channel.basis.weight); }
+
+  /** Follows the weights of all channels. */
+  take(weights) {
+    this.channels.forEach((channel, c) => {
+      channel.take(weights[c]);
+      channel.show();
+      channel.show_colour();
+    });
+    this.changed();
   }
 
   toggle() { return this.channels.length > 0 && toggle_panel('lights'); }
@@ -74,33 +96,35 @@ class Lights {
       min: 0, max: Math.max(200, Math.ceil(100 * channel.factor)), step: 1});
     const colour = channel.takes_colour ? input('color', 'colour') : document.createElement('i');
     if (channel.takes_colour) colour.className = 'colour';
-    const show = () => {
+    channel.show = () => {
       power.checked = channel.on;
+      slider.max = Math.max(slider.max, Math.ceil(100 * channel.factor));
       slider.value = 100 * channel.factor;
       percent.value = `${number_text(100 * channel.factor, {maximumSignificantDigits: 3})} %`;
       for (const part of [name, slider, percent]) part.classList.toggle('off', !channel.on);
     };
     const change = (values) => {
+      this.by_hand();
       Object.assign(channel, values);
       channel.apply();
-      show();
+      channel.show();
       this.changed();
     };
     power.addEventListener('input', () => change({on: power.checked}));
     slider.addEventListener('input', () => change({factor: slider.valueAsNumber / 100, on: true}));
     slider.addEventListener('dblclick', () => change({factor: 1, on: true}));
-    const show_colour = () => { colour.value = hex_of(channel.tint); };
+    channel.show_colour = () => { colour.value = hex_of(channel.tint); };
     colour.addEventListener('input', () => {
       if (channel.set_colour(linear_of(colour.value))) change({on: true});
     });
-    colour.addEventListener('change', show_colour);  // not while it is being chosen
+    colour.addEventListener('change', channel.show_colour);  // not while it is being chosen
     const row = document.createElement('div'), target = document.createElement('label');  // larger than the box, for thumbs
     target.className = 'power';
     target.append(power);
     row.className = 'channel';
     row.append(target, name, slider, percent, colour);
     element('channels').append(row);
-    show();
-    show_colour();
+    channel.show();
+    channel.show_colour();
   }
 }

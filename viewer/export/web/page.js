@@ -39,6 +39,7 @@ class Page {
     this.ranges = {};
     for (const measure of Object.keys(measures)) this.reset_range(measure);
     this.lights = new Lights(model, () => { this.light_due = true; });
+    this.cues = new Cues(model, this.lights);
     set_up_panels();
     set_up_stick(this.walker);
     watch_devices();
@@ -141,6 +142,9 @@ class Page {
       case 'i': return this.set_isolux(this.levels.length === 0);
       case 'g': return this.set_measuring(!this.measure.is_on);
       case 't': return this.lights.toggle();
+      case '.': return this.cues.go();
+      case ',': return this.cues.back();
+      case ';': return this.cues.play();
       case 'b': return toggle_panel('adjust');
       case 'm': return this.set_outlines(!this.outlined);
       case 'x': return this.look_through(!this.picture.looks_through);
@@ -474,8 +478,9 @@ class Page {
 
   frame(now) {
     // A page that was hidden does not leap when it is back.
-    const seconds = Math.min(0.1, Math.max(0, (now - this.time) / 1000));
+    const passed = Math.max(0, (now - this.time) / 1000), seconds = Math.min(0.1, passed);
     this.time = now;
+    this.cues.advance(passed);
     if (this.mode === 'walk' && this.walker.advance(seconds)) this.due = true;
     this.mix_light();
     if (this.due || this.probe_due) {

@@ -72,7 +72,7 @@ const key_help = [
   ['key_shift', 'help_run'], ['key_mouse_drag', 'help_look'], ['L', 'help_lock'], ['key_mouse', 'help_read'],
   ['key_click', 'help_keep'], ['key_double_click', 'help_go'], ['key_wheel', 'help_wheel'], ['1 … 9', 'help_cameras'],
   ['R', 'help_start'], ['O', 'help_orbit'], ['P', 'help_plan'], ['+ −', 'help_exposure'], ['0', 'help_expose'],
-  ['B', 'help_adjust'], ['V, U', 'help_measures'], ['I', 'help_isolux'], ['G', 'help_measure'], ['T', 'help_lights'],
+  ['B', 'help_adjust'], ['V, U', 'help_measures'], ['I', 'help_isolux'], ['G', 'help_measure'], ['T', 'help_lights'], ['. , ;', 'help_cues'],
   ['M', 'help_outlines'], ['X', 'help_through'], ['H, ?', 'help_help'],
 ];
 
@@ -82,6 +82,7 @@ function fill_help(table, rows) {
     head.textContent = keys.replace(/key_\w+/g, (key) => text(key));
     cell.textContent = text(does);
     if (does === 'help_lights') row.hidden = element('open-lights').hidden;
+    if (does === 'help_cues') row.hidden = element('cue-row').hidden;
     row.append(head, cell);
     return row;
   }));

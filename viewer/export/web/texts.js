@@ -20,6 +20,7 @@ const texts = {
     levels: 'Isolux levels', levels_decades: '1, 2, 5 per decade', levels_work: '100, 200, 300, 500, 750 lx',
     show: 'Show', outlines: 'Element outlines', look_through: 'Look through dark backs', lock: 'Look without a button',
     choose_language: 'Language', stick: 'Thumb stick to walk', legend: 'Scale of the false colours',
+    cues: 'Lighting cues', previous_cue: 'Previous cue, at once', next_cue: 'Next cue', play_cues: 'Play the cues',
     on_off: 'on or off', brightness: 'brightness; double click: 100 %', colour: 'colour, at the same luminous flux',
     back: 'back', at: 'at', no_light: 'no light', relative: 'relative', mirror: 'mirror, shown matt',
     luminance_is: 'luminance', radiosity_is: 'radiosity', relative_units: 'Its light is in no known unit; figures are relative.',
@@ -48,6 +49,7 @@ const texts = {
     help_isolux: 'isolux lines, with their levels', help_measure: 'measure a distance, point to point',
     help_adjust: 'exposure, white balance, range of false colours',
     help_lights: 'lights: dim, recolour and switch off lamps',
+    help_cues: 'next lighting cue; previous cue, at once; play all with their fades',
     help_outlines: 'outlines of the elements', help_through: 'look through the dark backs of surfaces', help_help: 'this list',
   },
   de: {
@@ -69,6 +71,7 @@ const texts = {
     levels: 'Isoluxstufen', levels_decades: '1, 2, 5 je Dekade', levels_work: '100, 200, 300, 500, 750 lx',
     show: 'Anzeigen', outlines: 'Kanten der Elemente', look_through: 'Durch dunkle Rückseiten sehen', lock: 'Umsehen ohne Taste',
     choose_language: 'Sprache', stick: 'Joystick zum Gehen', legend: 'Skala der Falschfarben',
+    cues: 'Lichtstimmungen', previous_cue: 'Vorige Stimmung, sofort', next_cue: 'Nächste Stimmung', play_cues: 'Stimmungen abspielen',
     on_off: 'ein oder aus', brightness: 'Helligkeit; Doppelklick: 100 %', colour: 'Farbe, bei gleichem Lichtstrom',
     back: 'Rückseite', at: 'bei', no_light: 'kein Licht', relative: 'relativ', mirror: 'Spiegel, matt gezeigt',
     luminance_is: 'Leuchtdichte', radiosity_is: 'Radiosität',
@@ -98,6 +101,7 @@ const texts = {
     help_isolux: 'Isoluxlinien mit ihren Stufen', help_measure: 'Abstand zweier Punkte messen',
     help_adjust: 'Belichtung, Weißabgleich, Bereich der Falschfarben',
     help_lights: 'Leuchten: dimmen, färben, ausschalten',
+    help_cues: 'nächste Lichtstimmung; vorige, sofort; alle mit ihren Überblendungen abspielen',
     help_outlines: 'Kanten der Elemente', help_through: 'durch dunkle Rückseiten von Flächen sehen', help_help: 'diese Liste',
   },
   fr: {
@@ -120,6 +124,7 @@ const texts = {
     show: 'Afficher', outlines: 'Contours des éléments', look_through: 'Voir à travers les dos sombres',
     lock: 'Regarder sans bouton',
     choose_language: 'Langue', stick: 'Joystick pour marcher', legend: 'Échelle des fausses couleurs',
+    cues: 'États lumineux', previous_cue: 'État précédent, aussitôt', next_cue: 'État suivant', play_cues: 'Enchaîner les états',
     on_off: 'allumé ou éteint', brightness: 'intensité ; double clic : 100 %', colour: 'couleur, à flux lumineux égal',
     back: 'dos', at: 'en', no_light: 'pas de lumière', relative: 'relatif', mirror: 'miroir, montré mat',
     luminance_is: 'luminance', radiosity_is: 'radiosité',
@@ -149,6 +154,7 @@ const texts = {
     help_isolux: 'courbes isolux et leurs niveaux', help_measure: 'mesurer une distance entre deux points',
     help_adjust: 'exposition, balance des blancs, plage des fausses couleurs',
     help_lights: 'luminaires : varier, colorer, éteindre',
+    help_cues: 'état lumineux suivant ; précédent, aussitôt ; tous avec leurs transferts',
     help_outlines: 'contours des éléments', help_through: 'voir à travers les dos sombres des surfaces', help_help: 'cette liste',
   },
   es: {
@@ -171,6 +177,7 @@ const texts = {
     show: 'Mostrar', outlines: 'Contornos de los elementos', look_through: 'Ver a través de dorsos oscuros',
     lock: 'Mirar sin botón',
     choose_language: 'Idioma', stick: 'Joystick para caminar', legend: 'Escala del falso color',
+    cues: 'Memorias de luz', previous_cue: 'Memoria anterior, en el acto', next_cue: 'Memoria siguiente', play_cues: 'Reproducir las memorias',
     on_off: 'encendida o apagada', brightness: 'intensidad; doble clic: 100 %', colour: 'color, con el mismo flujo luminoso',
     back: 'dorso', at: 'en', no_light: 'sin luz', relative: 'relativo', mirror: 'espejo, mostrado mate',
     luminance_is: 'luminancia', radiosity_is: 'radiosidad',
@@ -200,6 +207,7 @@ const texts = {
     help_isolux: 'curvas isolux con sus niveles', help_measure: 'medir una distancia entre dos puntos',
     help_adjust: 'exposición, balance de blancos, rango del falso color',
     help_lights: 'luminarias: atenuar, colorear, apagar',
+    help_cues: 'memoria de luz siguiente; anterior, en el acto; todas con sus fundidos',
     help_outlines: 'contornos de los elementos', help_through: 'ver a través de los dorsos oscuros', help_help: 'esta lista',
   },
 };

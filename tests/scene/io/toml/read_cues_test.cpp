@@ -58,6 +58,13 @@ window = "0.8,#ffd9b0"
   EXPECT_TRUE(place.ends_with("cues.toml:12:11: level 'desk*' of cue 'day break'")) << place;
 }
 
+TEST_F(ReadCues, WithoutNamesAreNumbered) {
+  const auto cues = read("[[cues]]\nothers = 1\n[[cues]]\nothers = 0\n");
+  ASSERT_EQ(cues.size(), 2u);
+  EXPECT_EQ(cues[0].name, "cue1");
+  EXPECT_EQ(cues[1].name, "cue2");
+}
+
 struct Fault {
   const char* name;
   const char* text;
@@ -70,8 +77,8 @@ TEST_F(ReadCues, FaultsAreNamedWithTheirPlace) {
       {"NoTables", "cues = []", "is empty; add at least one [[cues]] table"},
       {"OneTable", "[cues]\nname = 'a'", "must be an array of tables; write [[cues]]"},
       {"NoToml", "[[cues]\n", "cues.toml:1:"},
-      {"NoName", "[[cues]]\nothers = 1", "cues.toml:1:1: cue 1 lacks the key 'name'"},
-      {"EmptyName", "[[cues]]\nname = ''\nothers = 1", "name of cue 1 is empty"},
+      {"EmptyName", "[[cues]]\nname = ''\nothers = 1",
+       "cues.toml:2:8: name of cue 1 of cues is empty"},
       {"Slash", "[[cues]]\nname = '../a'\nothers = 1", "must not contain a slash"},
       {"Twice", "[[cues]]\nname = 'a'\nothers = 1\n[[cues]]\nname = 'a'\nothers = 0",
        "cues.toml:4:1: cue 'a' has a name that an earlier cue has"},
