@@ -15,6 +15,7 @@
 #include "mesh/patches/mesh_bounds.h"
 #include "radiosity/solution/vtk_messages.h"
 #include "raytrace/display/display.h"
+#include "viewer/export/baked_channels.h"
 
 namespace lightwell {
 namespace {
@@ -77,7 +78,7 @@ SolutionView::SolutionView(const SolvedScene& solved, const ViewOptions& options
       given_measure_(options.measure),
       has_relative_units_(options.relative_units),
       caster_(solved.mesh),
-      kinds_(element_kinds(solved, options.materials)),
+      kinds_(kinds_with_all_on(solved, options.materials)),  // lamps may be switched on
       irradiance_(solved.solution.irradiance()),
       radiance_(shown_radiance(solved, options.materials)),
       drawn_(pictures_of(options)),

@@ -5,7 +5,7 @@
 
 #include "tests/temporary_folder.h"
 #include "tests/viewer/channel_room.h"
-#include "viewer/window/camera_path.h"
+#include "viewer/window/solution_view.h"
 #include "viewer/window/walk_window.h"
 
 namespace lightwell::cue_player_test {
@@ -155,6 +155,12 @@ TEST(FilmOfCues, GoesThroughAllCues) {
   options.cues[0].fade_down = options.cues[1].fade_down = options.cues[2].fade_up = 0.0;
   EXPECT_THROW(write_film(room(), options, {.frames = 5}, (folder / "g-%d.png").string()),
                InputError);
+}
+
+/// A surface that only lamps which are off would light is drawn as lit: a cue may switch them on.
+TEST(ViewInTheDark, KnowsWhatLampsWouldLight) {
+  const SolvedScene dark = relit(room(), {"off", "off"});
+  EXPECT_EQ(SolutionView(dark, {}).kinds(), SolutionView(room(), {}).kinds());
 }
 
 }  // namespace
