@@ -58,49 +58,34 @@ Eigen::Array3f parse_colour(std::string_view text, std::string_view whole) {
   return colour;
 }
 
-// Scales of channels for a tile of rows at once, in which the short loop over bands is long enough
-// for SIMD instructions; a column for each channel.
-constexpr Eigen::Index rows_of_tile = 16;
-
-Eigen::ArrayXXf scales_of_tile(const std::vector<LightChannel>& channels, Eigen::Index bands) {
-  Eigen::ArrayXXf scale(rows_of_tile * bands, static_cast<Eigen::Index>(channels.size()));
-  for (Eigen::Index c = 0; c < scale.cols(); ++c) {
-    scale.col(c) = channels[static_cast<std::size_t>(c)].scale.replicate(rows_of_tile, 1);
-  }
-  return scale;
-}
-
-// sum += scale in, a tile at a time.
-void add_scaled(const Eigen::Ref<const Eigen::ArrayXf>& scale, const float* in,
-                Eigen::Ref<Eigen::ArrayXf> sum) {
-  const Eigen::Index tile = scale.size();
-  for (Eigen::Index at = 0; at < sum.size(); at += tile) {
-    const Eigen::Index n = std::min(tile, sum.size() - at);
-    sum.segment(at, n) += scale.head(n) * Eigen::Map<const Eigen::ArrayXf>(in + at, n);
-  }
-}
-
-// out = sum_c s_c in_c. Blocks of rows are so long that memory is read in long runs of a channel,
-// and so short that their sums stay in the nearest cache. Channels that are off are not read.
+// out = sum_c s_c in_c. Several rows at a time make the short loop over bands long enough for SIMD
+// instructions. The light of channels that are off is not read: memory bounds the speed.
 void add_up(const std::vector<LightChannel>& channels, BandArray LightChannel::*quantity,
             BandArray& out) {
   const BandArray& first = channels.front().*quantity;
   out.resize(first.rows(), first.cols());
   if (first.size() == 0) return;
-  constexpr Eigen::Index rows_of_block = 64 * rows_of_tile;
-  const Eigen::ArrayXXf scale = scales_of_tile(channels, first.cols());
-  const Eigen::Index block = rows_of_block * first.cols();
-  const auto blocks = static_cast<int>((first.rows() + rows_of_block - 1) / rows_of_block);
-  parallel_for(blocks, 1, [&](int low, int high) {
-    for (int b = low; b < high; ++b) {
-      const Eigen::Index at = b * block, n = std::min(block, first.size() - at);
-      Eigen::Map<Eigen::ArrayXf> sum(out.data() + at, n);
-      sum.setZero();
-      for (Eigen::Index c = 0; c < scale.cols(); ++c) {
-        const LightChannel& channel = channels[static_cast<std::size_t>(c)];
-        if ((channel.scale == 0.0f).all()) continue;
-        add_scaled(scale.col(c), (channel.*quantity).data() + at, sum);
+  constexpr Eigen::Index rows_at_once = 16;
+  constexpr int grain = 512;
+  const Eigen::Index bands = first.cols(), tile = rows_at_once * bands;
+  Eigen::ArrayXXf scale(tile, static_cast<Eigen::Index>(channels.size()));
+  std::vector<const float*> lit;  // light of the channels that are on
+  for (const LightChannel& channel : channels) {
+    if ((channel.scale == 0.0f).all()) continue;
+    scale.col(static_cast<Eigen::Index>(lit.size())) = channel.scale.replicate(rows_at_once, 1);
+    lit.push_back((channel.*quantity).data());
+  }
+  const auto tiles = static_cast<int>((first.rows() + rows_at_once - 1) / rows_at_once);
+  parallel_for(tiles, grain, [&](int low, int high) {
+    Eigen::ArrayXf sum(tile);
+    for (int t = low; t < high; ++t) {
+      const Eigen::Index at = t * tile, n = std::min(tile, first.size() - at);
+      sum.head(n).setZero();
+      for (std::size_t c = 0; c < lit.size(); ++c) {
+        sum.head(n) += scale.col(static_cast<Eigen::Index>(c)).head(n) *
+                       Eigen::Map<const Eigen::ArrayXf>(lit[c] + at, n);
       }
+      Eigen::Map<Eigen::ArrayXf>(out.data() + at, n) = sum.head(n);
     }
   });
 }
