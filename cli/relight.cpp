@@ -119,9 +119,9 @@ Action add_relight(CLI::App& command) {
   add_pictures(command, *arguments);
   command.callback([arguments, &command] { check(command, *arguments); });
   command.footer(
-      "Examples: lightwell relight room.vtp --channel desk=0.3 --channel 'row*=1,#ffd9b0' \\\n"
-      "            --channel window=off -o evening.vtp\n"
-      "          lightwell relight room.vtp --cues cues.toml -o cues --pictures --scene room.toml");
+      "Example: lightwell relight room.vtp --channel desk=0.3 --channel 'row*=1,#ffd9b0' \\\n"
+      "           --channel window=off -o evening.vtp\n"
+      "         lightwell relight room.vtp --cues cues.toml -o cues --pictures --scene room.toml");
   return [arguments](Console& console) { return relight_solution(*arguments, console); };
 }
 

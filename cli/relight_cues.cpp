@@ -84,10 +84,54 @@ Json cue_json(const Cue& cue, const SolvedScene& solved, const CueFiles& files) 
           {"pictures", pictures},       {"scales", scales}};
 }
 
+// Cues with the files that their results go into, one for each.
+struct CueResults {
+  const std::vector<Cue>& cues;
+  const std::vector<CueFiles>& files;
+};
+
+void render_cue(const Seen& seen, const SolvedScene& solved, const PictureTask& picture,
+                const Feedback& feedback) {
+  Checkpoint none({}, {}, {}, feedback.console);
+  RenderableScene renderable(seen.scene, solved);
+  render_step(renderable, picture, none, feedback);
+}
+
+void write_cues(const RelightByCues& task, const std::optional<Seen>& seen,
+                const CueResults& results, SolvedScene& solved, const Feedback& feedback) {
+  std::optional<IncidentLight> incident;
+  if (seen) incident = meter_brightest(task, *seen, results.cues, solved);
+  double relighting = 0.0, writing = 0.0;  // s
+  Json made = Json::array();
+  for (std::size_t i = 0; i < results.cues.size(); ++i) {
+    const Cue& cue = results.cues[i];
+    const CueFiles& files = results.files[i];
+    Stopwatch watch;
+    relight(solved, cue.scales);
+    relighting += watch.lap();
+    write_solution(files.solution, solved);
+    writing += watch.lap();
+    feedback.report.add_file(files.solution);
+    made.push_back(cue_json(cue, solved, files));
+    if (seen) {
+      render_cue(*seen, solved,
+                 {.camera = seen->camera,
+                  .arguments = task.render,
+                  .files = files.pictures,
+                  .label = cue.name,
+                  .incident = incident},
+                 feedback);
+    }
+    stop_if_interrupted();
+  }
+  feedback.report.add_phase("relight", relighting);
+  feedback.report.add_phase("write_solutions", writing);
+  feedback.report.add("cues", std::move(made));
+}
+
 }  // namespace
 
 void relight_by_cues(const RelightByCues& task, const Feedback& feedback) {
-  const auto& [console, report] = feedback;
   const std::vector<WordedCue> worded = read_cue_file(task.cues);
   const std::optional<Seen> seen = read_seen(task, feedback);
   const OutputFolder folder(task.folder);
@@ -96,35 +140,7 @@ void relight_by_cues(const RelightByCues& task, const Feedback& feedback) {
   SolvedScene solved = read_relightable(task, seen, feedback);
   relight(solved, channel_scales(solved.solution, task.settings, task.solution));
   const std::vector<Cue> cues = cues_of(solved.solution, worded, task.solution);
-
-  std::optional<IncidentLight> incident;
-  if (seen) incident = meter_brightest(task, *seen, cues, solved);
-  double relighting = 0.0, writing = 0.0;  // s
-  Json made = Json::array();
-  for (std::size_t i = 0; i < cues.size(); ++i) {
-    Stopwatch watch;
-    relight(solved, cues[i].scales);
-    relighting += watch.lap();
-    write_solution(files[i].solution, solved);
-    writing += watch.lap();
-    report.add_file(files[i].solution);
-    made.push_back(cue_json(cues[i], solved, files[i]));
-    if (seen) {
-      Checkpoint none({}, {}, {}, console);
-      RenderableScene renderable(seen->scene, solved);
-      render_step(renderable,
-                  {.camera = seen->camera,
-                   .arguments = task.render,
-                   .files = files[i].pictures,
-                   .label = cues[i].name,
-                   .incident = incident},
-                  none, feedback);
-    }
-    stop_if_interrupted();
-  }
-  report.add_phase("relight", relighting);
-  report.add_phase("write_solutions", writing);
-  report.add("cues", std::move(made));
+  write_cues(task, seen, {cues, files}, solved, feedback);
 }
 
 }  // namespace lightwell

@@ -1,4 +1,5 @@
 // Targets of the files that scenes, pictures and measurements are made of.
+#include "radiosity/solution/cues.h"
 #include "raytrace/pictures/image.h"
 #include "raytrace/readings/probe.h"
 #include "scene/errors.h"
@@ -62,6 +63,20 @@ void read_spectrum(std::string_view bytes) {
   }
   constexpr double low = 500.0, high = 600.0;  // nm
   if (covers(samples, low, high)) mean(samples, low, high);
+}
+
+// Cues of a solution with three channels, and the fades between them.
+void read_cue_list(std::string_view bytes) {
+  RadiositySolution solution;
+  for (const char* const name : {"window", "ceiling", "desk"}) {
+    solution.channels.push_back({.name = name, .scale = Spectrum::Constant(3, 1.0f)});
+    solution.channels.back().energy = BandEnergy::Ones(4, 3);
+  }
+  solution.bands = rgb_bands();
+  const std::vector<Cue> cues = cues_for(solution, read_cues(input_file("cues.toml", bytes)));
+  const CueSequence sequence(solution, cues);
+  constexpr double share = 0.3;
+  sequence.at(share * sequence.seconds());
 }
 
 void read_points(std::string_view bytes) {

@@ -42,6 +42,7 @@ void read_exr_picture(std::string_view bytes);
 void read_hdr_picture(std::string_view bytes);
 void read_spectrum(std::string_view bytes);
 void read_points(std::string_view bytes);
+void read_cue_list(std::string_view bytes);
 void read_solved(std::string_view bytes);
 void read_checkpoint(std::string_view bytes);
 

@@ -42,6 +42,7 @@ std::span<const Target> targets() {
       {.name = "hdr", .read = read_hdr_picture},
       {.name = "spectrum", .read = read_spectrum},
       {.name = "points", .read = read_points},
+      {.name = "cues", .read = read_cue_list, .sources = "scene/io/toml"},
       {.name = "solution",
        .read = read_solved,
        .mutate = mutate_solution,
