@@ -8,6 +8,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "cli/many_lights.h"
 #include "cli/memory_size.h"
 #include "cli/refinement.h"
 #include "radiosity/effective_options.h"
@@ -292,6 +293,7 @@ void SolveArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(whole_number(1, 1000000))
       ->group(group);
+  add_many_lights(command, solve, group);
   add_accuracy(command, solve.accuracy, group);
   channels.add_to(command, group);
   look_from.add_to(command, group);
@@ -328,11 +330,11 @@ std::string SolveArguments::text(const Scene& scene) const {
     if (solve.gather.rays > 0) effort += fmt::format(" --gather-rays {}", solve.gather.rays);
   }
   return fmt::format(
-      "{}{} --form-factors {}{} --solver {} --rays {} --tolerance {:g} --max-sweeps {}{}{}",
+      "{}{} --form-factors {}{} --solver {} --rays {} --tolerance {:g} --max-sweeps {}{}{}{}",
       patches.text(scene), effort, form_factors,
       hemicube_text(form_factors, solve.form_factors.hemicube_resolution), solver,
-      rays_per_patch(asked), solve.solver.tolerance, solve.solver.max_sweeps, channels.text(),
-      look_from.text());
+      rays_per_patch(asked), solve.solver.tolerance, solve.solver.max_sweeps,
+      many_lights_text(solve), channels.text(), look_from.text());
 }
 
 // Half the noise takes four times the samples; `good` are the defaults of RenderOptions.

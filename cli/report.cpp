@@ -164,6 +164,12 @@ std::string solution_text(const Json& facts) {
                                                  facts["elements"].get<int>()));
   if (facts.contains("refined")) text += line("refined", facts["refined"].get<std::string>());
   text += energy_text(facts);
+  if (facts.contains("lights")) {
+    const Json& lights = facts["lights"];
+    text += line("lights", fmt::format("a point asks {:.0f} of {} ({} at most)",
+                                       lights["asked"].get<double>(), lights["count"].get<int>(),
+                                       lights["asked_most"].get<int>()));
+  }
   constexpr double worth_a_line = 0.005;
   if (facts.contains("unlit") && facts["unlit"]["share"].get<double>() >= worth_a_line) {
     const Json& unlit = facts["unlit"];

@@ -163,8 +163,8 @@ Action add_run(CLI::App& command) {
   arguments->checkpoint.add_reuse_to(command, CheckpointArguments::HelpOn::first);
   arguments->render.add_to(command);
   // Hidden, as rarely needed; 'render --help' and 'solve --help' show them.
-  for (const char* name :
-       {"--depth", "--photons", "--samples", "--max-sweeps", "--projection", "--near", "--shift"}) {
+  for (const char* name : {"--depth", "--photons", "--samples", "--max-sweeps", "--projection",
+                           "--near", "--shift", "--virtual-lights", "--many-lights"}) {
     command.get_option(name)->group("");
   }
   arguments->render.film.add_to(command, "How pictures are made", FilmArguments::HelpOn::hidden);

@@ -223,6 +223,9 @@ SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& ch
   report.add_solution(solved, true);
   report.add("refinement", refinement_json(solve_report.refinement));
   report.add("unlit", unlit_json(scene, solved));
+  if (const CutSizes& cuts = solve_report.cuts; cuts.lights > 0) {
+    report.add("lights", {{"count", cuts.lights}, {"asked", cuts.mean}, {"asked_most", cuts.most}});
+  }
   report.add_storage(options.form_factors.memory->report());
   if (solve_report.accuracy > 0.0) {
     report.add("accuracy", {{"asked", solve_report.accuracy},

@@ -89,7 +89,7 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
   return mean_illuminances(bands, mesh, patch_radiosity, {}).front();
 }
 
-ShadowOptions Effort::shadows() const {
+ShadowOptions Effort::shadows(ManyLights many_lights) const {
   const int most = std::clamp(gather_rays / 4, 64, most_shadow_rays);
   // Clusters of 0.5 % leave noise of 0.35 % in a hall of 10 000 lamps, which beside 0.55 % of the
   // rays and 0.95 % of interpolation hardly counts. `law` is that of rays_for_noise(). At the
@@ -99,7 +99,8 @@ ShadowOptions Effort::shadows() const {
       for_one_percent * std::pow(static_cast<double>(rays_for_one_percent) / gather_rays, law);
   return {.min_rays = std::max(16, most / 8),
           .max_rays = most,
-          .cluster_share = std::clamp(share, finest, coarsest)};
+          .cluster_share = std::clamp(share, finest, coarsest),
+          .many_lights = many_lights};
 }
 
 int sky_rays(double target) {

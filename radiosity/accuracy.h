@@ -22,8 +22,9 @@ struct Effort {
   int gather_rays = 0;            ///< GatherOptions::rays
 
   /// Shadow rays that leave about as much noise in penumbras as `gather_rays` leave elsewhere: at
-  /// most a quarter of `gather_rays` (64 to 256), at first an eighth of that (16 or more).
-  ShadowOptions shadows() const;
+  /// most a quarter of `gather_rays` (64 to 256), at first an eighth of that (16 or more). They
+  /// choose among many lights by `many_lights`.
+  ShadowOptions shadows(ManyLights many_lights) const;
 };
 
 /// Mean illuminance of the patches that reflect in at least one band, weighted by area, lx.

@@ -175,7 +175,7 @@ class GatherAttempts {
     options_.refine.tolerance = most.refine_tolerance;
     options_.gather.rays = most.gather_rays;
     if (!(target_ > 0.0)) return;
-    options_.gather.shadows = most.shadows();
+    options_.gather.shadows = most.shadows(options_.gather.shadows.many_lights);
     options_.gather.shadows.sky_rays = sky_rays(*std::ranges::min_element(targets_));
   }
 

@@ -120,7 +120,7 @@ PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
   constexpr int few_rays = 32;
   GatherOptions gather = gather_options(options);
   gather.rays = std::min(few_rays, gather.rays);
-  gather.shadows = Effort{.gather_rays = gather.rays}.shadows();
+  gather.shadows = Effort{.gather_rays = gather.rays}.shadows(gather.shadows.many_lights);
   gather.replica += pilot_replica;
   std::vector<int> patches(static_cast<std::size_t>(base.patch_count()));
   std::iota(patches.begin(), patches.end(), 0);

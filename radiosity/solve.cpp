@@ -320,6 +320,13 @@ void require_unit(const Scene& scene, const SolveOptions& options) {
       "of the mean irradiance, such as 1%");
 }
 
+// The shadow options of the first attempt at the accuracy.
+ShadowOptions first_shadows(const SolveOptions& options) {
+  const ShadowOptions& asked = options.gather.shadows;
+  if (!options.accuracy || !(options.accuracy->share > 0.0)) return asked;
+  return first_effort(options.accuracy->share, true).shadows(asked.many_lights);
+}
+
 // Direct light with columns of each channel; empty without channels.
 std::optional<DirectLight> light_by_channel(const Scene& scene, const PatchMesh& mesh,
                                             const DirectLight& all_light,
@@ -441,6 +448,7 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
   solution.parts = std::move(parts);
   if (!options.view_rays.empty()) add_importance(scene, *caster, options, solved);
 
+  if (report) report->cuts = cut_sizes(*caster, kept_apart, first_shadows(options));
   caster.reset();
   illuminate_elements(scene, {direct_light, kept_apart, openings}, options, solved, report);
   return solved;

@@ -4,6 +4,7 @@
 
 #include "mesh/build_patches.h"
 #include "radiosity/accuracy.h"
+#include "radiosity/emitters/cut_sizes.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/journal/run_control.h"
@@ -57,6 +58,7 @@ struct SolveOptions {
 struct SolveReport {
   FormFactorReport form_factors{};
   RefineReport refinement{};
+  CutSizes cuts{};        ///< lights that points ask, where there are many
   double accuracy = 0.0;  ///< the requested share of the mean irradiance; 0: none was requested
   int gather_rays = 0;    ///< rays of the last final gather
   /// In limited time, the error that the last finished stage was to reach, relative to the mean

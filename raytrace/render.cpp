@@ -392,7 +392,7 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
   const auto& [pass, max_depth, min_contribution, shadows, gather_rays, virtual_lights,
                found_virtual_lights, photons, caustics, slant, visible_lamps, glossy_rays, sampling,
                max_subdivision, contrast, layers, run, rows_done] = options;
-  const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share] = shadows;
+  const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share, many_lights] = shadows;
   const auto& [most_samples, least_samples, noise] = sampling;
   for (const Eigen::Vector3d* v : {&position, &direction, &up}) print.add(*v);
   print.add(fov_degrees);
@@ -405,6 +405,7 @@ void add_inputs(Fingerprint& print, const ElementCaster& caster, const Radiosity
   print.add(max_shadow_rays);
   print.add(sky_rays);
   print.add(cluster_share);
+  print.add(many_lights);
   print.add(max_subdivision);
   print.add(contrast);
   print.add(solution.caustic_irradiance);

@@ -42,6 +42,12 @@ void DirectLight::cluster_lights() {
   };
   for (std::size_t c = 0; c < channels; ++c) {
     trees_[c] = {.of_emitters = tree_of(emitters[c]), .of_lamps = tree_of(lamps[c])};
+    const auto of_first = static_cast<int>(emitters_.size());
+    for (int i = 0; i < light_count(); ++i) {
+      const bool is_here = is_clustered[static_cast<std::size_t>(i)] != 0 &&
+                           static_cast<std::size_t>(channel_of(i)) == c;
+      if (is_here) (i < of_first ? trees_[c].emitters : trees_[c].lamps).push_back(i);
+    }
   }
   few_.resize(channels);
   for (int i = 0; i < light_count(); ++i) {
@@ -62,6 +68,15 @@ bool DirectLight::is_on(int light) const {
 bool DirectLight::has_emitter_clusters() const {
   return std::ranges::any_of(trees_,
                              [](const Trees& trees) { return trees.of_emitters != nullptr; });
+}
+
+bool DirectLight::has_clusters() const {
+  return std::ranges::any_of(
+      trees_, [](const Trees& trees) { return trees.of_emitters || trees.of_lamps; });
+}
+
+int DirectLight::asked(const ElementCaster& caster, const LightQuery& query) const {
+  return static_cast<int>(chosen_lights(query, pilot_light(caster, query)).size());
 }
 
 // Emitters come first, then lamps, then sky and sun.
@@ -93,11 +108,11 @@ double DirectLight::approximate_light(int light, const SurfacePoint& at) const {
 }
 
 std::vector<const LightTree*> DirectLight::trees_of(int channel, Lights lights) const {
-  const auto& [of_emitters, of_lamps] = trees_[static_cast<std::size_t>(channel)];
+  const Trees& of = trees_[static_cast<std::size_t>(channel)];
   std::vector<const LightTree*> trees;
   const bool has_emitters = lights == Lights::all || lights == Lights::all_but_dome;
-  if (of_emitters && has_emitters) trees.push_back(of_emitters.get());
-  if (of_lamps && lights != Lights::distant) trees.push_back(of_lamps.get());
+  if (of.of_emitters && has_emitters) trees.push_back(of.of_emitters.get());
+  if (of.of_lamps && lights != Lights::distant) trees.push_back(of.of_lamps.get());
   return trees;
 }
 
@@ -191,9 +206,23 @@ std::vector<DirectLight::Choice> DirectLight::chosen_lights(
     if (query.one_stands_for_all) {
       const std::optional<Choice> one = one_for_all(c, query);
       if (one) choices.push_back(*one);
-    } else {
-      add_cut(trees_of(c, query.lights), query.at, query.key, query.shadows.cluster_share,
-              light.empty() ? 0.0 : light[channel], choices);
+      continue;
+    }
+    const double arriving = light.empty() ? 0.0 : light[channel];
+    switch (query.shadows.many_lights) {
+      case ManyLights::lightcuts:
+        add_cut(trees_of(c, query.lights), query.at, query.key, query.shadows.cluster_share,
+                arriving, choices);
+        break;
+      case ManyLights::sorted:
+        add_sorted(c, query, arriving, choices);
+        break;
+      case ManyLights::importance:
+        add_important(c, query, arriving, choices);
+        break;
+      case ManyLights::all:
+        for (const int i : clustered_lights(c, query.lights)) choices.push_back({.light = i});
+        break;
     }
   }
   return choices;

@@ -374,7 +374,8 @@ std::vector<double> DirectLight::pilot_light(const ElementCaster& caster,
   for (int c = 0; c < channel_count_; ++c) {
     has_clusters = has_clusters || !trees_of(c, query.lights).empty();
   }
-  if (!has_clusters || query.one_stands_for_all) return {};
+  const bool asks_all = query.shadows.many_lights == ManyLights::all;
+  if (!has_clusters || query.one_stands_for_all || asks_all) return {};
   // A quarter of the clusters cost a quarter of the time, and a pilot that is off by a tenth makes
   // clusters off by a tenth.
   constexpr double coarser = 4.0;

@@ -52,6 +52,16 @@ constexpr int most_shadow_rays = 256;  ///< that pictures and solves choose
 /// The limit for single points, which can afford more.
 constexpr int most_probe_shadow_rays = 1 << 14;
 
+/// How a point chooses among many lights. All but `sorted` are unbiased.
+enum class ManyLights {
+  lightcuts,  ///< clusters of the light tree (Walter et al. 2005)
+  sorted,     ///< lights in order of what they may give, until the rest is too little; the rest is
+           ///< visible as far as these are (Ward 1991, "Adaptive shadow testing for ray tracing")
+  importance,  ///< lights that may give much, and two drawn among all others (Shirley, Wang &
+               ///< Zimmerman 1996, "Monte Carlo techniques for direct lighting calculations")
+  all,         ///< every light
+};
+
 /// Shadow rays from a point to an emitter that gives all of the point's direct light: `min_rays`
 /// stratified rays first; if some are blocked and some not, `max_rays`. Emitters that give less
 /// light get fewer. No rays are cast where ExactShadows finds the visible share in less time.
@@ -65,6 +75,9 @@ struct ShadowOptions {
   /// each light is asked. A channel of fewer than DirectLight::fewest_clustered lights has no
   /// clusters.
   double cluster_share = 0.01;
+  /// The lights that are asked where there are clusters; `sorted` leaves a rest of cluster_share of
+  /// the light, `importance` draws among lights that may give less than that each.
+  ManyLights many_lights = ManyLights::lightcuts;
 
   /// True if each light and the sky get one ray at most, without an estimate of the noise.
   bool is_one_ray() const { return max_rays == 1 && sky_rays == 0; }
@@ -179,6 +192,10 @@ class DirectLight {
   };
   /// True if any emitters are clustered.
   bool has_emitter_clusters() const;
+  /// True if any emitters or lamps are clustered.
+  bool has_clusters() const;
+  /// The number of lights that a point asks, of light_count(); members of clusters count each.
+  int asked(const ElementCaster& caster, const LightQuery& query) const;
   /// The emitters that a point asks for, no cluster of which gives more than `share` of the light
   /// of all. `key`: of the random numbers that draw members.
   std::vector<Choice> chosen_emitters(const SurfacePoint& at, std::uint64_t key,
@@ -237,6 +254,11 @@ class DirectLight {
   std::vector<double> pilot_light(const ElementCaster& caster, const LightQuery& query) const;
   std::optional<Choice> one_for_all(int channel, const LightQuery& query) const;
   std::vector<const LightTree*> trees_of(int channel, Lights lights) const;
+  std::vector<int> clustered_lights(int channel, Lights lights) const;
+  void add_important(int channel, const LightQuery& query, double light,
+                     std::vector<Choice>& choices) const;
+  void add_sorted(int channel, const LightQuery& query, double light,
+                  std::vector<Choice>& choices) const;
   void add_cut(std::span<const LightTree* const> trees, const SurfacePoint& at, std::uint64_t key,
                double share, double light, std::vector<Choice>& choices) const;
   double approximate_light(int light, const SurfacePoint& at) const;
@@ -262,6 +284,7 @@ class DirectLight {
   /// Trees of the emitters and of the lamps of a channel; null where there are few.
   struct Trees {
     std::shared_ptr<const LightTree> of_emitters{}, of_lamps{};
+    std::vector<int> emitters{}, lamps{};  ///< the lights of each
   };
   std::vector<Trees> trees_{};             // by channel
   std::vector<std::vector<int>> few_;      // by channel: lights that are on and in no tree

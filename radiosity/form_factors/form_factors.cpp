@@ -71,7 +71,7 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   const auto& [method, rays_per_patch, target_error, most_rays_per_patch, rays_per_emitter,
                max_specular_depth, emitter_points, shadows, portals, hemicube_resolution,
                enforce_closure, memory, run] = options;
-  const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share] = shadows;
+  const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share, many_lights] = shadows;
   print.add(method);
   print.add(rays_per_patch);
   print.add(target_error);
@@ -83,6 +83,7 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
   print.add(max_shadow_rays);
   print.add(sky_rays);
   print.add(cluster_share);
+  print.add(many_lights);
   // Portals follow from the scene and its light.
   print.add(portals ? portals->size() : 0);
   print.add(hemicube_resolution);

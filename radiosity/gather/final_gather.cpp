@@ -45,13 +45,14 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
   }
   // The run decides no bit of a result.
   const auto& [rays, max_specular_depth, shadows, replica, portals, run] = options;
-  const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share] = shadows;
+  const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share, many_lights] = shadows;
   print.add(rays);
   print.add(max_specular_depth);
   print.add(min_shadow_rays);
   print.add(max_shadow_rays);
   print.add(sky_rays);
   print.add(cluster_share);
+  print.add(many_lights);
   print.add(replica);
   print.add(portals ? portals->size() : 0);  // portals follow from the scene and its light
 }

@@ -3,10 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <numbers>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "mesh/build_patches.h"
 #include "mesh/elements/element_caster.h"
@@ -163,6 +166,27 @@ TEST(LightTree, NoNodeGivesMoreThanItsBound) {
   expect_bounds(Hall(60, 60));
 }
 
+// Points of surfaces that send on light, some of them nearer than the limit of their kernel.
+TEST(LightTree, NoNodeOfVirtualLightsGivesMoreThanItsBound) {
+  const Hall hall(1, 0);
+  std::vector<FreeSource> sources;
+  constexpr int count = 200;
+  for (int k = 0; k < count; ++k) {
+    sources.push_back(
+        {.number = k,
+         .light = constant_spectrum(hall.scene.bands, 1.0f + k % 7),
+         .shape =
+             VirtualLight{.position = point(k).position, .normal = direction(k, 40), .most = 0.3}});
+  }
+  const LightTree tree(bounds_of(sources, 0));
+  const DirectLight light(hall.scene, std::move(sources));
+  EXPECT_EQ(light.light_count(), count);
+  for (int k = 0; k < 200; ++k) {
+    const SurfacePoint at = point(k + count);
+    expect_bounded(tree, tree.root(at), at, unoccluded(light, at));
+  }
+}
+
 TEST(LightTree, PanelsThatFaceDownGiveNothingAbove) {
   const Hall hall(60, 0, true);
   expect_bounds(hall);
@@ -310,6 +334,83 @@ TEST(LightTree, FewLightsHaveNoClusters) {
     const Spectrum a = light.irradiance(caster, {.at = point(k), .shadows = fine}),
                    b = light.irradiance(caster, {.at = point(k), .shadows = coarse});
     EXPECT_TRUE((a == b).all());
+  }
+}
+
+// The light of points by one of the methods, mean of the bands, over keys.
+Eigen::ArrayXd by_method(const DirectLight& light, const ElementCaster& caster,
+                         const SurfacePoint& at, ManyLights method, int keys) {
+  Eigen::ArrayXd E(keys);
+  for (int i = 0; i < keys; ++i) {
+    E[i] = light
+               .irradiance(caster, {.at = at,
+                                    .key = static_cast<std::uint64_t>(i),
+                                    .shadows = {.min_rays = 64,
+                                                .max_rays = 256,
+                                                .cluster_share = 0.02,
+                                                .many_lights = method}})
+               .mean();
+  }
+  return E;
+}
+
+TEST(ManyLights, OfImportanceGiveTheLightOfAllInTheMean) {
+  const Hall hall(200, 200);
+  const ElementCaster caster(hall.mesh);
+  const DirectLight light(hall.scene, hall.mesh);
+  constexpr int keys = 64;
+  const auto variance = [](const Eigen::ArrayXd& E) {
+    return (E - E.mean()).square().sum() / (keys - 1);
+  };
+  int lit = 0;
+  for (int k = 0; k < 16; ++k) {
+    const Eigen::ArrayXd all = by_method(light, caster, point(k), ManyLights::all, keys),
+                         some = by_method(light, caster, point(k), ManyLights::importance, keys);
+    if (!(all.mean() > 0.0)) continue;
+    ++lit;
+    // Four standard errors of both means.
+    EXPECT_NEAR(some.mean(), all.mean(), 4.0 * std::sqrt((variance(all) + variance(some)) / keys))
+        << k;
+  }
+  EXPECT_GT(lit, 8);
+}
+
+TEST(ManyLights, InOrderMissNoMoreThanTheRestMayGive) {
+  const Hall hall(200, 200);
+  const ElementCaster caster(hall.mesh);
+  const DirectLight light(hall.scene, hall.mesh);
+  for (int k = 0; k < 40; ++k) {
+    const SurfacePoint at = point(k);
+    double unobstructed = 0.0;
+    for (const double E : unoccluded(light, at)) unobstructed += E;
+    const double all = by_method(light, caster, at, ManyLights::all, 1)[0],
+                 some = by_method(light, caster, at, ManyLights::sorted, 1)[0];
+    // The rest may give 2 % of the light, and counts with a visibility between none and all. What
+    // lights may give is known to a factor of two for panels that are near.
+    EXPECT_NEAR(some, all, 2.0 * 0.02 * unobstructed) << k;
+  }
+}
+
+TEST(ManyLights, AskFewerThanAll) {
+  const Hall hall(400, 400);
+  const ElementCaster caster(hall.mesh);
+  const DirectLight light(hall.scene, hall.mesh);
+  const auto asked = [&](ManyLights method) {
+    double sum = 0.0;
+    constexpr int points = 50;
+    for (int k = 0; k < points; ++k) {
+      const LightQuery query{.at = point(k),
+                             .shadows = {.cluster_share = 0.05, .many_lights = method}};
+      sum += static_cast<double>(light.asked(caster, query)) / points;
+    }
+    return sum;
+  };
+  EXPECT_EQ(asked(ManyLights::all), light.light_count());
+  for (const ManyLights method :
+       {ManyLights::lightcuts, ManyLights::sorted, ManyLights::importance}) {
+    std::printf("lights asked: %.0f of %d\n", asked(method), light.light_count());
+    EXPECT_LT(asked(method), 0.5 * light.light_count());
+    EXPECT_GT(asked(method), 1.0);
   }
 }
 
