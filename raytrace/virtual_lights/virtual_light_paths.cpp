@@ -19,7 +19,8 @@ constexpr int draws_per_start = 16;
 struct Sender {
   PatchPoint point{};
   Spectrum flux{};
-  int paths = 0;  // that start here
+  int paths = 0;       // that start here
+  int first_path = 0;  // the number of the first one among all paths
 };
 
 // What patches send on of light that they get, and of their own.
@@ -46,10 +47,10 @@ class Senders {
     return area_ > 0.0 ? sum / area_ : 0.0;
   }
 
-  PatchPoint draw(const Eigen::Array4f& u) const {
-    const auto at = std::upper_bound(up_to_.begin(), up_to_.end() - 1, u[0] * area_);
+  PatchPoint draw(double which, double u, double v) const {
+    const auto at = std::upper_bound(up_to_.begin(), up_to_.end() - 1, which * area_);
     const int e = elements_[static_cast<std::size_t>(at - up_to_.begin())];
-    return PatchSampler(mesh_, mesh_.patch[e], e).point(u[1], u[2]);
+    return PatchSampler(mesh_, mesh_.patch[e], e).point(u, v);
   }
 
   // B at a point without light that others reflect, W/m^2.
@@ -97,17 +98,19 @@ class Senders {
   double area_ = 0.0;
 };
 
+// Draws points in the order of the elements. (Of points in the order of a Sobol sequence,
+// systematic sampling in share_out() would take such as lie near each other.)
 std::vector<Sender> draw_senders(const Senders& senders, const CausticMap* caustics, int count,
                                  std::uint64_t key) {
   std::vector<Sender> drawn(static_cast<std::size_t>(count));
-  const SobolPoints sobol(count);
   const auto share = static_cast<float>(senders.area() / count);
   constexpr int grain = 64;
   parallel_for(count, grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
-      Sender& sender = drawn[static_cast<std::size_t>(i)];
-      sender.point = senders.draw(sobol.point(i, key));
       const auto own = random_key(key, static_cast<std::uint64_t>(i));
+      const auto number = [&](std::uint64_t n) { return random_uniform(random_key(own, n)); };
+      Sender& sender = drawn[static_cast<std::size_t>(i)];
+      sender.point = senders.draw((i + number(1)) / count, number(2), number(3));
       sender.flux = share * senders.first_radiosity(sender.point, caustics, own);
     }
   });
@@ -124,10 +127,13 @@ void share_out(std::vector<Sender>& senders, int starts, std::uint64_t key) {
   if (!(all > 0.0)) return;
   const double offset = random_uniform(random_key(key, 1));
   double before = 0.0;
+  int paths = 0;
   for (Sender& sender : senders) {
     const double due = starts * root(sender) / all;
     const double after = before + due;
     sender.paths = static_cast<int>(std::floor(after + offset) - std::floor(before + offset));
+    sender.first_path = paths;
+    paths += sender.paths;
     if (due > 0.0) sender.flux /= static_cast<float>(due);
     before = after;
   }
@@ -153,14 +159,16 @@ class PathTracer {
                                   .most = most_}};
   }
 
-  // Adds the lights of a path behind its start.
-  void follow(const Sender& start, std::uint64_t key, std::vector<FreeSource>& lights) const {
+  // Adds the lights of path `path` of all behind its start.
+  void follow(const Sender& start, int path, std::uint64_t key,
+              std::vector<FreeSource>& lights) const {
     // Walls that reflect nearly all light end the path at last by chance.
     constexpr int most_bounces = 1000;
     Continuation at{start.point, start.flux};
     const float of_start = start.flux.mean();
     for (int bounce = 0; bounce < most_bounces; ++bounce) {
-      const auto own = random_key(key, static_cast<std::uint64_t>(bounce));
+      const auto own =
+          random_key(key, static_cast<std::uint64_t>(bounce), static_cast<std::uint64_t>(path));
       const auto number = [&](std::uint64_t i) { return random_uniform(random_key(own, i)); };
       const Ray ray = cosine_ray(lit_.mesh(), at.point, static_cast<float>(number(1)),
                                  static_cast<float>(number(2)));
@@ -253,10 +261,8 @@ std::vector<FreeSource> find_virtual_lights(const LitScene& lit, const LightPath
       found[s].push_back(
           tracer.light(sender.point, static_cast<float>(sender.paths) * sender.flux));
       for (int path = 0; path < sender.paths; ++path) {
-        tracer.follow(sender,
-                      random_key(key, RandomPurpose::virtual_light_paths,
-                                 static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(path)),
-                      found[s]);
+        tracer.follow(sender, sender.first_path + path,
+                      random_key(key, RandomPurpose::virtual_light_paths), found[s]);
       }
     }
   });

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "radiosity/solution/solution_file.h"
 #include "tests/cli/program.h"
 
@@ -90,6 +92,50 @@ TEST(Threads, OneAndTwoGiveTheSameBits) {
     EXPECT_FALSE(bytes.empty());
     EXPECT_TRUE(bytes == bytes_of(folder / ("threads-2/" + std::string(picture)))) << picture;
   }
+}
+
+// Each way to choose among 50 lamps gives the energy of all, and says how many a point asks.
+TEST(ManyLights, AreChosenAsAskedFor) {
+  TemporaryFolder folder;
+  std::string scene = R"(
+[materials.wall]
+reflectance = 0.5
+[[surfaces]]
+name = "room"
+material = "wall"
+box = { min = [0, 0, 0], max = [20, 10, 3], inward = true }
+)";
+  constexpr int lamps = 50;
+  for (int k = 0; k < lamps; ++k) {
+    scene += "[[lamps]]\nlumens = 100\nposition = [" + std::to_string(1 + 2 * (k % 10)) + ", " +
+             std::to_string(1 + 2 * (k / 10)) + ", 2.9]\n";
+  }
+  folder.write("hall.toml", scene);
+  const auto solved = [&](const std::string& method) {
+    const Ended ended =
+        run_lightwell(folder / "", Words{"solve", "hall.toml", "-o", "S.vtp", "--json", "--refine",
+                                         "off", "--max-patch-size", "2", "--gather-rays", "64",
+                                         "--many-lights", method});
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    return nlohmann::json::parse(ended.out);
+  };
+  const nlohmann::json all = solved("all");
+  EXPECT_EQ(all["lights"]["count"], lamps);
+  EXPECT_EQ(all["lights"]["asked"], lamps);
+  for (const std::string method : {"lightcuts", "sorted", "importance"}) {
+    const nlohmann::json some = solved(method);
+    EXPECT_EQ(some["lights"]["count"], lamps);
+    EXPECT_LE(some["lights"]["asked"].get<double>(), lamps);
+    EXPECT_GE(some["lights"]["asked_most"].get<double>(), some["lights"]["asked"].get<double>());
+    // Patches get the light of lamps by rays, whatever points ask; sums of floats may be in another
+    // order.
+    EXPECT_NEAR(some["energy"]["absorbed"].get<double>() / all["energy"]["absorbed"].get<double>(),
+                1.0, 1e-5);
+  }
+  EXPECT_EQ(
+      run_lightwell(folder / "", {"solve", "hall.toml", "-o", "S.vtp", "--many-lights", "few"})
+          .code,
+      2);
 }
 
 }  // namespace

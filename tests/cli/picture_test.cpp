@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 #include <thread>
 
@@ -61,6 +62,44 @@ TEST_F(Pictures, QualitiesStandForOptions) {
   EXPECT_TRUE((good == picture({"--shadow-rays", "64", "--photons", "524288", "--noise", "2%",
                                 "--quality", "draft"}))
                   .all());
+}
+
+TEST_F(Pictures, WithoutASolutionAreMadeByVirtualLights) {
+  const auto picture = [&](const Words& options) {
+    const Ended made =
+        run(Words{"render", "room.toml", "--size", "24x18", "-o", "v.exr"} + options);
+    EXPECT_EQ(made.code, 0) << made.err;
+    return read_exr(folder / "v.exr").radiance;
+  };
+  ASSERT_EQ(
+      run({"render", "room.toml", "S.vtp", "--size", "24x18", "--pass", "gather", "-o", "g.exr"})
+          .code,
+      0);
+  const BandArray gathered = read_exr(folder / "g.exr").radiance,
+                  full = picture({"--pass", "virtual-lights", "--virtual-lights", "2048"}),
+                  draft = picture({"--pass", "virtual-lights", "--quality", "draft"});
+  std::printf("mean radiance: gathered %.5f, by virtual lights %.5f, draft %.5f\n", gathered.mean(),
+              full.mean(), draft.mean());
+  // Some 1000 paths leave 3 % of the indirect light, three times which is allowed. A draft adds
+  // what a mesh of 400 patches lacks.
+  EXPECT_NEAR(full.mean() / gathered.mean(), 1.0f, 0.09f);
+  EXPECT_NEAR(draft.mean() / gathered.mean(), 1.0f, 0.2f);
+  EXPECT_TRUE((full == picture({"--pass", "virtual-lights", "--virtual-lights", "2048"})).all());
+}
+
+TEST_F(Pictures, OfOtherPassesNeedASolution) {
+  for (const std::string pass : {"auto", "direct", "gather", "interpolate"}) {
+    const Ended refused = run({"render", "room.toml", "--pass", pass, "-o", "v.exr"});
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_NE(refused.err.find("--pass " + pass + " shows the light of a solution"),
+              std::string::npos)
+        << refused.err;
+  }
+  EXPECT_FALSE(exists("v.exr"));
+  EXPECT_EQ(run({"render", "room.toml", "--pass", "virtual-lights", "--virtual-lights", "0", "-o",
+                 "v.exr"})
+                .code,
+            2);
 }
 
 TEST_F(Pictures, LayersComeIntoTheExr) {
