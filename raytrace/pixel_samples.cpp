@@ -1,6 +1,6 @@
 #include "raytrace/pixel_samples.h"
 
-#include "raytrace/shading/found_by_chance.h"
+#include "scene/found_by_chance.h"
 #include "scene/random_purpose.h"
 
 #include <algorithm>

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "radiosity/emitters/emitter_point.h"
-#include "raytrace/shading/found_by_chance.h"
 #include "raytrace/shading/shade.h"
+#include "scene/found_by_chance.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"

@@ -4,9 +4,11 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "radiosity/gather/final_gather.h"
 #include "raytrace/virtual_lights/virtual_light_paths.h"
+#include "scene/found_by_chance.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -21,7 +23,9 @@ double kernel_limit(double area, int count) {
   return area > 0.0 ? most_share * std::numbers::pi * count / area : 0.0;
 }
 
-constexpr int rays_beyond_limit = 8;
+// Rays that find what the limit cuts off, and in scenes with mirrors and glass, which are a small
+// part of what a point sees.
+constexpr int rays_beyond_limit = 8, rays_by_way = 32;
 // The greatest share of a point's light that a cluster of virtual lights may give. Eight pixels in
 // a row have other members of clusters.
 constexpr double cluster_share = 0.1;
@@ -65,15 +69,17 @@ Spectrum VirtualLights::indirect_irradiance(const ElementCaster& caster, const Q
                            .cluster_share = std::min(coarsest, cluster_share / effort)},
                .one_stands_for_all = is_single,
                .relief = query.relief});
-  const int rays =
-      is_single ? 1 : std::max(1, static_cast<int>(std::lround(effort * rays_beyond_limit)));
-  return E + beyond_limit(caster, query, rays);
+  const int most = paths_.has_specular() ? rays_by_way : rays_beyond_limit;
+  const int rays = is_single ? 1 : std::max(1, static_cast<int>(std::lround(effort * most)));
+  return E + beyond_limit(caster, query, rays, E.mean());
 }
 
 // The light that the limit of the kernel cuts off, and that comes by way of mirrors and glass.
-Spectrum VirtualLights::beyond_limit(const ElementCaster& caster, const Query& query,
-                                     int rays) const {
+// `of_lights`: what virtual lights give, mean of the bands.
+Spectrum VirtualLights::beyond_limit(const ElementCaster& caster, const Query& query, int rays,
+                                     float of_lights) const {
   Spectrum sum = Spectrum::Zero(lit_.scene.bands.count());
+  std::vector<Spectrum> found_by_chance;
   const auto& [position, normal, facet] = query.at;
   const double reach = paths_.has_specular() || !(most_ > 0.0)
                            ? std::numeric_limits<double>::infinity()
@@ -92,34 +98,40 @@ Spectrum VirtualLights::beyond_limit(const ElementCaster& caster, const Query& q
     ElementHit hit;
     caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.facet < 0) continue;
-    const Spectrum B =
-        found(caster, ray, hit, d.z(), random_key(key, static_cast<std::uint64_t>(i), 1));
-    sum += query.relief ? Spectrum(static_cast<float>(query.relief->gain(ray.direction)) * B) : B;
+    const auto own = random_key(key, static_cast<std::uint64_t>(i), 1);
+    const auto gain = query.relief ? static_cast<float>(query.relief->gain(ray.direction)) : 1.0f;
+    sum += gain * near_light(caster, ray, hit, d.z(), own);
+    if (paths_.is_specular(hit.facet)) {
+      found_by_chance.emplace_back(gain * by_way(caster, ray, hit, own));
+    }
   }
+  if (!found_by_chance.empty()) sum += limited_sum(found_by_chance, rays, of_lights);
   return sum / static_cast<float>(rays);
 }
 
-// Radiosity at the end of a ray as far as virtual lights do not send it. `cosine`: of the ray to
-// the normal at its start.
-Spectrum VirtualLights::found(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                              double cosine, std::uint64_t key) const {
-  const PatchMesh& mesh = lit_.mesh();
+// Radiosity at the end of a ray as far as the limit keeps virtual lights from sending it. `cosine`:
+// of the ray to the normal at its start.
+Spectrum VirtualLights::near_light(const ElementCaster& caster, const Ray& ray,
+                                   const ElementHit& hit, double cosine, std::uint64_t key) const {
+  const Spectrum none = Spectrum::Zero(lit_.scene.bands.count());
+  if (hit.element < 0 || !paths_.is_diffuse(hit.facet)) return none;
+  Eigen::Vector3d normal = element_center(lit_.mesh(), hit.element).normal;
+  if (const auto* pose = caster.pose_of(hit.facet)) normal = pose->linear() * normal;
+  const double kernel = cosine * std::max(0.0, -normal.dot(ray.direction)) / (hit.t * hit.t);
+  if (!(kernel > most_)) return none;
+  const double share = (1.0 - most_ / kernel) * paths_.base_factor(caster, ray, hit);
+  return static_cast<float>(share) *
+         radiosity(caster, hit, ray.origin + hit.t * ray.direction, normal, key);
+}
+
+// Radiosity that a ray finds behind mirrors and glass. Shadow rays to virtual lights pass clear
+// panes.
+Spectrum VirtualLights::by_way(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                               std::uint64_t key) const {
   Spectrum B = Spectrum::Zero(lit_.scene.bands.count());
-  if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
-    Eigen::Vector3d normal = element_center(mesh, hit.element).normal;
-    if (const auto* pose = caster.pose_of(hit.facet)) normal = pose->linear() * normal;
-    const double kernel = cosine * std::max(0.0, -normal.dot(ray.direction)) / (hit.t * hit.t);
-    if (kernel > most_) {
-      const double share = (1.0 - most_ / kernel) * paths_.base_factor(caster, ray, hit);
-      B += static_cast<float>(share) *
-           radiosity(caster, hit, ray.origin + hit.t * ray.direction, normal, key);
-    }
-  }
-  if (!paths_.is_specular(hit.facet)) return B;
   const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
-    // Shadow rays to virtual lights pass clear panes.
     if (end.through_panes_only || end.hit.element < 0) return;
-    const Eigen::Vector3d normal = element_center(mesh, end.hit.element).normal;
+    const Eigen::Vector3d normal = element_center(lit_.mesh(), end.hit.element).normal;
     B += static_cast<float>(end.base_factor) * end.throughput *
          radiosity(caster, end.hit, end.position, normal, random_key(key, 1));
   });

@@ -32,9 +32,10 @@ struct VirtualLightOptions {
 /// The first sum, of cuts through the light tree, leaves out what lights nearer than 1 / sqrt(b)
 /// would add without bound. A few cosine-distributed rays find that light (Kollig & Keller 2004,
 /// "Illumination in the presence of weak singularities"): B at the end y of a ray is
-/// rho (E_direct + E), computed there by one light and one further ray. The rays also find light by
-/// way of mirrors and glass. The mean has no bias for any number of lights; more lights leave less
-/// to rays.
+/// rho (E_direct + E), computed there by one light and one further ray. The mean has no bias for
+/// any number of lights; more lights leave less to rays. The rays also find light by way of mirrors
+/// and glass, by chance: what one of many rays finds of bright places is limited (see
+/// limited_sum()).
 class VirtualLights {
  public:
   /// Keeps references to all that `lit` refers to.
@@ -60,9 +61,12 @@ class VirtualLights {
   Spectrum indirect_irradiance(const ElementCaster& caster, const Query& query) const;
 
  private:
-  Spectrum beyond_limit(const ElementCaster& caster, const Query& query, int rays) const;
-  Spectrum found(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, double cosine,
-                 std::uint64_t key) const;
+  Spectrum beyond_limit(const ElementCaster& caster, const Query& query, int rays,
+                        float of_lights) const;
+  Spectrum near_light(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                      double cosine, std::uint64_t key) const;
+  Spectrum by_way(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                  std::uint64_t key) const;
   Spectrum radiosity(const ElementCaster& caster, const ElementHit& hit,
                      const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
                      std::uint64_t key) const;

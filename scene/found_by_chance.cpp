@@ -1,4 +1,4 @@
-#include "raytrace/shading/found_by_chance.h"
+#include "scene/found_by_chance.h"
 
 namespace lightwell {
 
