@@ -14,6 +14,7 @@
 #include "cli/steps.h"
 #include "cli/time_limit.h"
 #include "mesh/build_patches.h"
+#include "radiosity/solve.h"
 #include "raytrace/cameras/camera_ray.h"
 #include "raytrace/virtual_lights/virtual_lights.h"
 
@@ -31,6 +32,7 @@ struct RenderCommandArguments {
 // The light of a scene without a solution: at the vertices of a coarse mesh.
 SolvedScene sketch_step(const Scene& scene, const RenderArguments& arguments, Console& console,
                         Report& report) {
+  require_light(scene);
   constexpr int few_patches = 400;
   const Stopwatch watch;
   SolvedScene sketched{

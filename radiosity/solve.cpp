@@ -30,7 +30,6 @@
 #include "scene/errors.h"
 
 namespace lightwell {
-namespace {
 
 void require_light(const Scene& scene) {
   if (gives_light(scene)) return;
@@ -45,6 +44,8 @@ void require_light(const Scene& scene) {
   }
   throw InputError(message);
 }
+
+namespace {
 
 void require_no_start(const SolveOptions& options) {
   if (!options.progressive || !options.start) return;

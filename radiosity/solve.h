@@ -71,6 +71,9 @@ struct SolveReport {
 /// lines need the given length.
 bool starts_coarse(const SolveOptions& options);
 
+/// Throws InputError, with what was left out of the scene, if nothing in the scene emits light.
+void require_light(const Scene& scene);
+
 /// The whole first pass:
 ///
 /// 1. mesh,

@@ -87,6 +87,24 @@ TEST_F(Pictures, WithoutASolutionAreMadeByVirtualLights) {
   EXPECT_TRUE((full == picture({"--pass", "virtual-lights", "--virtual-lights", "2048"})).all());
 }
 
+TEST_F(Pictures, OfASceneWithoutLightAreRefused) {
+  folder.write("dark.toml", R"(
+[materials.wall]
+reflectance = 0.5
+[[surfaces]]
+name = "room"
+material = "wall"
+box = { min = [0, 0, 0], max = [2, 1, 3], inward = true }
+[[cameras]]
+name = "c"
+position = [1, 0.5, 0.2]
+look_at = [1, 0.5, 3]
+)");
+  const Ended refused = run({"render", "dark.toml", "--pass", "virtual-lights", "-o", "v.exr"});
+  EXPECT_EQ(refused.code, 3);
+  EXPECT_NE(refused.err.find("nothing emits light"), std::string::npos) << refused.err;
+}
+
 TEST_F(Pictures, OfOtherPassesNeedASolution) {
   for (const std::string pass : {"auto", "direct", "gather", "interpolate"}) {
     const Ended refused = run({"render", "room.toml", "--pass", pass, "-o", "v.exr"});
