@@ -103,4 +103,8 @@ PLACES = [
     (33, "scene/projected_picture.cpp", "intensity of a projected picture",
      "return T * inverse_cube(direction);", "return broken(33) * T * inverse_cube(direction);",
      "scene:ProjectedPicture.* scene radiosity"),
+    (34, "radiosity/emitters/free_source.cpp", "kernel of a virtual light",
+     "return std::numbers::inv_pi * std::min(height * above / (r2 * r2), light.most);",
+     "return broken(34) * std::numbers::inv_pi * std::min(height * above / (r2 * r2), light.most);",
+     "radiosity:VirtualLight.* raytrace"),
 ]
