@@ -100,9 +100,9 @@ Spectrum VirtualLights::beyond_limit(const ElementCaster& caster, const Query& q
     if (hit.facet < 0) continue;
     const auto own = random_key(key, static_cast<std::uint64_t>(i), 1);
     const auto gain = query.relief ? static_cast<float>(query.relief->gain(ray.direction)) : 1.0f;
-    sum += gain * near_light(caster, ray, hit, d.z(), own);
+    sum += gain * near_light(caster, ray, hit, d.z(), query.depth, own);
     if (paths_.is_specular(hit.facet)) {
-      found_by_chance.emplace_back(gain * by_way(caster, ray, hit, own));
+      found_by_chance.emplace_back(gain * by_way(caster, ray, hit, query.depth, own));
     }
   }
   if (!found_by_chance.empty()) sum += limited_sum(found_by_chance, rays, of_lights);
@@ -112,7 +112,8 @@ Spectrum VirtualLights::beyond_limit(const ElementCaster& caster, const Query& q
 // Radiosity at the end of a ray as far as the limit keeps virtual lights from sending it. `cosine`:
 // of the ray to the normal at its start.
 Spectrum VirtualLights::near_light(const ElementCaster& caster, const Ray& ray,
-                                   const ElementHit& hit, double cosine, std::uint64_t key) const {
+                                   const ElementHit& hit, double cosine, int depth,
+                                   std::uint64_t key) const {
   const Spectrum none = Spectrum::Zero(lit_.scene.bands.count());
   if (hit.element < 0 || !paths_.is_diffuse(hit.facet)) return none;
   Eigen::Vector3d normal = element_center(lit_.mesh(), hit.element).normal;
@@ -120,20 +121,25 @@ Spectrum VirtualLights::near_light(const ElementCaster& caster, const Ray& ray,
   const double kernel = cosine * std::max(0.0, -normal.dot(ray.direction)) / (hit.t * hit.t);
   if (!(kernel > most_)) return none;
   const double share = (1.0 - most_ / kernel) * paths_.base_factor(caster, ray, hit);
-  return static_cast<float>(share) *
-         radiosity(caster, hit, ray.origin + hit.t * ray.direction, normal, key);
+  if (random_uniform(random_key(key, 6)) >= share) return none;
+  return radiosity(caster, {hit, ray.origin + hit.t * ray.direction, normal, depth}, key);
 }
 
 // Radiosity that a ray finds behind mirrors and glass. Shadow rays to virtual lights pass clear
 // panes.
 Spectrum VirtualLights::by_way(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                               std::uint64_t key) const {
+                               int depth, std::uint64_t key) const {
   Spectrum B = Spectrum::Zero(lit_.scene.bands.count());
+  std::uint64_t number = 0;  // of arrivals: weak ones go on by Russian roulette
   const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
     if (end.through_panes_only || end.hit.element < 0) return;
+    const Spectrum weight = static_cast<float>(end.base_factor) * end.throughput;
+    const float chance = std::min(1.0f, weight.maxCoeff());
+    const auto own = random_key(key, 7, number++);
+    if (!(random_uniform(own) < static_cast<double>(chance))) return;
     const Eigen::Vector3d normal = element_center(lit_.mesh(), end.hit.element).normal;
-    B += static_cast<float>(end.base_factor) * end.throughput *
-         radiosity(caster, end.hit, end.position, normal, random_key(key, 1));
+    B += weight / chance *
+         radiosity(caster, {end.hit, end.position, normal, depth}, random_key(own, 1));
   });
   if (losses.sky.size() > 0 && dome_.size() > 0) {
     B += std::numbers::pi_v<float> * dome_ * losses.sky;
@@ -141,41 +147,44 @@ Spectrum VirtualLights::by_way(const ElementCaster& caster, const Ray& ray, cons
   return B;
 }
 
-// B = M + rho (E_direct + E), by one light of each kind. M counts where DirectLight leaves it to
-// rays.
-Spectrum VirtualLights::radiosity(const ElementCaster& caster, const ElementHit& hit,
-                                  const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
+// B = M + rho (E_direct + E) + tau (the same behind), by one light of each kind. M counts where
+// DirectLight leaves it to rays. One of the two sides stands for both, and light that goes to and
+// fro in a corner or between sheets loses at each end what is not sent on, by Russian roulette: so
+// paths do not fork, and end.
+Spectrum VirtualLights::radiosity(const ElementCaster& caster, const End& end,
                                   std::uint64_t key) const {
   const PatchMesh& mesh = lit_.mesh();
-  const int p = mesh.patch[hit.element];
+  const ElementHit& hit = end.hit;
+  const int p = mesh.patch[hit.element], behind = mesh.patch_behind(p);
   Spectrum B = Spectrum::Zero(mesh.emission.cols());
   if (!lit_.direct_light.owns(hit.facet, hit.from_back)) B = mesh.emission.row(p).transpose();
-  const auto arriving = [&](const Eigen::Vector3d& side, int element, std::uint64_t own) {
-    const SurfacePoint at{position, side, hit.facet};
-    Spectrum E = lit_.direct_light.irradiance(
-        caster, {.at = at,
-                 .key = own,
-                 .shadows = {.min_rays = 1, .max_rays = 1},
-                 .one_stands_for_all = true,
-                 .base = lit_.direct_light.base_of(mesh.material[mesh.patch[element]])});
-    if (caustics_) E += caustics_->irradiance(position, side, element);
-    return Spectrum(
-        E + indirect_irradiance(caster, {.at = at, .key = random_key(own, 1), .effort = 0.0f}));
-  };
-  // Light that goes to and fro in a corner loses at each end what is not reflected.
   const Spectrum rho = mesh.reflectance.row(p).transpose();
-  const float survival = std::min(0.9f, rho.maxCoeff());
-  if (survival > 0.0f && random_uniform(random_key(key, 2)) < static_cast<double>(survival)) {
-    B += rho / survival * arriving(normal, hit.element, random_key(key, 3));
-  }
-  const int behind = mesh.patch_behind(p);
-  if (behind < 0) return B;
-  const Spectrum tau = mesh.transmittance.row(p).transpose();
-  const float through = std::min(0.9f, tau.maxCoeff());
-  if (through > 0.0f && random_uniform(random_key(key, 4)) < static_cast<double>(through)) {
-    B += tau / through * arriving(-normal, mesh.first_element[behind], random_key(key, 5));
-  }
-  return B;
+  Spectrum tau = Spectrum::Zero(rho.size());
+  if (behind >= 0) tau = mesh.transmittance.row(p).transpose();
+  // Of light in a gap so narrow that every ray ends nearby, 0.9^64 = 0.1 % goes on beyond the
+  // deepest end. The limit keeps the stack of a thread small.
+  constexpr float most_survive = 0.9f;
+  constexpr int deepest = 64;
+  const float reflected = rho.maxCoeff(), passed = tau.maxCoeff(), all = reflected + passed;
+  const float survival = std::min(most_survive, all);
+  const double u = random_uniform(random_key(key, 2));
+  if (!(u < static_cast<double>(survival)) || end.depth >= deepest) return B;
+  const bool reflects = u < static_cast<double>(survival * reflected / all);
+  const float chance = survival * (reflects ? reflected : passed) / all;
+  const SurfacePoint at{end.position, reflects ? end.normal : Eigen::Vector3d(-end.normal),
+                        hit.facet};
+  const int element = reflects ? hit.element : mesh.first_element[behind];
+  const std::uint64_t own = random_key(key, 3);
+  Spectrum E = lit_.direct_light.irradiance(
+      caster, {.at = at,
+               .key = own,
+               .shadows = {.min_rays = 1, .max_rays = 1},
+               .one_stands_for_all = true,
+               .base = lit_.direct_light.base_of(mesh.material[mesh.patch[element]])});
+  if (caustics_) E += caustics_->irradiance(at.position, at.normal, element);
+  E += indirect_irradiance(
+      caster, {.at = at, .key = random_key(own, 1), .effort = 0.0f, .depth = end.depth + 1});
+  return B + (reflects ? rho : tau) / chance * E;
 }
 
 RadiositySolution sketch(const LitScene& lit, const VirtualLights& virtual_lights,

@@ -55,6 +55,7 @@ class VirtualLights {
     /// Share of the whole effort, (0, 1]; 0: one light and one ray, for one of many samples.
     float effort = 1.0f;
     const ReliefSlope* relief = nullptr;  ///< light counts times its gain; null: flat
+    int depth = 0;  ///< ends of rays, one behind another, that the query is of
   };
   /// Indirect irradiance, W/m^2 per band. `caster` is that of the scene or its ElementCaster::at().
   /// Caustics are not included.
@@ -63,13 +64,17 @@ class VirtualLights {
  private:
   Spectrum beyond_limit(const ElementCaster& caster, const Query& query, int rays,
                         float of_lights) const;
+  /// The end of a ray, `depth` ends of rays behind a query.
+  struct End {
+    const ElementHit& hit;
+    Eigen::Vector3d position, normal;
+    int depth = 0;
+  };
   Spectrum near_light(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                      double cosine, std::uint64_t key) const;
-  Spectrum by_way(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                      double cosine, int depth, std::uint64_t key) const;
+  Spectrum by_way(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, int depth,
                   std::uint64_t key) const;
-  Spectrum radiosity(const ElementCaster& caster, const ElementHit& hit,
-                     const Eigen::Vector3d& position, const Eigen::Vector3d& normal,
-                     std::uint64_t key) const;
+  Spectrum radiosity(const ElementCaster& caster, const End& end, std::uint64_t key) const;
 
   LitScene lit_;
   LightPaths paths_;
