@@ -208,6 +208,34 @@ TEST(VirtualLights, SketchTheLightAtVertices) {
   EXPECT_NEAR(flux / arriving, 1.0, 0.06);
 }
 
+// Every ray in the gap ends nearby, on a varnished surface that reflects nine tenths: its path must
+// neither fork nor go on for ever.
+TEST(VirtualLights, EndInANarrowGapOfVarnishedPlates) {
+  const Paint varnished{.reflectance = 0.9f, .coat = 1.5f};
+  const TracedScene lit(SceneBuilder()
+                            .box({.reflectance = 0.5f}, {0, 0, 0}, {2, 2, 2}, true)
+                            .square(varnished, {1, 1, 0.5}, Vector3d::UnitZ(), 0.4)
+                            .square(varnished, {1, 1, 0.501}, -Vector3d::UnitZ(), 0.4)
+                            .square({.exitance = 10.0f}, {1, 1, 1.99}, -Vector3d::UnitZ(), 0.2)
+                            .build());
+  const VirtualLights lights({lit.scene, lit.caster, lit.direct_light}, {.count = 200});
+  const Ray down{.origin = {1, 1, 0.5005}, .direction = {0, 0, -1}};
+  ElementHit plate;
+  lit.caster.closest_hits({&down, 1}, {&plate, 1});
+  double sum = 0.0;
+  constexpr int keys = 200;
+  for (int k = 0; k < keys; ++k) {
+    const Spectrum E =
+        lights.indirect_irradiance(lit.caster, {.at = {{1, 1, 0.5}, Vector3d::UnitZ(), plate.facet},
+                                                .key = static_cast<std::uint64_t>(k)});
+    ASSERT_TRUE(E.isFinite().all());
+    sum += static_cast<double>(E.mean()) / keys;
+  }
+  // Light has to cross 400 widths of the gap by reflections of 0.9: next to none of the lamp's
+  // 10 W/m^2 arrives.
+  EXPECT_LT(sum, 0.01 * 10.0);
+}
+
 TEST(VirtualLights, OfADarkSceneAreNone) {
   const TracedScene lit(
       SceneBuilder().box({.reflectance = 0.5f}, {0, 0, 0}, {1, 1, 1}, true).build());
