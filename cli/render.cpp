@@ -59,9 +59,9 @@ SolvedScene sketch_step(const Scene& scene, const RenderArguments& arguments, Co
 
 SolvedScene solved_scene(const RenderCommandArguments& arguments, const Scene& scene,
                          Console& console, Report& report) {
-  return arguments.solution.empty()
-             ? sketch_step(scene, arguments.render, console, report)
-             : read_solution_step(arguments.solution, scene, console, report);
+  return arguments.render.needs_solution()
+             ? read_solution_step(arguments.solution, scene, console, report)
+             : sketch_step(scene, arguments.render, console, report);
 }
 
 int render_scene(const RenderCommandArguments& arguments, Console& console) {
@@ -103,7 +103,7 @@ Action add_render(CLI::App& command) {
       ->type_name("SCENE");
   command
       .add_option("solution", arguments->solution,
-                  "the solution, .vtp; none for --pass virtual-lights")
+                  "the solution, .vtp; not read for --pass virtual-lights")
       ->type_name("SOLUTION");
   command
       .add_option("-o,--output", arguments->outputs,

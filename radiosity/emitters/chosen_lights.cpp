@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "radiosity/emitters/direct_light.h"
 #include "radiosity/emitters/emitter_point.h"
@@ -40,14 +41,18 @@ void DirectLight::cluster_lights() {
     for (const LightBound& bound : bounds) is_clustered[static_cast<std::size_t>(bound.light)] = 1;
     return std::make_shared<const LightTree>(std::move(bounds));
   };
+  const auto lights_of = [](const std::vector<LightBound>& bounds) {
+    std::vector<int> lights;
+    if (bounds.size() < fewest_clustered) return lights;
+    for (const LightBound& bound : bounds) lights.push_back(bound.light);
+    return lights;
+  };
   for (std::size_t c = 0; c < channels; ++c) {
-    trees_[c] = {.of_emitters = tree_of(emitters[c]), .of_lamps = tree_of(lamps[c])};
-    const auto of_first = static_cast<int>(emitters_.size());
-    for (int i = 0; i < light_count(); ++i) {
-      const bool is_here = is_clustered[static_cast<std::size_t>(i)] != 0 &&
-                           static_cast<std::size_t>(channel_of(i)) == c;
-      if (is_here) (i < of_first ? trees_[c].emitters : trees_[c].lamps).push_back(i);
-    }
+    std::vector<int> of_emitters = lights_of(emitters[c]), of_lamps = lights_of(lamps[c]);
+    trees_[c] = {.of_emitters = tree_of(emitters[c]),
+                 .of_lamps = tree_of(lamps[c]),
+                 .emitters = std::move(of_emitters),
+                 .lamps = std::move(of_lamps)};
   }
   few_.resize(channels);
   for (int i = 0; i < light_count(); ++i) {

@@ -12,6 +12,7 @@
 #include "mesh/build_patches.h"
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
+#include "tests/sample_mean.h"
 
 namespace lightwell::lamp_samples_test {
 namespace {
@@ -75,26 +76,11 @@ double lobe_over(const Mirror& mirror, const Loop& square, int count) {
   return sum;
 }
 
-struct Mean {
-  double value = 0.0, standard_error = 0.0;  // as if draws were independent
-};
-
-Mean mean_of(const std::vector<double>& draws) {
-  double sum = 0.0, squares = 0.0;
-  for (const double draw : draws) {
-    sum += draw;
-    squares += draw * draw;
-  }
-  const auto count = static_cast<double>(draws.size());
-  const double mean = sum / count;
-  return {mean, std::sqrt(std::max(0.0, squares / count - mean * mean) / count)};
-}
-
 constexpr int draw_count = 1 << 14;
 
 // The mean of f / density over drawn directions is the integral of f over the lamps' solid angles:
 // the lobe's density gives the share of the lobe that meets lamps.
-Mean share_by_draws(const LampSamples& lamps, const Mirror& mirror) {
+test::SampleMean share_by_draws(const LampSamples& lamps, const Mirror& mirror) {
   const SobolPoints sobol(draw_count);
   std::vector<double> draws;
   for (int i = 0; i < draw_count; ++i) {
@@ -108,7 +94,7 @@ Mean share_by_draws(const LampSamples& lamps, const Mirror& mirror) {
                 1e-9);
     draws.back() = mirror.lobe.density(mirror.interaction, sample->direction) / sample->density;
   }
-  return mean_of(draws);
+  return test::mean_of(draws);
 }
 
 TEST(LampSamples, AreDrawnByTheStatedDensity) {
@@ -119,7 +105,7 @@ TEST(LampSamples, AreDrawnByTheStatedDensity) {
       const Mirror mirror(room.scene, roughness);
       double share = 0.0;
       for (int i = 0; i < count; ++i) share += lobe_over(mirror, Room::lamp(i), 64);
-      const Mean by_draws = share_by_draws(lamps, mirror);
+      const test::SampleMean by_draws = share_by_draws(lamps, mirror);
       std::printf("%d lamps, roughness %.1f: share of the lobe %.6g, by draws %.6g +- %.1g\n",
                   count, roughness, share, by_draws.value, by_draws.standard_error);
       // Four standard errors. The lobe changes by less than a thousandth of its greatest value
@@ -193,7 +179,7 @@ TEST(LampSamples, OfSourcesHaveTheSumAsTheirMean) {
     const auto drawn = lamps.draw_source(mirror.view, (i + 0.5) / draw_count);
     draws.push_back(drawn ? off_mirror(*drawn->source) / drawn->chance : 0.0);
   }
-  const Mean mean = mean_of(draws);
+  const test::SampleMean mean = test::mean_of(draws);
   std::printf("light of 101 sources off a rough mirror %.6g, by draws %.6g +- %.1g\n", sum,
               mean.value, mean.standard_error);
   // Evenly spaced numbers miss the mean of a step function of at most 101 steps by less than one

@@ -14,33 +14,18 @@
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 #include "tests/raytrace/lit_scene.h"
+#include "tests/sample_mean.h"
 
 namespace lightwell::virtual_lights_test {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr auto pi_f = std::numbers::pi_v<float>;
-
-struct Mean {
-  double value = 0.0, standard_error = 0.0;
-};
-
-Mean mean_of(const std::vector<double>& values) {
-  double sum = 0.0, squares = 0.0;
-  for (const double value : values) {
-    sum += value;
-    squares += value * value;
-  }
-  const auto n = static_cast<double>(values.size());
-  const double mean = sum / n;
-  return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / (n - 1.0))};
-}
-
 /// Mean over `sets` sets of about `count` virtual lights of the irradiance at a point, all light
 /// together.
-Mean irradiance_over_sets(const TracedScene& lit, const SurfacePoint& at, int count, int sets,
-                          const std::shared_ptr<const CausticMap>& caustics = nullptr) {
+test::SampleMean irradiance_over_sets(const TracedScene& lit, const SurfacePoint& at, int count,
+                                      int sets,
+                                      const std::shared_ptr<const CausticMap>& caustics = nullptr) {
   const LitScene of{lit.scene, lit.caster, lit.direct_light};
   std::vector<double> found;
   for (int set = 0; set < sets; ++set) {
@@ -56,7 +41,7 @@ Mean irradiance_over_sets(const TracedScene& lit, const SurfacePoint& at, int co
     }
     found.push_back(sum);
   }
-  return mean_of(found);
+  return test::mean_of(found);
 }
 
 /// A closed room of one reflectance with a lamp of 4 pi W in its middle.
@@ -86,7 +71,7 @@ TEST(VirtualLights, SendOnAllThatSurfacesReflect) {
     }
     flux.push_back(sum);
   }
-  const Mean found = mean_of(flux);
+  const test::SampleMean found = test::mean_of(flux);
   const double expected = 4.0 * std::numbers::pi * Integrator::rho / (1.0 - Integrator::rho);
   std::printf("reflected flux %.4f W, of virtual lights %.4f +- %.4f\n", expected, found.value,
               found.standard_error);
@@ -122,7 +107,8 @@ TEST(VirtualLights, LightAFurnaceEvenlyUpToItsCorners) {
     ElementHit floor;
     const Ray down{.origin = p + Vector3d(0, 0.3, 0), .direction = {0, -1, 0}};
     lit.caster.closest_hits({&down, 1}, {&floor, 1});
-    const Mean E = irradiance_over_sets(lit, {at.position, at.normal, floor.facet}, 400, 300);
+    const test::SampleMean E =
+        irradiance_over_sets(lit, {at.position, at.normal, floor.facet}, 400, 300);
     std::printf("E / B at (%.3f, %.3f): %.4f +- %.4f\n", p.x(), p.z(), E.value / B,
                 E.standard_error / B);
     EXPECT_NEAR(E.value, B, 4.0 * E.standard_error);
@@ -158,7 +144,7 @@ TEST(VirtualLights, GiveWhatAConvergedGatherGives) {
     const Ray down{.origin = p + Vector3d(0, 0, 0.1), .direction = {0, 0, -1}};
     ElementHit floor;
     lit.caster.closest_hits({&down, 1}, {&floor, 1});
-    const Mean E =
+    const test::SampleMean E =
         irradiance_over_sets(lit, {p, Vector3d::UnitZ(), floor.facet}, 400, 24, caustics);
     const ElementCaster caster(solved.mesh);
     ElementHit hit;
