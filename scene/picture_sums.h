@@ -18,7 +18,7 @@ struct TexelRect {
   bool contains(double x, double y) const {
     return x >= left && x < right && y >= top && y < bottom;
   }
-  /// What both rectangles cover; is_empty() if they do not meet.
+  /// The part that both rectangles cover; is_empty() if they do not meet.
   TexelRect within(const TexelRect& other) const;
 };
 
@@ -38,7 +38,7 @@ class PictureSums {
   double block(int left, int right, int top, int bottom, int channel) const;
 
   std::shared_ptr<const Texture> picture_;
-  // Of the square codes of all texels above and to the left of each corner, row by row.
+  // Sums of the square codes of all texels above and to the left of each corner, row by row.
   std::vector<std::uint64_t> sums_{};
 };
 

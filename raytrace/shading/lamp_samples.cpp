@@ -93,7 +93,7 @@ std::optional<DrawnSource> LampSamples::draw_source(const LobeView& from, double
   std::vector<double> up_to;
   double sum = of_lamps;
   for (const int s : distant_) {
-    // Each direction of the sun has the same irradiance across it.
+    // The sun has the same irradiance across all of its directions.
     const SourceSample middle = sample_source(sources_[s], from.position(), 0.5, 0.5);
     up_to.push_back(sum +=
                     from.weight(middle.irradiance * sources_[s].light.mean(), middle.direction));

@@ -23,7 +23,7 @@ struct Sender {
   int first_path = 0;  // the number of the first one among all paths
 };
 
-// What patches send on of light that they get, and of their own.
+// The light that patches send on: a share of what arrives, and their own.
 class Senders {
  public:
   explicit Senders(const LitScene& lit) : lit_(lit), mesh_(lit.mesh()) {

@@ -21,7 +21,7 @@ namespace lightwell {
 /// - A path goes on in a cosine-distributed direction, through mirrors and clear surfaces, to the
 ///   next diffuse surface, and ends there with probability 1 - rho (Russian roulette).
 ///
-/// Each point on a path is a virtual light. The mean over random numbers is the flux that the
+/// All points on a path are virtual lights. The mean over random numbers is the flux that the
 /// surfaces send on. `most` is VirtualLight::most; `key`: of the random numbers. The same lights
 /// for any number of threads. Throws Interrupted when progress says stop.
 std::vector<FreeSource> find_virtual_lights(const LitScene& lit, const LightPaths& paths,

@@ -161,8 +161,8 @@ Spectrum VirtualLights::radiosity(const ElementCaster& caster, const End& end,
   const Spectrum rho = mesh.reflectance.row(p).transpose();
   Spectrum tau = Spectrum::Zero(rho.size());
   if (behind >= 0) tau = mesh.transmittance.row(p).transpose();
-  // Of light in a gap so narrow that every ray ends nearby, 0.9^64 = 0.1 % goes on beyond the
-  // deepest end. The limit keeps the stack of a thread small.
+  // Light in a gap so narrow that every ray ends nearby loses 0.9^64 = 0.1 % to the deepest end.
+  // The limit keeps the stack of a thread small.
   constexpr float most_survive = 0.9f;
   constexpr int deepest = 64;
   const float reflected = rho.maxCoeff(), passed = tau.maxCoeff(), all = reflected + passed;

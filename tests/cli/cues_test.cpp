@@ -60,8 +60,8 @@ class CuesCommand : public CommandTest {
   std::string bytes(const std::string& file) const { return content_of(folder / file); }
 };
 
-/// What a cue does not name keeps the value of the cue before: each solution is that of all values
-/// given one by one, bit for bit.
+/// A channel that a cue does not name keeps the value of the cue before: each solution is that of
+/// all values given one by one, bit for bit.
 TEST_F(CuesCommand, EachSolutionIsThatOfItsChannels) {
   const auto json = run_json({"relight", "S.vtp", "--cues", "cues.toml", "-o", "out"});
   ASSERT_EQ(json["cues"].size(), 3u);

@@ -94,7 +94,7 @@ TEST(Threads, OneAndTwoGiveTheSameBits) {
   }
 }
 
-// Each way to choose among 50 lamps gives the energy of all, and says how many a point asks.
+// All ways to choose among 50 lamps give the energy of all; the report says how many a point asks.
 TEST(ManyLights, AreChosenAsAskedFor) {
   TemporaryFolder folder;
   std::string scene = R"(

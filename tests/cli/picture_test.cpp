@@ -80,8 +80,8 @@ TEST_F(Pictures, WithoutASolutionAreMadeByVirtualLights) {
                   draft = picture({"--pass", "virtual-lights", "--quality", "draft"});
   std::printf("mean radiance: gathered %.5f, by virtual lights %.5f, draft %.5f\n", gathered.mean(),
               full.mean(), draft.mean());
-  // Lengths of paths vary by less than their mean: 2048 (1 - rho) paths, of which rho = 0.5 leaves
-  // 1024, leave 1 / sqrt(1024) = 3 % of the indirect light, three times which is allowed.
+  // Lengths of paths vary by less than their mean: 2048 (1 - rho) paths, 1024 by the room's mean
+  // rho of 0.5, leave 1 / sqrt(1024) = 3 % of the indirect light, three times which is allowed.
   EXPECT_NEAR(full.mean() / gathered.mean(), 1.0f, 0.09f);
   // A draft shows the light of vertices: other pixels, lit as well.
   EXPECT_TRUE(draft.isFinite().all());

@@ -21,7 +21,7 @@ class TomlProjectors {
  public:
   explicit TomlProjectors(const TomlBands& bands) : basis_(bands.bands) {}
 
-  /// What the lamp's keys 'picture', 'beam', 'focus', 'lens' and 'shutters' describe. Throws
+  /// The projector of a lamp's keys 'picture', 'beam', 'focus', 'lens' and 'shutters'. Throws
   /// InputError at the key: a file that is missing, damaged, no picture or too large; optics out of
   /// range; shutters that leave nothing; keys of other distributions.
   TomlProjector read(const TomlTable& lamp, double metres_per_unit);
