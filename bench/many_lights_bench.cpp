@@ -21,7 +21,7 @@
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "scene/sampling.h"
 
 namespace {

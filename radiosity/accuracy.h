@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/refine/refine_options.h"
 #include "radiosity/solution/solution.h"
 

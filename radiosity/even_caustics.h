@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mesh/elements/refine_elements.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/solve.h"
 
 namespace lightwell {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/solution/solution.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/solution/scene_parts.h"
 

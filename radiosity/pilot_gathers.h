@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/elements/element_tree.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/refine/interpolated_vertices.h"
 #include "radiosity/solve.h"
 

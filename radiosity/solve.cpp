@@ -11,7 +11,7 @@
 
 #include "mesh/build_patches.h"
 #include "radiosity/effective_options.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/illuminate_elements.h"
 #include "radiosity/importance/importance.h"

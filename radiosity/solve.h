@@ -4,7 +4,7 @@
 
 #include "mesh/build_patches.h"
 #include "radiosity/accuracy.h"
-#include "radiosity/emitters/cut_sizes.h"
+#include "radiosity/direct_light/cut_sizes.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/journal/run_control.h"

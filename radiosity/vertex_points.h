@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/refine/interpolated_vertices.h"
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/pictures/image.h"
 #include "raytrace/shading/render_options.h"

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/display/light_meter.h"
 #include "raytrace/render.h"

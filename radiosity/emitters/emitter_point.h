@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 
 namespace lightwell {
 

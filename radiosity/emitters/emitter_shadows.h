@@ -1,6 +1,6 @@
 #pragma once
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/emitters/emission_tree.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"

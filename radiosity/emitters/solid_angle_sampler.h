@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 
 namespace lightwell {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/journal/run_control.h"
 
 namespace lightwell {

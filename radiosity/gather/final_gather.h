@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/direct_light.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/journal/run_control.h"
 #include "radiosity/solution/solution.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"

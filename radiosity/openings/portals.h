@@ -8,7 +8,7 @@
 
 #include "mesh/elements/element_caster.h"
 #include "mesh/geometry/box_tree.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/openings/find_openings.h"
 
 namespace lightwell {

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/direct_light.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "scene/progress.h"
 #include "scene/scene.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/light_channel.h"
 #include "scene/progress.h"

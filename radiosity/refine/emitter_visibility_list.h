@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 
 namespace lightwell {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mesh/patches/patch_mesh.h"
-#include "radiosity/emitters/noise_goal.h"
+#include "radiosity/sky/noise_goal.h"
 #include "radiosity/solution/scene_parts.h"
 
 namespace lightwell {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "mesh/elements/refine_elements.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/refine/corner_predictions.h"
 #include "radiosity/refine/error_reference.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mesh/elements/refine_elements.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/refine/interpolated_vertices.h"
 #include "radiosity/refine/refine_options.h"

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/solvers/progressive.h"
 #include "radiosity/visibility/point_form_factor.h"
 

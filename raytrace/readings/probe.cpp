@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "mesh/patches/round_grid.h"
-#include "radiosity/emitters/sky_light.h"
+#include "radiosity/sky/sky_light.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/refine/illuminance_bound.h"
 #include "raytrace/readings/read_error.h"

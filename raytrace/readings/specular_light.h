@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <span>
 
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/solution/solution.h"
 

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <vector>
 
-#include "radiosity/emitters/sky_light.h"
+#include "radiosity/sky/sky_light.h"
 
 namespace lightwell {
 namespace {

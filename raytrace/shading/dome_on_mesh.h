@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "mesh/patches/patch_mesh.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/solution/solution.h"
 
 namespace lightwell {

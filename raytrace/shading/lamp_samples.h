@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/direct_light.h"
-#include "radiosity/emitters/light_tree.h"
+#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/many_lights/light_tree.h"
 #include "scene/specular.h"
 
 namespace lightwell {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/gather/gap_light.h"
 #include "radiosity/openings/portals.h"

@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/journal/run_control.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/pictures/image.h"

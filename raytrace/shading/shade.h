@@ -10,8 +10,8 @@
 
 #include "mesh/elements/element_caster.h"
 #include "mesh/patches/pictured_emission.h"
-#include "radiosity/emitters/direct_light.h"
-#include "radiosity/emitters/sky_light.h"
+#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/sky/sky_light.h"
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/cameras/pixel_cone.h"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/shading/drawn_lamps.h"
 #include "scene/rays/ray_caster.h"

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "radiosity/emitters/free_source.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/paths/light_path.h"
 #include "raytrace/caustics/caustic_map.h"
 #include "scene/progress.h"

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/direct_light.h"
-#include "radiosity/emitters/lit_scene.h"
+#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/caustics/caustic_map.h"

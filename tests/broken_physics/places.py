@@ -65,7 +65,7 @@ PLACES = [
     (21, "radiosity/visibility/point_form_factor.cpp", "weight of a shadow ray to a shooter",
      "? cosines / (squared", "? broken(21) * cosines / (squared",
      "radiosity:PointFormFactor.*:VertexLight.* radiosity"),
-    (22, "radiosity/emitters/direct_light.cpp", "direct light of a sphere",
+    (22, "radiosity/direct_light/direct_light.cpp", "direct light of a sphere",
      "F = point_to_sphere(point, normal,", "F = broken(22) * point_to_sphere(point, normal,",
      "radiosity:DirectLight.*:PointToSphere.* radiosity raytrace"),
     (23, "radiosity/gather/hemisphere_gather.cpp", "mean of the final gather",

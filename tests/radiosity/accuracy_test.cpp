@@ -9,7 +9,7 @@
 
 #include "mesh/build_patches.h"
 #include "mesh/patches/patch_sampler.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/error_estimate.h"
 #include "radiosity/refine/error_reference.h"
 #include "radiosity/solve.h"

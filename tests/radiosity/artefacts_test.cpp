@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "tests/radiosity/lit_places.h"
 
 namespace lightwell::artefacts_test {

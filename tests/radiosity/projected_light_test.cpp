@@ -9,7 +9,7 @@
 
 #include "mesh/build_patches.h"
 #include "mesh/patches/patch_sampler.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/paths/free_light.h"
 #include "radiosity/paths/light_path.h"
 #include "scene/projected_picture.h"

@@ -12,7 +12,7 @@
 #include "mesh/build_patches.h"
 #include "mesh/elements/element_caster.h"
 #include "mesh/patches/patch_mesh.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/solution/solution.h"
 #include "raytrace/render.h"
 #include "scene/scene.h"

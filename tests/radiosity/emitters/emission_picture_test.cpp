@@ -5,7 +5,7 @@
 
 #include "mesh/build_patches.h"
 #include "mesh/patches/pictured_emission.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/emitters/emission_tree.h"
 #include "radiosity/emitters/emitter_point.h"
 #include "radiosity/solution/emitter_channels.h"

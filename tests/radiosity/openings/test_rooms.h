@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "mesh/build_patches.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "tests/radiosity/test_scenes.h"
 
 namespace lightwell::test {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "mesh/build_patches.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/gather/caustic_irradiance.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/paths/caustic_photons.h"

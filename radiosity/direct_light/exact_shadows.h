@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "mesh/geometry/box_tree.h"
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/visibility/occluders.h"
 #include "scene/surface_point.h"
 

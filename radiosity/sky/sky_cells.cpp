@@ -1,4 +1,4 @@
-#include "radiosity/emitters/sky_cells.h"
+#include "radiosity/sky/sky_cells.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +10,9 @@
 #include "radiosity/emitters/emission_tree.h"
 #include "radiosity/emitters/emitter_point.h"
 #include "radiosity/emitters/emitter_shadows.h"
-#include "radiosity/emitters/exact_shadows.h"
+#include "radiosity/direct_light/exact_shadows.h"
 #include "radiosity/emitters/find_emitters.h"
-#include "radiosity/emitters/sky_light.h"
+#include "radiosity/sky/sky_light.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"
 #include "scene/random_purpose.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "scene/surface_point.h"
 
 namespace lightwell {

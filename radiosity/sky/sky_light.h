@@ -5,9 +5,9 @@
 #include <memory>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/noise_goal.h"
-#include "radiosity/emitters/sky_cells.h"
-#include "radiosity/emitters/sky_sites.h"
+#include "radiosity/sky/noise_goal.h"
+#include "radiosity/sky/sky_cells.h"
+#include "radiosity/sky/sky_sites.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/relief.h"
 #include "scene/sampling.h"

@@ -1,4 +1,4 @@
-#include "radiosity/emitters/cut_sizes.h"
+#include "radiosity/direct_light/cut_sizes.h"
 
 #include <algorithm>
 #include <vector>

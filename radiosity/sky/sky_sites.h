@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/sky_cells.h"
+#include "radiosity/sky/sky_cells.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/surface_point.h"
 

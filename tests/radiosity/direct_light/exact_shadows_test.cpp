@@ -1,4 +1,4 @@
-#include "radiosity/emitters/exact_shadows.h"
+#include "radiosity/direct_light/exact_shadows.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 
 #include <gtest/gtest.h>
 

@@ -4,9 +4,9 @@
 #include <numbers>
 #include <utility>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/emitters/emitter_point.h"
-#include "radiosity/emitters/light_tree.h"
+#include "radiosity/many_lights/light_tree.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
 

@@ -1,4 +1,4 @@
-#include "radiosity/emitters/sky_sites.h"
+#include "radiosity/sky/sky_sites.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

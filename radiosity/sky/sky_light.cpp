@@ -1,4 +1,4 @@
-#include "radiosity/emitters/sky_light.h"
+#include "radiosity/sky/sky_light.h"
 
 #include <algorithm>
 #include <atomic>

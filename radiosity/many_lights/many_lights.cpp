@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "radiosity/emitters/direct_light.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
 

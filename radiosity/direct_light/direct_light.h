@@ -11,7 +11,7 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/emitters/free_source.h"
-#include "radiosity/emitters/noise_goal.h"
+#include "radiosity/sky/noise_goal.h"
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/coat.h"

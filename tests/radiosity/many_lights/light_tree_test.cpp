@@ -1,4 +1,4 @@
-#include "radiosity/emitters/light_tree.h"
+#include "radiosity/many_lights/light_tree.h"
 
 #include <gtest/gtest.h>
 
