@@ -1,16 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/closed_forms/polygon_form_factor.h"
-#include "radiosity/emitters/free_source.h"
+#include "radiosity/emitters/light_list.h"
+#include "radiosity/many_lights/light_choice.h"
 #include "radiosity/sky/noise_goal.h"
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/visibility/clear_panes.h"
@@ -22,45 +20,15 @@
 
 namespace lightwell {
 
-class EmissionTree;
 class ExactShadows;
-class LightTree;
+class LightSampler;
 class SkyLight;
+struct LightPilot;
 struct SkyGlow;
-
-/// An emitting facet whose light is a closed form times visibility, never left to random rays.
-struct Emitter {
-  int facet = 0;        ///< scene-wide facet number
-  Spectrum exitance{};  ///< M, W/m^2, from PatchMesh::emission; the mean of a picture
-  /// The picture by which the facet shines; null: it shines evenly.
-  std::shared_ptr<const EmissionTree> picture{};
-  Spectrum picture_scale{};  ///< exitance over the mean of `picture`
-  double area = 0.0;         ///< m^2, one side
-  bool emits_both_sides = false;
-  bool is_sphere = false;
-  Sphere sphere{};
-  std::vector<Loop> loops{};  ///< boundary, then holes; counter-clockwise seen from the front
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
-  std::vector<std::array<Eigen::Vector3d, 3>> triangles{};  ///< tile the polygon, to place samples
-  std::vector<double> area_cdf{};  ///< running share of the area, one per triangle, last is 1
-  /// Middle of the area, and the greatest distance of a point from there, m.
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  double radius = 0.0;
-};
 
 constexpr int most_shadow_rays = 256;  ///< that pictures and solves choose
 /// The limit for single points, which can afford more.
 constexpr int most_probe_shadow_rays = 1 << 14;
-
-/// How a point chooses among many lights. All but `sorted` are unbiased.
-enum class ManyLights {
-  lightcuts,  ///< clusters of the light tree (Walter et al. 2005)
-  sorted,     ///< lights in order of what they may give, until the rest is too little; the rest is
-           ///< visible as far as these are (Ward 1991, "Adaptive shadow testing for ray tracing")
-  importance,  ///< lights that may give much, and two drawn among all others (Shirley, Wang &
-               ///< Zimmerman 1996, "Monte Carlo techniques for direct lighting calculations")
-  all,         ///< every light
-};
 
 /// Shadow rays from a point to an emitter that gives all of the point's direct light: `min_rays`
 /// stratified rays first; if some are blocked and some not, `max_rays`. Emitters that give less
@@ -72,8 +40,7 @@ struct ShadowOptions {
   /// most_sky_rays.
   int sky_rays = 0;
   /// The greatest share of a point's light that a cluster of lights may give (see LightTree); 0:
-  /// each light is asked. A channel of fewer than DirectLight::fewest_clustered lights has no
-  /// clusters.
+  /// each light is asked. A channel of fewer than fewest_clustered lights has no clusters.
   double cluster_share = 0.01;
   /// The lights that are asked where there are clusters; `sorted` leaves a rest of cluster_share of
   /// the light, `importance` draws among lights that may give less than that each.
@@ -93,9 +60,6 @@ struct EmitterVisibility {
   std::uint64_t whole = 0;   ///< bit i: light i is fully visible; the first 64 lights
   std::uint64_t hidden = 0;  ///< bit i: light i is fully hidden
 };
-
-/// Lights that give a sum: all, free sources only, sky and sun only, or all but the sky's dome.
-enum class Lights { all, free, distant, all_but_dome };
 
 /// A point that direct light is computed at, and with which effort.
 struct LightQuery {
@@ -134,8 +98,7 @@ struct LightQuery {
 /// An emitter that shines by a picture is a sum of closed forms of its parts (see EmissionTree),
 /// and its shadow rays weigh what they see by the picture.
 ///
-/// Free sources (lamps without surface, sky and sun) are always direct light. *Lights* are the
-/// emitters, followed by the free sources.
+/// Free sources (lamps without surface, sky and sun) are always direct light.
 ///
 /// Points ask not all of many lights: of a channel with fewest_clustered emitters or lamps, a point
 /// asks those that give it much, and two drawn members of each cluster of others (see LightTree and
@@ -155,21 +118,21 @@ class DirectLight {
   /// The light of `sources` alone, none of which is the sky's dome, all in channel 0.
   DirectLight(const Scene& scene, std::vector<FreeSource> sources);
 
-  const std::vector<Emitter>& emitters() const { return emitters_; }
-  const std::vector<FreeSource>& free_sources() const { return free_sources_; }
+  const std::vector<Emitter>& emitters() const { return lights_->emitters; }
+  const std::vector<FreeSource>& free_sources() const { return lights_->sources; }
   /// The dome of the sky; null if there is none.
   const FreeSource* dome() const;
   /// The light of the dome; null if there is none.
   const SkyLight* sky() const { return sky_.get(); }
-  int light_count() const { return static_cast<int>(emitters_.size() + free_sources_.size()); }
+  int light_count() const { return lights_->count(); }
   /// True if the emission of that side of a facet is direct light, which other rays must not count
   /// again. Only the outside of a sphere is; its inside sees itself all around.
   bool owns(int facet, bool is_back) const {
     return owned_[facet] == Owned::whole || (owned_[facet] == Owned::front && !is_back);
   }
   /// The number of channels; 1 without channels.
-  int channel_count() const { return channel_count_; }
-  int column_count() const { return channel_count_ * bands_; }
+  int channel_count() const { return lights_->channel_count; }
+  int column_count() const { return channel_count() * bands_; }
   /// The first column of a facet's emission; 0 for a facet that does not emit.
   int first_column(int facet) const { return first_column_[facet]; }
 
@@ -181,15 +144,6 @@ class DirectLight {
   double form_factor(const Emitter& emitter, const ElementCaster& caster,
                      const LightQuery& query) const;
 
-  /// The fewest emitters, or lamps, of a channel that are clustered. A cut of fewer has few
-  /// clusters, and saves less than its pilot costs.
-  static constexpr std::size_t fewest_clustered = 32;
-  /// A light that a point asks for. What the light gives counts over `chance`.
-  struct Choice {
-    int light = 0;
-    double chance = 1.0;
-    int cluster = -1;  ///< of which two are drawn; -1: a light by itself
-  };
   /// True if any emitters are clustered.
   bool has_emitter_clusters() const;
   /// True if any emitters or lamps are clustered.
@@ -198,8 +152,8 @@ class DirectLight {
   int asked(const ElementCaster& caster, const LightQuery& query) const;
   /// The emitters that a point asks for, no cluster of which gives more than `share` of the light
   /// of all. `key`: of the random numbers that draw members.
-  std::vector<Choice> chosen_emitters(const SurfacePoint& at, std::uint64_t key,
-                                      double share) const;
+  std::vector<LightSample> chosen_emitters(const SurfacePoint& at, std::uint64_t key,
+                                           double share) const;
 
   /// The closed form alone, without occluders.
   double unoccluded_form_factor(const Emitter& emitter, const SurfacePoint& at) const;
@@ -235,33 +189,12 @@ class DirectLight {
                       EmitterVisibility* visibility = nullptr) const;
 
  private:
-  int first_light(Lights lights) const;
-  bool is_on(int light) const;
-  bool is_dome(int light) const { return !is_emitter(light) && source(light).is_dome(); }
-  /// A light that is_emitter() is not.
-  const FreeSource& source(int light) const {
-    return free_sources_[light - static_cast<int>(emitters_.size())];
-  }
-  bool is_emitter(int light) const { return light < static_cast<int>(emitters_.size()); }
-  int channel_of(int light) const;
-  void cluster_lights();
-  /// `light`: what lights of each channel give the point, W/m^2; empty: not known yet.
-  std::vector<Choice> chosen_lights(const LightQuery& query,
-                                    const std::vector<double>& light) const;
   struct Shadows;
   Shadows shadows(const ElementCaster& caster, const LightQuery& query,
-                  const std::vector<double>& light) const;
-  std::vector<double> pilot_light(const ElementCaster& caster, const LightQuery& query) const;
-  std::optional<Choice> one_for_all(int channel, const LightQuery& query) const;
-  std::vector<const LightTree*> trees_of(int channel, Lights lights) const;
-  std::vector<int> clustered_lights(int channel, Lights lights) const;
-  void add_important(int channel, const LightQuery& query, double light,
-                     std::vector<Choice>& choices) const;
-  void add_sorted(int channel, const LightQuery& query, double light,
-                  std::vector<Choice>& choices) const;
-  void add_cut(std::span<const LightTree* const> trees, const SurfacePoint& at, std::uint64_t key,
-               double share, double light, std::vector<Choice>& choices) const;
-  double approximate_light(int light, const SurfacePoint& at) const;
+                  const std::vector<LightSample>& samples) const;
+  std::optional<LightPilot> pilot(const ElementCaster& caster, const LightQuery& query) const;
+  std::vector<LightSample> chosen_lights(const ElementCaster& caster,
+                                         const LightQuery& query) const;
   /// Factor of the light that arrives from a direction: that of a coated base, of relief, or both.
   struct Receiver {
     const CoatedBase* base = nullptr;
@@ -279,23 +212,15 @@ class DirectLight {
   void for_each_light(const ElementCaster& caster, const LightQuery& query,
                       EmitterVisibility* visibility, Add&& add) const;
 
-  std::vector<Emitter> emitters_;
-  std::vector<FreeSource> free_sources_;
-  /// Trees of the emitters and of the lamps of a channel; null where there are few.
-  struct Trees {
-    std::shared_ptr<const LightTree> of_emitters{}, of_lamps{};
-    std::vector<int> emitters{}, lamps{};  ///< the lights of each
-  };
-  std::vector<Trees> trees_{};             // by channel
-  std::vector<std::vector<int>> few_;      // by channel: lights that are on and in no tree
-  std::vector<int> off_;                   // emitters that are switched off
+  std::shared_ptr<const LightList> lights_;
+  std::shared_ptr<const LightSampler> sampler_;
   std::shared_ptr<const SkyLight> sky_{};  // null: there is no dome
   std::shared_ptr<const ExactShadows> exact_{};
   enum class Owned : char { nothing, front, whole };
   std::vector<Owned> owned_;
   std::vector<int> first_column_;
   CoatedBases bases_;
-  int bands_ = 0, channel_count_ = 1;
+  int bands_ = 0;
   SobolPoints samples_;
   ClearPanes panes_;
 };

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/emitters/emitter.h"
 
 namespace lightwell {
 

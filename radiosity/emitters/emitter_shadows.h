@@ -1,9 +1,10 @@
 #pragma once
 
-#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/emitters/emission_tree.h"
+#include "radiosity/emitters/emitter.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"
+#include "scene/surface_point.h"
 
 namespace lightwell {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mesh/patches/patch_mesh.h"
-#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/emitters/emitter.h"
 #include "scene/scene.h"
 
 namespace lightwell {

@@ -4,7 +4,7 @@
 #include <array>
 #include <vector>
 
-#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/emitters/emitter.h"
 
 namespace lightwell {
 

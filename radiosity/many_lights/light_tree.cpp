@@ -327,8 +327,17 @@ LightTree::Draw LightTree::draw(int node, const SurfacePoint& at, double u) cons
   return draw_by(node, u, weight);
 }
 
-std::vector<CutPart> light_cut(std::span<const LightTree* const> trees, const SurfacePoint& at,
-                               double share, double light, int most) {
+std::vector<CutPart> roots(const std::vector<const LightTree*>& trees, const SurfacePoint& at) {
+  std::vector<CutPart> parts;
+  for (const LightTree* tree : trees) {
+    const LightTree::Seen seen = tree->root(at);
+    if (seen.bound > 0.0) parts.push_back({tree, seen});
+  }
+  return parts;
+}
+
+std::vector<CutPart> light_cut(std::vector<CutPart> parts, const SurfacePoint& at,
+                               const CutGoal& goal) {
   std::vector<CutPart> clusters, done;
   double about = 0.0;
   const auto by_bound = [](const CutPart& a, const CutPart& b) {
@@ -344,12 +353,12 @@ std::vector<CutPart> light_cut(std::span<const LightTree* const> trees, const Su
     clusters.push_back({tree, seen});
     std::push_heap(clusters.begin(), clusters.end(), by_bound);
   };
-  for (const LightTree* tree : trees) add(tree, tree->root(at));
+  for (const CutPart& part : parts) add(part.tree, part.seen);
   const auto is_over = [&](const CutPart& part) {
     // Nothing can be drawn from a cluster without a finite bound.
     if (!std::isfinite(part.seen.bound)) return true;
-    return part.seen.bound > share * (light > 0.0 ? light : about) &&
-           static_cast<int>(clusters.size() + done.size()) < most;
+    return part.seen.bound > goal.share * (goal.light > 0.0 ? goal.light : about) &&
+           static_cast<int>(clusters.size() + done.size()) < goal.most;
   };
   while (!clusters.empty() && is_over(clusters.front())) {
     std::pop_heap(clusters.begin(), clusters.end(), by_bound);

@@ -7,7 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/emitters/emitter.h"
+#include "radiosity/emitters/free_source.h"
 #include "scene/surface_point.h"
 
 namespace lightwell {
@@ -138,11 +139,19 @@ struct CutPart {
   LightTree::Seen seen{};
 };
 
-/// The coarsest cut through trees in which no cluster can give more than `share` of `light`, W/m^2,
-/// the light that arrives (Walter et al. 2005); `light` 0: of what all parts give about. At most
-/// `most` parts, and more only where a point lies within clusters. Parts that give nothing are left
-/// out.
-std::vector<CutPart> light_cut(std::span<const LightTree* const> trees, const SurfacePoint& at,
-                               double share, double light, int most);
+/// The coarsest cut of all: the roots of trees that give a point light.
+std::vector<CutPart> roots(const std::vector<const LightTree*>& trees, const SurfacePoint& at);
+
+/// How fine a cut is to be.
+struct CutGoal {
+  double share = 0.01;  ///< of the light, that a cluster may give at most
+  double light = 0.0;   ///< that arrives, W/m^2; 0: what all parts give about
+  int most = 0;         ///< parts; more only where a point lies within clusters
+};
+
+/// The coarsest cut below the parts of a cut that meets a goal (Walter et al. 2005). Parts that
+/// give nothing are left out.
+std::vector<CutPart> light_cut(std::vector<CutPart> parts, const SurfacePoint& at,
+                               const CutGoal& goal);
 
 }  // namespace lightwell

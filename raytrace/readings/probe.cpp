@@ -9,9 +9,9 @@
 #include <optional>
 
 #include "mesh/patches/round_grid.h"
-#include "radiosity/sky/sky_light.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/refine/illuminance_bound.h"
+#include "radiosity/sky/sky_light.h"
 #include "raytrace/readings/read_error.h"
 #include "raytrace/readings/specular_light.h"
 #include "raytrace/readings/sure_gather.h"

@@ -3,8 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "radiosity/emitters/free_source.h"
 #include "radiosity/direct_light/lit_scene.h"
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/paths/light_path.h"
 #include "raytrace/caustics/caustic_map.h"
 #include "scene/progress.h"
