@@ -13,6 +13,7 @@
 
 #include "mesh/build_patches.h"
 #include "mesh/elements/element_caster.h"
+#include "radiosity/direct_light/direct_light.h"
 #include "scene/projected_picture.h"
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
@@ -202,12 +203,11 @@ TEST(LightTree, DrawsEveryLightByItsChance) {
   const Hall hall(20, 20);
   const DirectLight light(hall.scene, hall.mesh);
   const LightTree tree = tree_of(light);
-  const LightTree* const trees = &tree;
   int clusters = 0;
   for (int k = 0; k < 20; ++k) {
     const SurfacePoint at = point(k);
     const std::vector<double> E = unoccluded(light, at);
-    for (const CutPart& part : light_cut({&trees, 1}, at, 0.2, 0.0, 1 << 20)) {
+    for (const CutPart& part : light_cut(roots({&tree}, at), at, {.share = 0.2, .most = 1 << 20})) {
       if (!tree.is_cluster(part.seen.node)) continue;
       ++clusters;
       // The chances follow from how often each light is drawn, to 1/draws at each of its ends.
@@ -233,7 +233,6 @@ TEST(LightTree, CutsHaveNoClusterAboveTheShare) {
   const Hall hall(100, 100);
   const DirectLight light(hall.scene, hall.mesh);
   const LightTree tree = tree_of(light);
-  const LightTree* const trees = &tree;
   for (int k = 0; k < 50; ++k) {
     const SurfacePoint at = point(k);
     // A finer cut has the single lights of a coarser one, and more. Halves that give nothing are
@@ -241,7 +240,8 @@ TEST(LightTree, CutsHaveNoClusterAboveTheShare) {
     int before = 0;
     for (const double share : {0.1, 0.02, 0.0}) {
       int singles = 0;
-      for (const CutPart& part : light_cut({&trees, 1}, at, share, 7.0, 1 << 20)) {
+      for (const CutPart& part :
+           light_cut(roots({&tree}, at), at, {.share = share, .light = 7.0, .most = 1 << 20})) {
         if (tree.is_cluster(part.seen.node)) {
           EXPECT_LE(part.seen.bound, share * 7.0);
         } else {
@@ -252,7 +252,8 @@ TEST(LightTree, CutsHaveNoClusterAboveTheShare) {
       before = singles;
     }
     // Single lights alone, as far as they give anything.
-    for (const CutPart& part : light_cut({&trees, 1}, at, 0.0, 7.0, 1 << 20)) {
+    for (const CutPart& part :
+         light_cut(roots({&tree}, at), at, {.share = 0.0, .light = 7.0, .most = 1 << 20})) {
       EXPECT_FALSE(tree.is_cluster(part.seen.node));
     }
   }
