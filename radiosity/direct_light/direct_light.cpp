@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "radiosity/direct_light/cluster_members.h"
 #include "radiosity/direct_light/exact_shadows.h"
 #include "radiosity/direct_light/light_shadows.h"
 #include "radiosity/emitters/emission_tree.h"
@@ -96,7 +97,7 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
   LightShadow shadow{
       .emitter = &emitter, .F = unoccluded_form_factor(emitter, query.at), .key = query.key};
   if (!(shadow.F > 0.0)) return 0.0;
-  set_effort({&shadow, 1}, 1, query.shadows);
+  set_effort({&shadow, 1}, {0.0}, query.shadows);
   const std::less<const Emitter*> before;
   const std::vector<Emitter>& known = emitters();
   if (before(&emitter, known.data()) || !before(&emitter, known.data() + known.size())) {
@@ -146,15 +147,29 @@ SkyGlow DirectLight::dome_glow(const ElementCaster& caster, const LightQuery& qu
 struct DirectLight::Shadows {
   std::vector<LightShadow> lights{};
   std::vector<ShadowTally> tallies{};
+  std::vector<MemberLight> members{};
   std::optional<LightShadow> dome{};
 };
+
+// The light that F of an emitter without a picture, or the kernel of a source, multiplies.
+Spectrum DirectLight::light_of(int light, const Eigen::Vector3d& point) const {
+  return lights_->is_emitter(light) ? emitters()[light].exitance
+                                    : light_towards(lights_->source(light), point);
+}
 
 // Lights above the horizon of a point and what their shadow rays find.
 DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const LightQuery& query,
                                           const std::vector<LightSample>& samples) const {
   const auto& [point, normal, facet] = query.at;
+  const ClearPanes* const panes = panes_.empty() ? nullptr : &panes_;
   Shadows found;
-  for (const auto& [i, chance, cluster] : samples) {
+  std::vector<LightSample> members;
+  for (const LightSample& sample : samples) {
+    const auto& [i, chance, cluster] = sample;
+    if (is_member(sample, *lights_)) {
+      members.push_back(sample);
+      continue;
+    }
     LightShadow shadow{.index = i,
                        .channel = lights_->channel(i),
                        .key = random_key(query.key, static_cast<std::uint64_t>(i)),
@@ -180,12 +195,17 @@ DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const Lig
     }
     found.lights.push_back(std::move(shadow));
   }
-  set_effort(found.lights, channel_count(), query.shadows);
+  found.members = member_lights(members, *lights_, caster, query.at, query.key, panes);
+  std::vector<double> of_members(static_cast<std::size_t>(channel_count()), 0.0);
+  for (const MemberLight& m : found.members) {
+    of_members[static_cast<std::size_t>(lights_->channel(m.light))] +=
+        m.F * light_of(m.light, point).mean();
+  }
+  set_effort(found.lights, std::move(of_members), query.shadows);
   for (LightShadow& shadow : found.lights) {
     if (shadow.emitter) find_share(*exact_, caster, query.at, shadow);
   }
-  found.tallies =
-      cast_shadows(found.lights, caster, samples_, query.at, panes_.empty() ? nullptr : &panes_);
+  found.tallies = cast_shadows(found.lights, caster, samples_, query.at, panes);
   return found;
 }
 
@@ -214,16 +234,16 @@ std::optional<LightPilot> DirectLight::pilot(const ElementCaster& caster,
   const Shadows found = shadows(caster, coarse, pilot.cut.samples);
   std::vector<double> all(static_cast<std::size_t>(channel_count()), 0.0);
   pilot.light = all;
-  pilot.difference.assign(pilot.cut.parts.size(), 0.0);
+  const auto add = [&](int channel, double E, double arriving) {
+    all[static_cast<std::size_t>(channel)] += E;
+    pilot.light[static_cast<std::size_t>(channel)] += E * arriving;
+  };
   for (std::size_t i = 0; i < found.lights.size(); ++i) {
     const LightShadow& s = found.lights[i];
-    const double E = s.F * s.light().mean() / s.chance;
-    const double arriving = E * arriving_share(found.tallies[i]);
-    all[static_cast<std::size_t>(s.channel)] += E;
-    pilot.light[static_cast<std::size_t>(s.channel)] += arriving;
-    if (s.cluster < 0) continue;
-    double& difference = pilot.difference[static_cast<std::size_t>(s.cluster)];
-    difference = std::abs(arriving - difference);
+    add(s.channel, s.F * s.light().mean() / s.chance, arriving_share(found.tallies[i]));
+  }
+  for (const MemberLight& m : found.members) {
+    add(lights_->channel(m.light), m.F * light_of(m.light, query.at.position).mean(), m.arriving());
   }
   // A hundredth of the unobstructed light at least: a pilot may miss all that arrives, and clusters
   // that are small against nothing would be single lights.
@@ -263,7 +283,8 @@ template <class Add>
 void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
                                  EmitterVisibility* visibility, Add&& add) const {
   const Receiver receiver{.base = query.base, .relief = query.relief};
-  const auto [shadows, tallies, dome] = this->shadows(caster, query, chosen_lights(caster, query));
+  const auto [shadows, tallies, members, dome] =
+      this->shadows(caster, query, chosen_lights(caster, query));
   if (visibility) *visibility = {};
   double drawn_noise2 = 0.0;
   if (dome) {
@@ -274,6 +295,20 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
   }
   // The difference of the two members of each cluster, W/m^2: both estimate half of its light.
   std::vector<double> of_clusters;
+  const auto add_to_cluster = [&](int cluster, double E) {
+    const auto number = static_cast<std::size_t>(cluster);
+    of_clusters.resize(std::max(of_clusters.size(), number + 1), 0.0);
+    of_clusters[number] = E - of_clusters[number];
+  };
+  for (const MemberLight& m : members) {
+    const int channel = lights_->channel(m.light);
+    const Spectrum light = light_of(m.light, query.at.position);
+    const double F =
+        receiver.is_plain() ? m.F : m.F * receiver.factor(m.direction, query.at.normal);
+    if (m.blocked == 0) add(channel, light, static_cast<float>(F));
+    if (m.passed.size() > 0) add(channel, light, Spectrum(static_cast<float>(F) * m.passed));
+    if (visibility) add_to_cluster(m.cluster, F * m.arriving() * light.mean());
+  }
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const LightShadow& s = shadows[i];
     const ShadowTally& tally = tallies[i];
@@ -297,9 +332,7 @@ void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& 
     if (is_dimmed) add(s.channel, s.light(), through);
     if (!visibility) continue;
     if (s.cluster >= 0) {
-      const auto cluster = static_cast<std::size_t>(s.cluster);
-      of_clusters.resize(std::max(of_clusters.size(), cluster + 1), 0.0);
-      of_clusters[cluster] = F * arriving_share(tally) * s.light().mean() - of_clusters[cluster];
+      add_to_cluster(s.cluster, F * arriving_share(tally) * s.light().mean());
       continue;
     }
     const bool is_behind_panes = is_dimmed && !tally.is_mixed();

@@ -192,6 +192,7 @@ class DirectLight {
   struct Shadows;
   Shadows shadows(const ElementCaster& caster, const LightQuery& query,
                   const std::vector<LightSample>& samples) const;
+  Spectrum light_of(int light, const Eigen::Vector3d& point) const;
   std::optional<LightPilot> pilot(const ElementCaster& caster, const LightQuery& query) const;
   std::vector<LightSample> chosen_lights(const ElementCaster& caster,
                                          const LightQuery& query) const;

@@ -59,10 +59,11 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
 // with shares w of the light is least with rays in proportion to w^(4/5). Shares are taken within a
 // channel, since other channels may be dimmed. Fewer than 8 first rays would often miss an occluder
 // that hides only a part. A member of a cluster may miss it: the cluster gives little.
-void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOptions& options) {
+void set_effort(std::span<LightShadow> shadows, std::vector<double> other_light,
+                const ShadowOptions& options) {
   const auto light = [](const LightShadow& s) { return s.F * s.light().mean() / s.chance; };
-  std::vector<double> most_light(channels, 0.0);
-  for (const LightShadow& s : shadows) most_light[s.channel] += light(s);
+  std::vector<double>& all_light = other_light;
+  for (const LightShadow& s : shadows) all_light[s.channel] += light(s);
   const int most = std::clamp(options.max_rays, 1, most_probe_shadow_rays);
   const int least = std::clamp(options.min_rays, 1, most);
   constexpr int first_rays = 8;
@@ -71,7 +72,7 @@ void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOption
       s.least = s.most = 1;
       continue;
     }
-    const double all = most_light[s.channel];
+    const double all = all_light[s.channel];
     const double effort = all > 0.0 ? std::pow(light(s) / all, 0.8) : 1.0;
     s.most = std::clamp(static_cast<int>(std::ceil(effort * most)), 1, most);
     const int fewest = s.cluster >= 0 ? 1 : std::min(first_rays, least);

@@ -41,8 +41,10 @@ struct LightShadow {
 /// Light of an emitter with a picture as a point sees all of it, over the emitter's form factor F.
 Spectrum pictured_light(const Emitter& emitter, const EmissionTree::View& view, double F);
 
-/// Decides the rays of lights that a point asks together. `channels`: the number of channels.
-void set_effort(std::span<LightShadow> shadows, int channels, const ShadowOptions& options);
+/// Decides the rays of lights that a point asks together. `other_light`: by channel, the light of
+/// others that it asks, W/m^2, mean of the bands.
+void set_effort(std::span<LightShadow> shadows, std::vector<double> other_light,
+                const ShadowOptions& options);
 
 /// Finds the visible share of the light's emitter without rays, or else what its rays need.
 void find_share(const ExactShadows& exact, const ElementCaster& caster, const SurfacePoint& at,

@@ -150,9 +150,9 @@ std::vector<PotentialLight> LightSampler::clustered_lights(int channel,
 }
 
 LightCut LightSampler::pilot_cut(const LightChoice& choice) const {
-  // A quarter of the clusters cost a quarter of the time, and a pilot that is off by a tenth makes
-  // clusters off by a tenth.
-  constexpr double coarser = 4.0;
+  // A cut of clusters that are 20 times as large asks a sixth of the lights, and a pilot that is
+  // off by a tenth makes clusters off by a tenth.
+  constexpr double coarser = 20.0;
   LightCut cut;
   for (int c = 0; c < lights_->channel_count; ++c) {
     add_few(c, choice.lights, cut.samples);
@@ -168,24 +168,17 @@ LightCut LightSampler::pilot_cut(const LightChoice& choice) const {
   return cut;
 }
 
-// The cut of a channel that takes the pilot's further.
-std::vector<CutPart> LightSampler::further_cut(int channel, const LightChoice& choice,
-                                               const LightPilot& pilot) const {
-  constexpr double even = 0.5;
-  const auto c = static_cast<std::size_t>(channel);
-  const double most = choice.cluster_share * pilot.light[c];
-  std::vector<CutPart> kept, split;
-  for (std::size_t k = c == 0 ? 0 : pilot.cut.end[c - 1]; k < pilot.cut.end[c]; ++k) {
-    (pilot.difference[k] > even * most ? split : kept).push_back(pilot.cut.parts[k]);
-  }
-  const std::vector<CutPart> finer =
-      light_cut(std::move(split), choice.at,
-                {.share = choice.cluster_share,
-                 .light = pilot.light[c],
-                 .most = most_cut_parts - static_cast<int>(kept.size())});
-  kept.insert(kept.end(), finer.begin(), finer.end());
-  return kept;
+namespace {
+
+// The parts of a channel in a pilot's cut.
+std::vector<CutPart> parts_of(const LightPilot& pilot, std::size_t channel) {
+  const auto first = pilot.cut.parts.begin();
+  const std::size_t begin = channel == 0 ? 0 : pilot.cut.end[channel - 1];
+  return {first + static_cast<std::ptrdiff_t>(begin),
+          first + static_cast<std::ptrdiff_t>(pilot.cut.end[channel])};
 }
+
+}  // namespace
 
 std::vector<LightSample> LightSampler::samples(const LightChoice& choice,
                                                const LightPilot* pilot) const {
@@ -201,7 +194,11 @@ std::vector<LightSample> LightSampler::samples(const LightChoice& choice,
       continue;
     }
     if (choice.many_lights == ManyLights::lightcuts) {
-      for (const CutPart& part : further_cut(c, choice, *pilot)) {
+      const auto channel = static_cast<std::size_t>(c);
+      for (const CutPart& part : light_cut(parts_of(*pilot, channel), choice.at,
+                                           {.share = choice.cluster_share,
+                                           .light = pilot->light[channel],
+                                           .most = most_cut_parts})) {
         add_part(part, cluster++, choice, samples);
       }
       continue;

@@ -25,9 +25,6 @@ struct LightPilot {
   LightCut cut{};
   /// By channel: the light that arrives, W/m^2, mean of the bands.
   std::vector<double> light{};
-  /// By part of the cut, in the same unit: the difference between what its two members show of its
-  /// light, each for one half; 0 for a single light.
-  std::vector<double> difference{};
 };
 
 /// Chooses the lights that a point asks for. Lights of a channel that are on and fewer than
@@ -43,8 +40,7 @@ class LightSampler {
 
   /// The lights of a cut that is coarser than asked for, for LightPilot.
   LightCut pilot_cut(const LightChoice& choice) const;
-  /// The lights that a point asks for. Those of a cut take a pilot's cut further: clusters whose
-  /// members differ are split until none can give more than the share asked for. `pilot` null: no
+  /// The lights that a point asks for. Those of a cut take a pilot's cut further. `pilot` null: no
   /// light of the choice is clustered, or all are asked.
   ///
   /// The mean over keys of the light over chances is the sum over all lights, whatever the pilot,
@@ -62,8 +58,6 @@ class LightSampler {
   void add_few(int channel, Lights lights, std::vector<LightSample>& samples) const;
   std::vector<const LightTree*> trees_of(int channel, Lights lights) const;
   std::vector<PotentialLight> clustered_lights(int channel, const LightChoice& choice) const;
-  std::vector<CutPart> further_cut(int channel, const LightChoice& choice,
-                                   const LightPilot& pilot) const;
   std::optional<LightSample> one_for_all(int channel, const LightChoice& choice) const;
   double approximate_light(int light, const SurfacePoint& at) const;
 
