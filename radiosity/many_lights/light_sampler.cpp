@@ -151,14 +151,16 @@ std::vector<PotentialLight> LightSampler::clustered_lights(int channel,
 
 LightCut LightSampler::pilot_cut(const LightChoice& choice) const {
   // A cut of clusters that are 20 times as large asks a sixth of the lights, and a pilot that is
-  // off by a tenth makes clusters off by a tenth.
-  constexpr double coarser = 20.0;
+  // off by a tenth makes clusters off by a tenth. Clusters of a fifth are some ten.
+  constexpr double coarser = 20.0, coarsest = 0.2;
+  const double share =
+      std::max(choice.cluster_share, std::min(coarsest, coarser * choice.cluster_share));
   LightCut cut;
   for (int c = 0; c < lights_->channel_count; ++c) {
     add_few(c, choice.lights, cut.samples);
     const std::vector<CutPart> parts =
         light_cut(roots(trees_of(c, choice.lights), choice.at), choice.at,
-                  {.share = coarser * choice.cluster_share, .most = most_cut_parts});
+                  {.share = share, .most = most_cut_parts});
     for (const CutPart& part : parts) {
       add_part(part, static_cast<int>(cut.parts.size()), choice, cut.samples);
       cut.parts.push_back(part);

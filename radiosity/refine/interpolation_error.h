@@ -57,7 +57,7 @@ class InterpolationError {
   double area(int group) const { return area_[static_cast<std::size_t>(group)]; }
 
   /// A bound of the squared error from the corners' values, for cells not measured yet: their range
-  /// squared, plus (5 %)^2.
+  /// squared, plus that of peaks of near lights, plus (5 %)^2.
   double expected(int cell, int side) const;
   /// Squared errors of the two sides of a cell.
   struct Measured {

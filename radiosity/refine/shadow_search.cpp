@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 #include "radiosity/refine/cell_vertices.h"
@@ -15,10 +16,13 @@ constexpr int probe_count = 16;
 }  // namespace
 
 ShadowSearch::ShadowSearch(RefinedElements& elements, const VertexGathers& gathers)
-    : elements_(elements), gathers_(gathers), probes_(probe_count) {}
+    : elements_(elements),
+      gathers_(gathers),
+      probes_(probe_count),
+      peaks_(gathers.lit().direct_light) {}
 
 double ShadowSearch::error(int cell, int side, double at_vertices, double shadow_noise) const {
-  double error = probed_error(cell, side);
+  double error = probed_error(cell, side) + peaks_error(cell, side);
   // An edge that passes the middle by an eighth of its penumbra makes an error of an eighth of the
   // corners' range in the centre and in the middles of the two edges that it crosses. With
   // Simpson's weights the mean square is (16 + 2 * 4) / 36 / 8^2 = 0.0104, about 0.1^2, of the
@@ -59,13 +63,18 @@ bool ShadowSearch::has_edge(int cell, int side) const {
 
 // u and v in [0, 1].
 ShadowSearch::CellPoint ShadowSearch::point_in(int cell, int side, double u, double v) const {
-  const int n = elements_.corner_count(cell);
   Eigen::Vector4d weights;
-  if (n == 4) {
+  if (elements_.corner_count(cell) == 4) {
     weights = {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
   } else {
     weights << triangle_point(u, v), 0.0;
   }
+  return point_in(cell, side, weights);
+}
+
+ShadowSearch::CellPoint ShadowSearch::point_in(int cell, int side,
+                                               const Eigen::Vector4d& weights) const {
+  const int n = elements_.corner_count(cell);
   CellPoint found{.direct = Spectrum::Zero(gathers_.lit().scene.bands.count())};
   for (int i = 0; i < n; ++i) {
     const int corner = elements_.corner_vertex(cell, side, i);
@@ -81,13 +90,14 @@ ShadowSearch::Plane ShadowSearch::plane_of(int cell, int side) const {
 }
 
 // Gathers direct light at the point and compares it with the interpolated one; mean of the bands.
-double ShadowSearch::squared_error(const Plane& plane, const CellPoint& at,
-                                   std::uint64_t key) const {
+double ShadowSearch::squared_error(const Plane& plane, const CellPoint& at, std::uint64_t key,
+                                   EmitterVisibility* visibility) const {
   const LitScene lit = gathers_.lit();
-  const Spectrum E =
-      lit.direct_light.irradiance(lit.caster, {.at = {at.position, plane.normal, plane.facet},
-                                               .key = key,
-                                               .shadows = gathers_.options().shadows});
+  const Spectrum E = lit.direct_light.irradiance(lit.caster,
+                                                 {.at = {at.position, plane.normal, plane.facet},
+                                                  .key = key,
+                                                  .shadows = gathers_.options().shadows},
+                                                 visibility);
   const Spectrum difference = E - at.direct;
   return difference.cast<double>().square().mean();
 }
@@ -101,6 +111,38 @@ double ShadowSearch::parts_error(int cell, int side) const {
   for (int k = 0; k < 4; ++k) {
     const CellPoint at = point_in(cell, side, k % 2 == 0 ? 0.25 : 0.75, k < 2 ? 0.25 : 0.75);
     error += squared_error(plane, at, random_key(key, static_cast<std::uint64_t>(k))) / 4.0;
+  }
+  return error;
+}
+
+// Square of the greatest error that a peak makes in a cell of this share, by the peak's own light.
+double ShadowSearch::greatest_peak_error(int cell, int side) const {
+  const Plane plane = plane_of(cell, side);
+  double error = 0.0;
+  for (const LightPeak& peak : peaks_.of_cell(elements_, cell, side, plane.normal, plane.facet)) {
+    error = std::max(error, peak.share * peak.light * peak.light);
+  }
+  return error;
+}
+
+// Peaks are compared one at a time: if one is missed, the cell is split, and its parts find others.
+double ShadowSearch::peaks_error(int cell, int side) const {
+  const Plane plane = plane_of(cell, side);
+  const std::vector<LightPeak> peaks =
+      peaks_.of_cell(elements_, cell, side, plane.normal, plane.facet);
+  // Numbers of keys behind those of the four parts.
+  constexpr std::uint64_t behind_parts = 4;
+  const std::uint64_t key =
+      random_key(static_cast<std::uint64_t>(2 * cell + side), RandomPurpose::refinement_quarters);
+  double error = 0.0;
+  for (std::size_t k = 0; k < peaks.size(); ++k) {
+    if (peaks[k].share * peaks[k].light * peaks[k].light <= error) continue;
+    EmitterVisibility visibility;
+    const double squared =
+        squared_error(plane, point_in(cell, side, peaks[k].weights),
+                      random_key(key, behind_parts + static_cast<std::uint64_t>(k)), &visibility);
+    if (squared < std::pow(beyond_doubt * visibility.drawn_noise, 2)) continue;
+    error = std::max(error, peaks[k].share * squared);
   }
   return error;
 }
