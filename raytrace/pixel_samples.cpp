@@ -25,7 +25,8 @@ double blackman_harris(double x) {
 bool PixelTally::is_good(float noise) const {
   if (!(noise > 0.0f) || count < 2) return false;
   const double mean = light / count;
-  const double variance = std::max(0.0, square / count - mean * mean) / (count - 1);
+  const double variance = std::max(0.0, square / count - mean * mean) / (count - 1) +
+                          drawn / (static_cast<double>(count) * count);
   return std::sqrt(variance) <= static_cast<double>(noise) * mean;
 }
 
@@ -51,22 +52,45 @@ PixelSamples::PixelSamples(const CameraRays& rays, const RayTree& tree,
       options_(options),
       exposure_(std::move(exposure)),
       points_(options.most),
-      filter_(filter) {}
+      filter_(filter),
+      gathers_light_(tree.gathers_light()) {}
 
 PixelTally PixelSamples::first_samples(int x, int y) const {
   PixelTally tally;
-  take(x, y, std::min(options_.least, options_.most), tally);
+  Pending pending;
+  take(x, y, std::min(options_.least, options_.most), tally, pending);
+  add_gathered(x, y, std::move(pending), tally);
   return tally;
 }
 
 void PixelSamples::take_more(int x, int y, bool is_beside_noise, PixelTally& tally) const {
   constexpr int more_beside_noise = 4;
-  if (is_beside_noise) {
-    take(x, y, std::min(more_beside_noise * options_.least, options_.most), tally);
+  const auto is_over = [&] {
+    return tally.count >= options_.most || tally.is_good(options_.noise);
+  };
+  bool is_first = is_beside_noise;
+  while (is_first || !is_over()) {
+    Pending pending;
+    if (is_first) {
+      take(x, y, std::min(more_beside_noise * options_.least, options_.most), tally, pending);
+    }
+    is_first = false;
+    // The light of all points together takes little more time than that of some.
+    while (!is_over()) take(x, y, std::min(2 * tally.count, options_.most), tally, pending);
+    add_gathered(x, y, std::move(pending), tally);
   }
-  while (tally.count < options_.most && !tally.is_good(options_.noise)) {
-    take(x, y, std::min(2 * tally.count, options_.most), tally);
-  }
+}
+
+// Adds the direct light of the points that samples left.
+void PixelSamples::add_gathered(int x, int y, Pending pending, PixelTally& tally) const {
+  if (pending.points.empty()) return;
+  const std::uint64_t key =
+      random_key(random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y),
+                            RandomPurpose::pixel_shading),
+                 RandomPurpose::light_pairs, static_cast<std::uint64_t>(tally.count));
+  const GatheredLight found = tree_.gathered(pending.points, key, pending.other);
+  tally.sum.radiance += found.radiance;
+  tally.drawn += found.noise * found.noise;
 }
 
 RaySample PixelSamples::mean(const PixelTally& tally) const {
@@ -83,14 +107,22 @@ RaySample PixelSamples::mean(const PixelTally& tally) const {
   return mean;
 }
 
+RaySample PixelSamples::traced(const Ray& ray, std::uint64_t key, int number,
+                               const ElementCaster& caster, const PixelCone& cone,
+                               Pending& pending) const {
+  if (!gathers_light_) return tree_.trace_one_of_many(ray, key, number, caster, cone);
+  return tree_.trace_to_gather(ray, key, number, caster, cone, pending.points);
+}
+
 RaySample PixelSamples::sample_at_time(Ray ray, double time, std::uint64_t key, int number,
-                                       const PixelCone& cone) const {
+                                       const PixelCone& cone, Pending& pending) const {
   if (exposure_->camera) {
     const Eigen::Isometry3d moved = exposure_->camera->at(time);
     ray.origin = moved * ray.origin;
     ray.direction = moved.linear() * ray.direction;
   }
-  return tree_.trace_one_of_many(ray, key, number, exposure_->caster.at(time), cone);
+  pending.casters.push_back(exposure_->caster.at(time));
+  return traced(ray, key, number, pending.casters.back(), cone, pending);
 }
 
 // Offset of a sample from the pixel's centre along one axis.
@@ -98,36 +130,47 @@ double PixelSamples::offset(double u) const {
   return filter_ == PixelFilter::square ? u - 0.5 : window_.offset(u);
 }
 
-void PixelSamples::take(int x, int y, int until, PixelTally& tally) const {
+void PixelSamples::take(int x, int y, int until, PixelTally& tally, Pending& pending) const {
   const auto column = static_cast<std::uint64_t>(x), row = static_cast<std::uint64_t>(y);
   const std::uint64_t sample_key = random_key(column, row, RandomPurpose::pixel_points);
   const std::uint64_t shading_key = random_key(column, row, RandomPurpose::pixel_shading);
   const int panel = rays_.panel_at(x + 0.5, y + 0.5);
   const PixelCone cone = rays_.cone(x + 0.5, y + 0.5, panel);
-  const auto traced = [&](const Ray& ray) {
-    if (!exposure_) return tree_.trace_one_of_many(ray, shading_key, tally.count, cone);
+  const auto sample_of = [&](const Ray& ray) {
+    if (!exposure_) return traced(ray, shading_key, tally.count, tree_.caster(), cone, pending);
     const double part = SobolPoints::fifth(tally.count, sample_key);
     const double time = exposure_->open + part * (exposure_->close - exposure_->open);
-    return sample_at_time(ray, time, shading_key, tally.count, cone);
+    return sample_at_time(ray, time, shading_key, tally.count, cone, pending);
   };
   for (; tally.count < until; ++tally.count) {
     const Eigen::Array4d u = points_.point(tally.count, sample_key).cast<double>();
     const auto ray =
         rays_.ray_at(x + 0.5 + offset(u[0]), y + 0.5 + offset(u[1]), u[2], u[3], panel);
-    RaySample sample = ray ? traced(*ray) : tree_.nothing();
-    const auto light = static_cast<double>(sample.radiance.mean());
-    tally.light += light;
-    tally.square += light * light;
-    if (sample.by_chance.size() > 0) tally.by_chance.push_back(std::move(sample.by_chance));
-    if (tally.count == 0) {
-      tally.sum = std::move(sample);
-      continue;
+    const std::size_t before = pending.points.size();
+    RaySample sample = ray ? sample_of(*ray) : tree_.nothing();
+    double of_points = 0.0;
+    for (std::size_t i = before; i < pending.points.size(); ++i) {
+      of_points += pending.points[i].about;
     }
-    tally.sum.radiance += sample.radiance;
-    tally.sum.layers += sample.layers;
-    tally.sum.depth_cut += sample.depth_cut;
-    tally.sum.cut_weight += sample.cut_weight;
+    pending.other += static_cast<double>(sample.radiance.mean());
+    add(std::move(sample), of_points, tally);
   }
+}
+
+// Adds a sample, whose points have about the radiance `of_points`.
+void PixelSamples::add(RaySample sample, double of_points, PixelTally& tally) {
+  const double light = static_cast<double>(sample.radiance.mean()) + of_points;
+  tally.light += light;
+  tally.square += light * light;
+  if (sample.by_chance.size() > 0) tally.by_chance.push_back(std::move(sample.by_chance));
+  if (tally.count == 0) {
+    tally.sum = std::move(sample);
+    return;
+  }
+  tally.sum.radiance += sample.radiance;
+  tally.sum.layers += sample.layers;
+  tally.sum.depth_cut += sample.depth_cut;
+  tally.sum.cut_weight += sample.cut_weight;
 }
 
 }  // namespace lightwell

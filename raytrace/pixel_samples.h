@@ -1,10 +1,12 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <optional>
 #include <vector>
 
 #include "raytrace/cameras/camera_ray.h"
+#include "raytrace/product_cuts/pixel_point.h"
 #include "raytrace/shading/shade.h"
 #include "scene/sampling.h"
 
@@ -30,11 +32,15 @@ struct PixelTally {
   RaySample sum{};
   std::vector<Spectrum> by_chance{};  ///< RaySample::by_chance of the samples that have any
   int count = 0;
-  double light = 0.0, square = 0.0;  ///< sums of the bands' mean radiance and of its square
+  /// Sums of the bands' mean radiance and of its square; direct light of points about as the
+  /// solution has it.
+  double light = 0.0, square = 0.0;
+  double drawn = 0.0;  ///< variance of the sum of gathered light, mean of the bands
 
   /// Returns whether the standard error of the mean, without what is found by chance, is at most
   /// the share `noise` of the mean; false for `noise` 0 or fewer than two samples. The standard
-  /// error is that of independent samples; stratified samples have a smaller one.
+  /// error is that of independent samples, with that of gathered light; stratified samples have a
+  /// smaller one.
   bool is_good(float noise) const;
 };
 
@@ -72,10 +78,20 @@ class PixelSamples {
   const SampleOptions& options() const { return options_; }
 
  private:
-  void take(int x, int y, int until, PixelTally& tally) const;
+  /// Samples whose direct light is not yet in the tally.
+  struct Pending {
+    std::vector<PixelPoint> points{};
+    std::deque<ElementCaster> casters{};  ///< of the points, if something moves
+    double other = 0.0;                   ///< sum of the samples' other radiance, mean of the bands
+  };
+  void take(int x, int y, int until, PixelTally& tally, Pending& pending) const;
+  void add_gathered(int x, int y, Pending pending, PixelTally& tally) const;
   double offset(double u) const;
   RaySample sample_at_time(Ray ray, double time, std::uint64_t key, int number,
-                           const PixelCone& cone) const;
+                           const PixelCone& cone, Pending& pending) const;
+  RaySample traced(const Ray& ray, std::uint64_t key, int number, const ElementCaster& caster,
+                   const PixelCone& cone, Pending& pending) const;
+  static void add(RaySample sample, double of_points, PixelTally& tally);
 
   const CameraRays& rays_;
   const RayTree& tree_;
@@ -84,6 +100,7 @@ class PixelSamples {
   SobolPoints points_;
   PixelFilter filter_;
   FilterSampler window_;
+  bool gathers_light_ = false;
 };
 
 }  // namespace lightwell

@@ -86,6 +86,11 @@ enum class RandomPurpose : std::uint64_t {
   drawn_lights = 0xd4a3,
   pilot_lights = 0x9c06,    // (key of a query, purpose)
   light_clusters = 0x9c07,  // two members of a cluster; (key of a query, purpose, number)
+  // Product cuts: two members of a pair; (key, purpose, number), (key, purpose, number, draw).
+  light_pairs = 0x9c08,
+  gather_points = 0x9c09,
+  pair_shadows = 0x9c0a,
+  single_lights = 0x9c0b,  // (key, purpose, point)
   // Virtual lights; (number, purpose, bounce) or (key of a point, purpose, number).
   virtual_light_points = 0x51aa1,
   virtual_light_paths = 0x51aa2,
@@ -151,6 +156,10 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::drawn_lights:
     case RandomPurpose::light_clusters:
     case RandomPurpose::pilot_lights:
+    case RandomPurpose::light_pairs:
+    case RandomPurpose::gather_points:
+    case RandomPurpose::pair_shadows:
+    case RandomPurpose::single_lights:
     case RandomPurpose::side_rays:
     case RandomPurpose::lamp_face_rays:
     case RandomPurpose::part_vectors:

@@ -257,6 +257,7 @@ std::optional<LightPilot> DirectLight::pilot(const ElementCaster& caster,
 // The pilot draws other members: a cut that follows from what it draws itself would be biased.
 std::vector<LightSample> DirectLight::chosen_lights(const ElementCaster& caster,
                                                     const LightQuery& query) const {
+  if (query.asked) return *query.asked;
   if (query.one_stands_for_all) return sampler_->one_of_each_channel(choice_of(query));
   const std::optional<LightPilot> found = pilot(caster, query);
   return sampler_->samples(choice_of(query), found ? &*found : nullptr);

@@ -81,6 +81,8 @@ struct LightQuery {
   /// by the mean over some of its points, as if all of it were visible; the dome's by what its rays
   /// find.
   const ReliefSlope* relief = nullptr;
+  /// If set, these lights are asked in place of a choice, each over its chance. Null: chosen.
+  const std::vector<LightSample>* asked = nullptr;
 };
 
 /// Direct light: closed form times visibility, for small bright emitters, a single large one and
@@ -144,6 +146,8 @@ class DirectLight {
   double form_factor(const Emitter& emitter, const ElementCaster& caster,
                      const LightQuery& query) const;
 
+  /// The choice of lights, for points that choose together (LightQuery::asked).
+  const LightSampler& sampler() const { return *sampler_; }
   /// True if any emitters are clustered.
   bool has_emitter_clusters() const;
   /// True if any emitters or lamps are clustered.

@@ -137,6 +137,21 @@ std::vector<const LightTree*> LightSampler::trees_of(int channel, Lights lights)
   return trees;
 }
 
+std::vector<const LightTree*> LightSampler::trees(Lights lights) const {
+  std::vector<const LightTree*> all;
+  for (int c = 0; c < lights_->channel_count; ++c) {
+    const std::vector<const LightTree*> some = trees_of(c, lights);
+    all.insert(all.end(), some.begin(), some.end());
+  }
+  return all;
+}
+
+std::vector<LightSample> LightSampler::singles(Lights lights) const {
+  std::vector<LightSample> samples;
+  for (int c = 0; c < lights_->channel_count; ++c) add_few(c, lights, samples);
+  return samples;
+}
+
 std::vector<PotentialLight> LightSampler::clustered_lights(int channel,
                                                            const LightChoice& choice) const {
   const Trees& trees = trees_[static_cast<std::size_t>(channel)];

@@ -38,6 +38,11 @@ class LightSampler {
   /// True if any of these lights are clustered.
   bool has_clusters(Lights lights) const;
 
+  /// The trees of all channels.
+  std::vector<const LightTree*> trees(Lights lights) const;
+  /// The lights that are on and in no tree, each by itself, of all channels.
+  std::vector<LightSample> singles(Lights lights) const;
+
   /// The lights of a cut that is coarser than asked for, for LightPilot.
   LightCut pilot_cut(const LightChoice& choice) const;
   /// The lights that a point asks for. Those of a cut take a pilot's cut further. `pilot` null: no

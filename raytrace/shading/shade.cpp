@@ -16,9 +16,6 @@
 namespace lightwell {
 namespace {
 
-// Effort of one of many samples, as a share of the rays of a sample that stands alone.
-constexpr float share_of_many = 1.0f / 16.0f;
-
 int root_facet(std::vector<int>& parent, int i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
@@ -164,13 +161,26 @@ RaySample RayTree::trace(const Ray& ray, std::uint64_t key, float effort,
 
 RaySample RayTree::trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
                                      const ElementCaster& caster, const PixelCone& cone) const {
+  return trace_sample(ray, key, number, caster, cone, nullptr);
+}
+
+RaySample RayTree::trace_to_gather(const Ray& ray, std::uint64_t key, int number,
+                                   const ElementCaster& caster, const PixelCone& cone,
+                                   std::vector<PixelPoint>& points) const {
+  return trace_sample(ray, key, number, caster, cone, &points);
+}
+
+RaySample RayTree::trace_sample(const Ray& ray, std::uint64_t key, int number,
+                                const ElementCaster& caster, const PixelCone& cone,
+                                std::vector<PixelPoint>* points) const {
   const int bands = scene_.bands.count();
   TreeState state{.result = {.radiance = Spectrum::Zero(bands)},
                   .key = random_key(key, static_cast<std::uint64_t>(number)),
                   .effort = share_of_many,
                   .caster = &caster,
                   .number = number,
-                  .gloss_key = key};
+                  .gloss_key = key,
+                  .points = points};
   follow({.ray = ray, .weight = Spectrum::Ones(bands), .cone = cone}, state);
   return state.result;
 }

@@ -16,6 +16,7 @@
 #include "radiosity/solution/solution.h"
 #include "raytrace/cameras/pixel_cone.h"
 #include "raytrace/caustics/caustic_map.h"
+#include "raytrace/product_cuts/gathered_light.h"
 #include "raytrace/shading/dome_on_mesh.h"
 #include "raytrace/shading/lamp_samples.h"
 #include "raytrace/shading/pixel_gather.h"
@@ -159,6 +160,20 @@ class RayTree {
   /// knows the scene's motions.
   RaySample trace_one_of_many(const Ray& ray, std::uint64_t key, int number,
                               const ElementCaster& caster, const PixelCone& cone = {}) const;
+  /// Traces one of many samples and leaves the direct light of clustered lights at diffuse
+  /// surfaces to gathered_light(): adds these places to `points`, which keep a reference to
+  /// `caster`. Light found by chance and weak reflections stay with the sample. Precondition:
+  /// gathers_light().
+  RaySample trace_to_gather(const Ray& ray, std::uint64_t key, int number,
+                            const ElementCaster& caster, const PixelCone& cone,
+                            std::vector<PixelPoint>& points) const;
+  /// True if pixels of many samples find direct light by product cuts: there are clusters of
+  /// lights, a solution says about how bright places are, and no layer shows a part of the light.
+  bool gathers_light() const;
+  /// Radiance that places of many samples of one pixel send by direct light, sum over these.
+  /// `other`: the same samples' sum of all other radiance, mean of the bands.
+  GatheredLight gathered(const std::vector<PixelPoint>& points, std::uint64_t key,
+                         double other) const;
   /// Radiance along a ray, W/(m^2 sr), of DirectLight's lights by way of mirrors, gloss and clear
   /// bodies alone. Left out:
   /// - light straight through clear panes, which is direct light;
@@ -179,6 +194,8 @@ class RayTree {
   }
   /// Returns RaySample::sees_gloss of a ray, without shadow rays.
   bool sees_gloss(const Ray& ray) const { return outline(ray, {}).sees_gloss; }
+  /// The caster of everything at rest.
+  const ElementCaster& caster() const { return caster_; }
   /// The luminaires that rays of the tree meet beside the surfaces.
   const VisibleLamps& visible_lamps() const { return *visible_lamps_; }
   /// Adds light that arrives from a mirror, glass or gloss to the radiance and the layers of a
@@ -268,8 +285,11 @@ class RayTree {
     /// Gets the light of lamps that a sample of a coat's lobe finds by chance; null: such light
     /// counts as all other.
     Spectrum* by_chance = nullptr;
+    std::vector<PixelPoint>* points = nullptr;  ///< see trace_to_gather(); null: none are left
   };
 
+  RaySample trace_sample(const Ray& ray, std::uint64_t key, int number, const ElementCaster& caster,
+                         const PixelCone& cone, std::vector<PixelPoint>* points) const;
   RaySample outline(const Ray& ray, const PixelCone& cone) const;
   void follow(Branch branch, TreeState& state) const;
   bool shows_lamp(const Branch& branch, const ElementHit& hit, TreeState& state) const;
@@ -349,10 +369,17 @@ class RayTree {
   const CoatedBase* base_at(const ElementHit& hit) const {
     return bases_.empty() ? nullptr : bases_.of(facets_[hit.facet].material);
   }
+  /// `scattering`: reflectance or transmittance by which the branch sees the light.
   Arriving arriving(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
-                    const CoatedBase* base, const TreeState& state) const;
+                    const CoatedBase* base, const Spectrum& scattering,
+                    const TreeState& state) const;
   Arriving arriving_behind(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
-                           const CoatedBase* base, const TreeState& state) const;
+                           const CoatedBase* base, const Spectrum& scattering,
+                           const TreeState& state) const;
+  /// Effort of one of many samples, as a share of the rays of a sample that stands alone.
+  static constexpr float share_of_many = 1.0f / 16.0f;
+  bool leaves_point(const LightQuery& query, const ElementHit& hit, const Branch& branch,
+                    const Spectrum& scattering, const TreeState& state) const;
   Spectrum reflectance(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
   Eigen::Matrix<double, 3, 2> footprint(const Branch& branch, const ShadingPoint& at) const;
   std::optional<ReliefSlope> relief_at(const Branch& branch, const ElementHit& hit,

@@ -12,6 +12,8 @@ namespace lightwell {
 namespace {
 
 constexpr float one_over_pi = std::numbers::inv_pi_v<float>;
+// The fewest first shadow rays of one of many samples.
+constexpr int fewest_of_many = 4;
 
 // Returns shadow options for a branch: half the weight, half the rays, since the noise of a light
 // branch may be larger. Halving keeps powers of two, which stratify best.
@@ -118,11 +120,12 @@ Eigen::Vector3d RayTree::bent_normal(const Branch& branch, const ElementHit& hit
 // Irradiance behind a translucent sheet.
 RayTree::Arriving RayTree::arriving_behind(const ElementHit& hit, const ShadingPoint& at,
                                            const Branch& branch, const CoatedBase* base,
+                                           const Spectrum& scattering,
                                            const TreeState& state) const {
   ShadingPoint other = at;
   other.normal = -at.normal;
   other.rest_normal = -at.rest_normal;
-  return arriving(hit_behind(caster_.mesh(), hit), other, branch, base, state);
+  return arriving(hit_behind(caster_.mesh(), hit), other, branch, base, scattering, state);
 }
 
 // Adds L = (M + rho E + tau E_behind) / pi, weighted by share_of_bright().
@@ -150,10 +153,10 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
     tau *= static_cast<float>(base->factor(cosine));
   }
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
-  if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, base, state);
+  if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, base, rho, state);
   Scattered scattered{.direct = rho * E.direct, .indirect = rho * E.indirect};
   if (is_translucent) {
-    const Arriving behind = arriving_behind(hit, at, branch, base, state);
+    const Arriving behind = arriving_behind(hit, at, branch, base, tau, state);
     scattered.direct += tau * behind.direct;
     scattered.indirect += tau * behind.indirect;
   }
@@ -205,7 +208,7 @@ bool RayTree::is_blurred(const Branch& branch, const ElementHit& hit,
 
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,
                                     const Branch& branch, const CoatedBase* base,
-                                    const TreeState& state) const {
+                                    const Spectrum& scattering, const TreeState& state) const {
   const PatchMesh& mesh = caster_.mesh();
   const Eigen::Vector3d normal = smooth_normal(hit, at);
   const std::optional<ReliefSlope> relief = relief_at(branch, hit, at, normal, state);
@@ -216,7 +219,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
     return arriving_from_mesh(hit, at, is_dim, normal, base, relief);
   }
   const float share = state.effort * branch.weight.maxCoeff();
-  ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? 4 : 8);
+  ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? fewest_of_many : 8);
   // Many samples of a pixel average their shadows. A second stage of rays, cast only where the
   // first disagree, would leave a part of thin shadows out of that mean.
   if (state.number) shadows.max_rays = shadows.min_rays;
@@ -233,7 +236,9 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
                    .lights = has_dome ? Lights::all_but_dome : Lights::all};
   if (is_dim) return arriving_from_one_light(hit, at, branch, query, state);
   const auto direct = [&] {
-    Spectrum sum = direct_light_.irradiance(*state.caster, query);
+    const bool is_left = leaves_point(query, hit, branch, scattering, state);
+    Spectrum sum = is_left ? Spectrum(Spectrum::Zero(scene_.bands.count()))
+                           : direct_light_.irradiance(*state.caster, query);
     if (has_dome) sum += interpolate(mesh, dome_.irradiance, hit);
     return sum;
   };
@@ -260,6 +265,36 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   }
   add_caustics(hit, at, E.indirect);
   return E;
+}
+
+// Leaves the direct light of a point to gathered_light(), if the sample may.
+bool RayTree::leaves_point(const LightQuery& query, const ElementHit& hit, const Branch& branch,
+                           const Spectrum& scattering, const TreeState& state) const {
+  if (!state.points || is_apart(branch, state)) return false;
+  PixelPoint point{.at = query.at,
+                   .weight = branch.weight * one_over_pi * scattering,
+                   .lights = query.lights,
+                   .caster = state.caster};
+  if (!(point.weight > 0.0f).any()) return true;
+  if (query.base) point.base = std::make_shared<const CoatedBase>(*query.base);
+  if (query.relief) point.relief = *query.relief;
+  const Spectrum E = interpolate(caster_.mesh(), solution_.direct_irradiance, hit);
+  point.about = static_cast<double>((point.weight * E).mean());
+  state.points->push_back(std::move(point));
+  return true;
+}
+
+bool RayTree::gathers_light() const {
+  return options_.pass != Pass::interpolate && options_.pass != Pass::virtual_lights &&
+         options_.shadows.many_lights == ManyLights::lightcuts && !with_layers_ &&
+         direct_light_.has_clusters();
+}
+
+GatheredLight RayTree::gathered(const std::vector<PixelPoint>& points, std::uint64_t key,
+                                double other) const {
+  ShadowOptions shadows = shadows_for(options_.shadows, share_of_many, fewest_of_many);
+  shadows.max_rays = shadows.min_rays;
+  return gathered_light(direct_light_, points, {.key = key, .shadows = shadows, .other = other});
 }
 
 // Light of Pass::virtual_lights where little of it is seen.
