@@ -25,7 +25,8 @@ double blackman_harris(double x) {
 bool PixelTally::is_good(float noise) const {
   if (!(noise > 0.0f) || count < 2) return false;
   const double mean = light / count;
-  const double variance = std::max(0.0, square / count - mean * mean) / (count - 1) +
+  // The solution may be coarse where a lamp is near, and light without occluders has no shadows.
+  const double variance = std::max(spread, square / count - mean * mean) / (count - 1) +
                           drawn / (static_cast<double>(count) * count);
   return std::sqrt(variance) <= static_cast<double>(noise) * mean;
 }
@@ -91,6 +92,7 @@ void PixelSamples::add_gathered(int x, int y, Pending pending, PixelTally& tally
   const GatheredLight found = tree_.gathered(pending.points, key, pending.other);
   tally.sum.radiance += found.radiance;
   tally.drawn += found.noise * found.noise;
+  tally.spread = std::max(tally.spread, found.spread);
 }
 
 RaySample PixelSamples::mean(const PixelTally& tally) const {

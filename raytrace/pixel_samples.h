@@ -35,7 +35,8 @@ struct PixelTally {
   /// Sums of the bands' mean radiance and of its square; direct light of points about as the
   /// solution has it.
   double light = 0.0, square = 0.0;
-  double drawn = 0.0;  ///< variance of the sum of gathered light, mean of the bands
+  double drawn = 0.0;   ///< variance of the sum of gathered light, mean of the bands
+  double spread = 0.0;  ///< of the first samples' gathered light, see GatheredLight
 
   /// Returns whether the standard error of the mean, without what is found by chance, is at most
   /// the share `noise` of the mean; false for `noise` 0 or fewer than two samples. The standard

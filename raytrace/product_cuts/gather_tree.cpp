@@ -25,6 +25,10 @@ GatherNode node_about(std::span<const int> order, std::span<const PixelPoint> po
   node.middle = box.center();
   node.half = 0.5 * box.sizes();
   node.radius = node.half.norm();
+  if (order.size() == 1) {
+    node.axis = points[static_cast<std::size_t>(order.front())].at.normal;
+    return node;
+  }
   node.axis = normals.norm() > 0.0 ? Vector3d(normals.normalized()) : points[0].at.normal;
   for (const int i : order) {
     const double cosine = node.axis.dot(points[static_cast<std::size_t>(i)].at.normal);
@@ -56,6 +60,20 @@ void halve(std::span<int> order, std::span<const PixelPoint> points, double reac
 }
 
 }  // namespace
+
+// Normals of the cone are higher than its axis by the sine of the half angle.
+double share_of_light(const GatherNode& points, const LightNode& lights) {
+  const Vector3d to = lights.middle - points.middle;
+  const double distance = to.norm(), radius = points.radius + lights.radius;
+  const double along =
+      to.dot(points.axis) + (points.half + lights.half).dot(points.axis.cwiseAbs());
+  const double lean = points.cosine > 0.0 ? points.sine : 1.0;
+  const double height =
+      (along > 0.0 ? along : along * std::max(0.0, points.cosine)) + lean * (distance + radius);
+  if (!(height > 0.0)) return 0.0;
+  const double away = std::max(distance, radius);
+  return points.strength * std::min(height, away) / (away * away * away);
+}
 
 double PixelPoint::strength() const {
   // ReliefSlope::gain() is 2 at most. A base gets no more than all light over the mean of what
@@ -89,11 +107,13 @@ void GatherTree::fill(int number, std::span<int> order, std::span<const PixelPoi
   nodes_[static_cast<std::size_t>(number)] = filled;
 }
 
-GatherTree::Draw GatherTree::draw(int number, double u) const {
+GatherTree::Draw GatherTree::draw(int number, const LightNode& lights, double u) const {
   Draw draw;
   while (is_cluster(number)) {
     const int child = node(number).child;
-    const double first = node(child).strength, second = node(child + 1).strength;
+    const double first = share_of_light(node(child), lights),
+                 second = share_of_light(node(child + 1), lights);
+    if (!(first + second > 0.0)) return {.point = -1};
     const double share = first / (first + second);
     const bool is_first = u < share;
     u = is_first ? u / share : (u - share) / (1.0 - share);

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "radiosity/many_lights/light_tree.h"
 #include "raytrace/product_cuts/pixel_point.h"
 
 namespace lightwell {
@@ -19,6 +20,10 @@ struct GatherNode {
   int point = 0;          ///< the number of the one point
 };
 
+/// About what points of a node send on of lights that shine alike in all directions, by cosine and
+/// distance of middles, 1/(m^2 sr). It is 0 only if no point gets light.
+double share_of_light(const GatherNode& points, const LightNode& lights);
+
 /// The gather points of a pixel, clustered by place and normal (Walter et al. 2006).
 class GatherTree {
  public:
@@ -31,12 +36,11 @@ class GatherTree {
 
   /// A point of a node and the chance by which it was drawn.
   struct Draw {
-    int point = 0;
+    int point = 0;  ///< -1: one of those that get nothing
     double chance = 1.0;
   };
-  /// Draws a point of a node in proportion to its strength, for u in [0,1). Precondition: the node
-  /// has some strength.
-  Draw draw(int number, double u) const;
+  /// Draws a point of a node for u in [0,1), in proportion to share_of_light().
+  Draw draw(int number, const LightNode& lights, double u) const;
 
  private:
   void fill(int number, std::span<int> order, std::span<const PixelPoint> points, double reach);

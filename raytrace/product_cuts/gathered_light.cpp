@@ -31,6 +31,10 @@ Spectrum radiance(const DirectLight& direct_light, const PixelPoint& point, std:
   return point.weight * direct_light.irradiance(*point.caster, query);
 }
 
+// Steps of a sequence in two dimensions of low discrepancy: powers of the number g of which g^3 is
+// g + 1, as the golden ratio's serve one dimension (Roberts 2018).
+constexpr double step_of_point = 0.7548776662466927, step_of_light = 0.5698402909980532;
+
 // Sum over the points of a product cut.
 class PairSum {
  public:
@@ -48,24 +52,21 @@ class PairSum {
   }
 
   // Adds two members, each for one half of the pair. Halves are those of the chances of lights; a
-  // light by itself is met at points of both halves of theirs.
+  // light by itself is met at points of both halves of theirs. Random numbers of all pairs are one
+  // sequence, so that what neighbouring pairs have too much and too little cancels.
   void add_pair(const LightPair& pair, std::size_t number) {
-    const double of_point = random(number, RandomPurpose::gather_points);
-    const double of_light = random(number, RandomPurpose::light_pairs);
+    const double u = shifted(of_point_, step_of_point, number);
+    const double v = shifted(of_light_, step_of_light, number);
     std::array<double, 2> found{};
     for (const int half : {0, 1}) {
-      const double u = of_point + 0.5 * half;
-      const GatherTree::Draw at = tree_.draw(pair.gather, u < 1.0 ? u : u - 1.0);
-      LightTree::Draw draw{
-          .light = pair.tree->is_cluster(pair.light) ? -1 : pair.tree->light(pair.light)};
-      if (pair.tree->is_cluster(pair.light)) {
-        draw = pair.tree->draw(pair.light, points_[static_cast<std::size_t>(at.point)].at,
-                               0.5 * (half + of_light));
-      }
+      const GatherTree::Draw at =
+          tree_.draw(pair.gather, pair.tree->node(pair.light), shifted(u, 0.5, half));
+      if (at.point < 0) continue;
+      const LightTree::Draw draw = draw_light(pair, at.point, 0.5 * (half + v));
       if (draw.light < 0) continue;
-      found[static_cast<std::size_t>(half)] = ask(
-          at.point, {.light = draw.light, .chance = 2.0 * at.chance * draw.chance, .cluster = 0}, 1,
-          key(number, half));
+      const LightSample light{
+          .light = draw.light, .chance = 2.0 * at.chance * draw.chance, .cluster = 0};
+      found[static_cast<std::size_t>(half)] = ask(at.point, light, 1, key(number, half));
     }
     variance_ += std::pow(found[0] - found[1], 2);
   }
@@ -89,8 +90,14 @@ class PairSum {
     return random_key(effort_.key, RandomPurpose::pair_shadows, number,
                       static_cast<std::uint64_t>(half));
   }
-  double random(std::size_t number, RandomPurpose purpose) const {
-    return random_uniform(random_key(effort_.key, purpose, number));
+  LightTree::Draw draw_light(const LightPair& pair, int point, double u) const {
+    if (!pair.tree->is_cluster(pair.light)) return {.light = pair.tree->light(pair.light)};
+    return pair.tree->draw(pair.light, points_[static_cast<std::size_t>(point)].at, u);
+  }
+  // Number `i` of a sequence in [0,1) that begins at `first`.
+  static double shifted(double first, double step, std::size_t i) {
+    const double u = first + step * static_cast<double>(i);
+    return u - std::floor(u);
   }
   double ask(int point, const LightSample& light, int rays, std::uint64_t key) {
     one_[0] = light;
@@ -105,6 +112,8 @@ class PairSum {
   std::span<const PixelPoint> points_;
   const GatherTree& tree_;
   const GatherEffort& effort_;
+  double of_point_ = random_uniform(random_key(effort_.key, RandomPurpose::gather_points));
+  double of_light_ = random_uniform(random_key(effort_.key, RandomPurpose::light_pairs));
   GatheredLight sum_{};
   double variance_ = 0.0;
   std::vector<LightSample> one_{1};
@@ -118,6 +127,46 @@ double reach_of(const std::vector<const LightTree*>& trees, std::span<const Pixe
   return 0.5 * box.diagonal().norm();
 }
 
+// Adds the part of a pair's light that each point below a node gets.
+void add_shares(const LightPair& pair, int number, double of_share, const GatherTree& tree,
+                std::vector<double>& light) {
+  if (tree.is_cluster(number)) {
+    const int child = tree.node(number).child;
+    for (const int half : {child, child + 1}) add_shares(pair, half, of_share, tree, light);
+    return;
+  }
+  light[static_cast<std::size_t>(tree.node(number).point)] +=
+      of_share * share_of_light(tree.node(number), pair.tree->node(pair.light));
+}
+
+// GatheredLight::spread of a cut. `arriving`: the sum over points, mean of the bands.
+double spread_of(const std::vector<LightPair>& cut, const GatherTree& tree, std::size_t count,
+                 double arriving) {
+  constexpr std::size_t most = 32;
+  if (count < 2 || count > most) return 0.0;
+  std::vector<double> light(count, 0.0);
+  for (const LightPair& pair : cut) {
+    const double all = share_of_light(tree.node(pair.gather), pair.tree->node(pair.light));
+    if (all > 0.0) add_shares(pair, pair.gather, pair.about / all, tree, light);
+  }
+  double sum = 0.0, squares = 0.0;
+  for (const double of_point : light) {
+    sum += of_point;
+    squares += of_point * of_point;
+  }
+  if (!(sum > 0.0)) return 0.0;
+  const auto n = static_cast<double>(count);
+  return std::max(0.0, n * squares / (sum * sum) - 1.0) * std::pow(arriving / n, 2);
+}
+
+// The pairs of a cut so that neighbours have points, and then lights, beside each other.
+std::vector<LightPair> in_order(std::vector<LightPair> cut) {
+  std::ranges::stable_sort(cut, [](const LightPair& a, const LightPair& b) {
+    return a.gather != b.gather ? a.gather < b.gather : a.light < b.light;
+  });
+  return cut;
+}
+
 }  // namespace
 
 GatheredLight gathered_light(const DirectLight& direct_light, std::span<const PixelPoint> points,
@@ -127,7 +176,7 @@ GatheredLight gathered_light(const DirectLight& direct_light, std::span<const Pi
   double light = effort.other;
   for (const PixelPoint& point : points) light += point.about;
   const ProductGoal goal{.share = effort.shadows.cluster_share, .light = light, .most = most_pairs};
-  const std::vector<LightPair> cut = product_cut(trees, tree, goal);
+  const std::vector<LightPair> cut = in_order(product_cut(trees, tree, goal));
   PairSum sum(direct_light, points, tree, effort);
   for (std::size_t k = 0; k < cut.size(); ++k) {
     const LightPair& pair = cut[k];
@@ -141,7 +190,9 @@ GatheredLight gathered_light(const DirectLight& direct_light, std::span<const Pi
   for (std::size_t i = 0; i < points.size() && !others.empty(); ++i) {
     sum.add_others(static_cast<int>(i), others);
   }
-  return std::move(sum).result();
+  GatheredLight result = std::move(sum).result();
+  result.spread = spread_of(cut, tree, points.size(), static_cast<double>(result.radiance.mean()));
+  return result;
 }
 
 }  // namespace lightwell

@@ -21,7 +21,10 @@ struct GatherEffort {
 struct GatheredLight {
   Spectrum radiance{};  ///< sum over points, W/(m^2 sr) per band
   double noise = 0.0;   ///< its standard error, mean of the bands, by the two members of each pair
-  int asked = 0;        ///< lights, one for each point that asks
+  /// Variance between points of their radiance, mean of the bands, as if all lights were visible
+  /// alike; 0 for more than 32 points, which say no more about a pixel and take longer.
+  double spread = 0.0;
+  int asked = 0;  ///< lights, one for each point that asks
 };
 
 /// Radiance sum_i weight_i E(x_i) over gather points of the direct light of all lights, by a cut of
