@@ -5,7 +5,8 @@
 
 The hall of many_lamps.py, one of whose machines turns and slides, as a sharp picture, through a wide lens and with an open shutter, 80 x 50 pixels.
 `seconds` are processor time of `lightwell render`, less that of a picture of one pixel; `OPTION...` go to it. `error` is the root mean square
-error of pixels over the mean, beside a picture of 1024 samples of every pixel with a noise of 0.4 %, and `mean` the difference of the means.
+error of pixels over the mean, beside a picture of 1024 samples of every pixel with a noise of 0.4 %, and `mean` the difference of the means;
+the sharp picture, whose pixels are other means, has neither. Pixels in which luminous panels are seen are left out.
 """
 import json
 import pathlib
@@ -16,6 +17,7 @@ import sys
 from many_lamps import scene
 
 CAMERAS = {"still": "", "lens": "aperture_radius = 0.15\nfocus_distance = 8\n", "shutter": "shutter = [-0.2, 0.2]\n"}
+LAMPS = "0.1"  # W/(m^2 sr): no surface sends on as much, but the ceiling beside lamps
 MOTION = """
 [motions.slide]
 pivot = [9, 9.9, 0]
@@ -52,11 +54,14 @@ def main():
         for camera in CAMERAS:
             picture, reference = folder / f"{kind}{count}_{camera}.exr", folder / f"{kind}{count}_{camera}_reference.exr"
             render = [program, "render", file, solution, "--camera", camera, "--quiet", "--size"]
-            if not reference.exists():
+            if CAMERAS[camera] and not reference.exists():
                 seconds_of(render + ["80x50", "--samples", "1024", "--noise", "0.4%", "-o", reference])
             least = seconds_of(render + ["1x1", "-o", picture])
             spent = seconds_of(render + ["80x50", "-o", picture, *arguments[split + 1:]]) - least
-            done = subprocess.run([program, "compare", picture, reference, "--json"], capture_output=True, text=True, check=True)
+            if not CAMERAS[camera]:
+                print(f"{count:8} {camera:>8} {spent:8.2f}", flush=True)
+                continue
+            done = subprocess.run([program, "compare", picture, reference, "--exclude-above", LAMPS, "--json"], capture_output=True, text=True, check=True)
             found = json.loads(done.stdout)
             mean = found["mean"] / found["reference_mean"] - 1.0
             print(f"{count:8} {camera:>8} {spent:8.2f} {100 * found['relative_rmse']:7.2f}% {100 * mean:+7.3f}%", flush=True)

@@ -58,7 +58,8 @@ enum class PixelFilter { square, window };
 /// Sampler of a pixel by many samples, each through its own point of picture and lens: for gloss,
 /// depth of field and motion, which no subdivision of the pixel's square resolves (Cook, Porter &
 /// Carpenter 1984). The samples are points of one scrambled Sobol sequence per pixel, in picture,
-/// lens and time. Neighbours share no samples.
+/// lens and time. Neighbours share no samples. Where lights are clustered, the direct light of all
+/// samples of a pixel is found together (see gathered_light()).
 class PixelSamples {
  public:
   PixelSamples(const CameraRays& rays, const RayTree& tree, const SampleOptions& options,
