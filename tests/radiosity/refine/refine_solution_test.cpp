@@ -4,6 +4,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
+#include <string>
+#include <vector>
 
 #include "mesh/build_patches.h"
 #include "scene/parallel.h"
@@ -93,6 +96,52 @@ TEST_P(SmallUmbra, IsFound) {
               lit.irradiance(under) / open, aside);
   EXPECT_LT(lit.irradiance(under) / open, 0.1);
   EXPECT_NEAR(aside, 1.0, 0.05);  // the angle to the lamp changes by 1.5 degrees: cos^4, 3 %
+}
+
+// Lamps close to a floor of 2 x 2 cells, one below the middle of each quarter of each cell: all
+// corners and compared points of the cells lie as far from lamps, and get the same light.
+TEST(Refinement, FindsLampsNearAPlaneBetweenItsPoints) {
+  constexpr double height = 0.1, apart = 0.5;
+  Scene scene;
+  test::add_polygon(scene, "floor", test::add_material(scene, test::diffuse(scene.bands, 0.5f)),
+                    {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}});
+  std::vector<Vector3d> feet;
+  for (int k = 0; k < 16; ++k) {
+    feet.emplace_back(-0.75 + apart * (k % 4), -0.75 + apart * (k / 4), 0.0);
+    scene.lamps.push_back({.name = "lamp" + std::to_string(k),
+                           .position = feet.back() + height * Vector3d::UnitZ(),
+                           .intensity = constant_spectrum(scene.bands, 1.0f)});
+  }
+  const auto exact = [&](const Vector3d& at) {
+    double E = 0.0;
+    for (const Vector3d& foot : feet) {
+      E += height * std::pow((at - foot).squaredNorm() + height * height, -1.5);
+    }
+    return E;
+  };
+  SolveOptions options = refined_to(0.02);
+  options.mesh = {.max_patch_size = 1.0, .elements_per_patch_edge = 1};
+  options.refine.max_level = 6;  // down to 1.6 cm
+  const Lit lit(scene, options);
+  double squares = 0.0, sum = 0.0;
+  constexpr int n = 80;
+  for (int i = 0; i < n * n; ++i) {
+    const Vector3d at(-1 + 2 * (i % n + 0.5) / n, -1 + 2 * (i / n + 0.5) / n, 0);
+    squares += std::pow(lit.irradiance(at) - exact(at), 2);
+    sum += exact(at);
+  }
+  const double error = std::sqrt(squares / (n * n)) / (sum / (n * n));
+  std::printf("16 lamps 10 cm above a floor: error %.4f, %d elements\n", error,
+              lit.solved.mesh.element_count());
+  // As in ReachesTheToleranceAndKnowsItsError.
+  EXPECT_LT(error, 1.5 * 0.02);
+  for (const Vector3d& foot : feet) {
+    // The mean at a peak of sixteen: at most all of the floor's squared error, 4 m^2, in the
+    // sixteen areas of pi h^2 / 2 whose mean square is that of the peaks.
+    const double most =
+        0.02 * (sum / (n * n)) * std::sqrt(4.0 / (16.0 * 0.5 * std::numbers::pi * height * height));
+    EXPECT_NEAR(lit.irradiance(foot), exact(foot), 1.5 * most);
+  }
 }
 
 // A screen whose shadow ends at x = 0, in the middle of cells. On that line light is the mean of
