@@ -13,10 +13,9 @@
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "cli/time_limit.h"
-#include "mesh/build_patches.h"
 #include "radiosity/solve.h"
 #include "raytrace/cameras/camera_ray.h"
-#include "raytrace/virtual_lights/virtual_lights.h"
+#include "raytrace/virtual_lights/sketch.h"
 
 namespace lightwell {
 namespace {
@@ -33,25 +32,13 @@ struct RenderCommandArguments {
 SolvedScene sketch_step(const Scene& scene, const RenderArguments& arguments, Console& console,
                         Report& report) {
   require_light(scene);
-  constexpr int few_patches = 400;
+  constexpr int few_lights = 1024;
+  const int lights = std::min(few_lights, arguments.virtual_lights);
   const Stopwatch watch;
-  SolvedScene sketched{
-      .mesh = build_patches(scene, {.auto_patch_count = few_patches}, console.progress())};
-  report.add_phase("mesh", watch.seconds());
-  const ElementCaster caster(sketched.mesh);
-  const DirectLight direct_light(scene, sketched.mesh);
-  const LitScene lit{scene, caster, direct_light};
-  constexpr int few_lights = 1024, few_photons = 1 << 16;
-  VirtualLightOptions options{.count = std::min(few_lights, arguments.virtual_lights),
-                              .max_specular_depth = arguments.depth,
-                              .progress = console.progress()};
-  if (LightPaths(scene, caster, arguments.depth).has_specular()) {
-    options.caustics = trace_caustics(scene, caster, direct_light, few_photons, arguments.depth,
-                                      console.progress());
-  }
-  sketched.solution = sketch(lit, VirtualLights(lit, options), console.progress());
-  sketched.solution.provenance = {.scene_hash = scene_hash(scene),
-                                  .options = fmt::format("{} virtual lights", options.count)};
+  SolvedScene sketched = sketch_scene(scene, {.virtual_lights = lights,
+                                              .max_specular_depth = arguments.depth,
+                                              .progress = console.progress()});
+  sketched.solution.provenance.options = fmt::format("{} virtual lights", lights);
   console.finish_phase();
   report.add_phase("sketch", watch.seconds());
   return sketched;

@@ -9,6 +9,7 @@
 #include "cli/arguments.h"
 #include "cli/channels.h"
 #include "cli/commands.h"
+#include "cli/interrupt.h"
 #include "cli/lux_range.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
@@ -160,6 +161,7 @@ int view_live(const ViewArguments& arguments, const Scene& scene, const ViewOpti
     };
   }
   if (arguments.offscreen.empty()) {
+    const InterruptEndsAtOnce interrupt;
     show_live_window(scene, live, options);
     return exit_done;
   }
@@ -234,6 +236,7 @@ int view(const ViewArguments& arguments, Console& console) {
   }
   if (!cues.empty()) options.cues = cues_of(solved.solution, cues, arguments.solution);
   if (arguments.offscreen.empty()) {
+    const InterruptEndsAtOnce interrupt;
     show_window(solved, options);
     return exit_done;
   }

@@ -6,10 +6,8 @@
 #include <numbers>
 #include <vector>
 
-#include "radiosity/gather/final_gather.h"
 #include "raytrace/virtual_lights/virtual_light_paths.h"
 #include "scene/found_by_chance.h"
-#include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
@@ -29,21 +27,6 @@ constexpr int rays_beyond_limit = 8, rays_by_way = 32;
 // The greatest share of a point's light that a cluster of virtual lights may give. Eight pixels in
 // a row have other members of clusters.
 constexpr double cluster_share = 0.1;
-
-// Adds the caustics at vertices.
-void add_caustics(const PatchMesh& mesh, const VertexGatherPoints& points,
-                  const CausticMap* caustics, RadiositySolution& solution) {
-  if (!caustics) return;
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    for (int c = 0; c < mesh.corner_count(e); ++c) {
-      const int v = mesh.corners[e][c];
-      const GatherPoint point = points[v];
-      solution.caustic_irradiance.row(v) =
-          caustics->irradiance(point.position, point.normal, e).transpose();
-    }
-  }
-  solution.indirect_irradiance += solution.caustic_irradiance;
-}
 
 }  // namespace
 
@@ -185,50 +168,6 @@ Spectrum VirtualLights::radiosity(const ElementCaster& caster, const End& end,
   E += indirect_irradiance(
       caster, {.at = at, .key = random_key(own, 1), .effort = 0.0f, .depth = end.depth + 1});
   return B + (reflects ? rho : tau) / chance * E;
-}
-
-RadiositySolution sketch(const LitScene& lit, const VirtualLights& virtual_lights,
-                         const Progress& progress) {
-  const PatchMesh& mesh = lit.mesh();
-  const Scene& scene = lit.scene;
-  RadiositySolution solution{.bands = scene.bands,
-                             .metres_per_unit = scene.metres_per_unit,
-                             .unit_name = scene.unit_name,
-                             .relative_units = scene.relative_units};
-  solution.patch_radiosity = mesh.emission;
-  const BandArray dark = BandArray::Zero(mesh.vertex_count(), scene.bands.count());
-  solution.direct_irradiance = solution.indirect_irradiance = dark;
-  if (virtual_lights.has_specular()) solution.caustic_irradiance = dark;
-  const VertexGatherPoints points(mesh);
-  const auto light_vertex = [&](int v) {
-    const GatherPoint point = points[v];
-    const SurfacePoint at{point.position, point.normal, point.facet};
-    const auto key = random_key(static_cast<std::uint64_t>(v), RandomPurpose::virtual_light_rays);
-    solution.direct_irradiance.row(v) =
-        lit.direct_light
-            .irradiance(lit.caster,
-                        {.at = at,
-                         .key = key,
-                         .shadows = {.min_rays = 4, .max_rays = 8, .cluster_share = 0.2}})
-            .transpose();
-    // A quarter of the effort has twice the noise, which the picture interpolates.
-    constexpr float effort = 0.25f;
-    solution.indirect_irradiance.row(v) =
-        virtual_lights
-            .indirect_irradiance(lit.caster,
-                                 {.at = at, .key = random_key(key, 1), .effort = effort})
-            .transpose();
-  };
-  constexpr int slice = 4096, grain = 32;
-  for (int first = 0; first < mesh.vertex_count(); first += slice) {
-    report(progress, "sketch", static_cast<double>(first) / mesh.vertex_count());
-    parallel_for(std::min(slice, mesh.vertex_count() - first), grain, [&](int begin, int end) {
-      for (int v = first + begin; v < first + end; ++v) light_vertex(v);
-    });
-  }
-  report(progress, "sketch", 1.0);
-  add_caustics(mesh, points, virtual_lights.caustics(), solution);
-  return solution;
 }
 
 }  // namespace lightwell

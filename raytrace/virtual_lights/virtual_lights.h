@@ -8,7 +8,6 @@
 #include "radiosity/direct_light/direct_light.h"
 #include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/paths/light_path.h"
-#include "radiosity/solution/solution.h"
 #include "raytrace/caustics/caustic_map.h"
 #include "scene/progress.h"
 #include "scene/relief.h"
@@ -83,12 +82,5 @@ class VirtualLights {
   DirectLight lights_;
   Spectrum dome_{};  // factor of the sky's dome; empty: no dome
 };
-
-/// Irradiance at the vertices of a mesh by virtual lights, as a solution without patch radiosities
-/// and without an estimate of its error: a first look at a scene, as fine as the mesh. Caustics are
-/// those of the virtual lights; 0 if there are none. The same bits for any number of threads.
-/// Throws Interrupted when progress says stop.
-RadiositySolution sketch(const LitScene& lit, const VirtualLights& virtual_lights,
-                         const Progress& progress = {});
 
 }  // namespace lightwell

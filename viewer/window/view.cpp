@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -18,6 +19,7 @@
 #include "viewer/window/overlay.h"
 #include "viewer/window/pointer_tools.h"
 #include "viewer/window/preparation.h"
+#include "viewer/window/preview.h"
 #include "viewer/window/solution_view.h"
 #include "viewer/window/waiting_window.h"
 #include "viewer/window/walk_window.h"
@@ -229,6 +231,19 @@ SolvedScene without_light(const LiveSolve& solve, const LiveViewOptions& live) {
   return dark;
 }
 
+// `preview`: null for none. One of the two is ready.
+void walk_while_solving(Preparation& preparation, Preview* preview, const ViewOptions& options,
+                        const OpenWindow& opened) {
+  std::optional<SolvedScene> sketched;
+  if (preview) sketched = preview->take();
+  if (sketched) return WalkWindow(std::move(*sketched), preparation, options, &opened).run();
+  PreparedSolve prepared = preparation.take();
+  WalkWindow window(*prepared.solve, std::move(prepared.dark), options, &opened);
+  if (preview) window.expect(*preview);
+  prepared.solve->start();
+  window.run();
+}
+
 }  // namespace
 
 void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& asked) {
@@ -237,15 +252,17 @@ void show_live_window(const Scene& scene, const LiveViewOptions& live, const Vie
   const std::string file = std::filesystem::path(live.provenance.scene_file).filename().string();
   WaitingWindow waiting(window_title(file), options.width, options.height, text_scale_of(options));
   Preparation preparation(scene, live);
+  std::optional<Preview> preview;
+  const bool shows_unshot = options.illuminance && options.measure == Measure::unshot;
+  if (!shows_unshot && !live.scales) preview.emplace(scene, live.provenance);
   const bool is_ready = waiting.run([&]() -> std::optional<std::string> {
-    if (preparation.is_done()) return std::nullopt;
+    if (preparation.is_done() || (preview && preview->is_ready())) return std::nullopt;
     return preparation.status();
   });
   if (!is_ready) return;
-  PreparedSolve prepared = preparation.take();
-  WalkWindow window(*prepared.solve, std::move(prepared.dark), options, &waiting.opened());
-  prepared.solve->start();
-  window.run();
+  walk_while_solving(preparation, preview ? &*preview : nullptr, options, waiting.opened());
+  if (preview) preview->cancel();
+  preparation.cancel();
 }
 
 int write_live_snapshot(const Scene& scene, const LiveViewOptions& live, std::span<const int> shots,

@@ -110,10 +110,11 @@ struct LiveViewOptions {
   std::function<std::vector<Spectrum>(const RadiositySolution&)> scales{};
 };
 
-/// Opens the window at once and shows the light shot by shot, while a thread solves (progressive
-/// refinement, see live_solve.h), and then the solution. Keys pause, shoot once, switch the ambient
-/// term, and stop and save. Channels can be dimmed meanwhile. Throws as show_window() does, and
-/// InputError if nothing emits light.
+/// Opens the window at once and shows a sketch of the light within seconds (see sketch_scene()),
+/// then the light shot by shot, while a thread solves (progressive refinement, see live_solve.h),
+/// and then the solution. There is no sketch where channels begin dimmed. Keys pause, shoot once,
+/// switch the ambient term, and stop and save. Channels can be dimmed meanwhile. Throws as
+/// show_window() does, and InputError if nothing emits light.
 void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& options);
 
 /// Writes a strip of pictures of the light after each of `shots` (rising numbers of shots), from

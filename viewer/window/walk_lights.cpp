@@ -53,6 +53,7 @@ void WalkWindow::relight_now() {
 }
 
 void WalkWindow::relight_to(const std::vector<Spectrum>& scales) {
+  leave_sketch();  // whose light is not kept apart in channels
   still_.discard();
   if (!own_) {
     own_ = std::make_unique<SolvedScene>(view_->solved());
@@ -94,7 +95,7 @@ void WalkWindow::fade(double seconds) {
 }
 
 void WalkWindow::save_solution() {
-  if (live_ && live_state_.phase != LivePhase::done) {
+  if (preparing_ || (live_ && live_state_.phase != LivePhase::done)) {
     return say("the light is still arriving; Enter stops, gathers a solution and saves it");
   }
   const std::string scene =
@@ -109,67 +110,6 @@ void WalkWindow::save_solution() {
   } catch (const std::exception& error) {
     say(error.what());
   }
-}
-
-void WalkWindow::watch() {
-  if (!live_) return;
-  if (auto light = live_->take_light()) {
-    arrived_ = std::move(*light);
-    show_arriving_light();
-    meter_unless_exposed();
-  }
-  const LiveState state = live_->state();
-  if (text_of(state) != text_of(live_state_)) changed_ = true;
-  live_state_ = state;
-  if (auto solution = live_->take_solution()) show_solution(std::move(*solution));
-  update_text();
-}
-
-void WalkWindow::show_arriving_light() {
-  still_.discard();
-  show_light(arrived_, ambient_, *own_);
-  view_->light_arrived();
-  view_->set_unshot(arrived_.unshot);
-  pointer_.light_changed(*view_, true);
-  update_pointer();
-  changed_ = true;
-}
-
-void WalkWindow::show_solution(SolvedScene solved) {
-  auto solution = std::make_unique<SolvedScene>(std::move(solved));
-  if (lights_.has_channels()) relight(*solution, lights_.scales());  // dimmed during the solving
-  replace_view(*solution);
-  own_ = std::move(solution);
-  pointer_.light_changed(*view_, false);
-  meter_unless_exposed();
-  update_pointer();
-  if (std::exchange(save_when_solved_, false)) save_solution();
-}
-
-void WalkWindow::switch_pause() {
-  if (!live_ || live_state_.phase > LivePhase::paused) return say("nothing is being solved");
-  live_->set_paused(live_state_.phase == LivePhase::shooting);
-}
-
-void WalkWindow::shoot_once() {
-  if (!live_ || live_state_.phase > LivePhase::paused) return say("nothing is being solved");
-  live_->step_once();
-}
-
-void WalkWindow::switch_ambient() {
-  if (!live_ || live_state_.phase > LivePhase::gathering) {
-    return say("all light has arrived");
-  }
-  ambient_ = !ambient_;
-  say(ambient_ ? "with a guess of the light to come" : "without a guess of the light to come");
-  show_arriving_light();
-}
-
-void WalkWindow::stop_shooting() {
-  if (!live_) return say("nothing is being solved");
-  if (live_state_.phase == LivePhase::done) return save_solution();
-  save_when_solved_ = true;
-  live_->stop_shooting();
 }
 
 }  // namespace lightwell

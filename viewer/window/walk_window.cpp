@@ -31,13 +31,6 @@ bool is_inside(const Bounds& bounds, const Eigen::Vector3d& point) {
   return (point.array() > bounds.low.array()).all() && (point.array() < bounds.high.array()).all();
 }
 
-/// The light before the first shot: emitters and ambient term.
-std::unique_ptr<SolvedScene> begin(const LiveSolve& live, SolvedScene dark) {
-  auto begun = std::make_unique<SolvedScene>(std::move(dark));
-  show_light(live.light(), true, *begun);
-  return begun;
-}
-
 }  // namespace
 
 std::string window_title(const std::string& scene) {
@@ -68,13 +61,6 @@ double walking_speed(double scene_diagonal) {
 
 WalkWindow::WalkWindow(const SolvedScene& solved, const ViewOptions& options)
     : WalkWindow(&solved, nullptr, nullptr, options) {}
-
-WalkWindow::WalkWindow(LiveSolve& live, SolvedScene begun, const ViewOptions& options,
-                       const OpenWindow* opened)
-    : WalkWindow(nullptr, begin(live, std::move(begun)), &live, options, opened) {
-  arrived_ = live.light();
-  show_arriving_light();
-}
 
 WalkWindow::WalkWindow(const SolvedScene* shown, std::unique_ptr<SolvedScene> own, LiveSolve* live,
                        const ViewOptions& options, const OpenWindow* opened)
@@ -138,6 +124,7 @@ void WalkWindow::run() {
   interactor_->Start();
   // Whatever still runs ends out of sight.
   hide_window(window_->GetGenericDisplayId(), window_->GetGenericWindowId());
+  if (failure_) std::rethrow_exception(failure_);
 }
 
 void WalkWindow::close() {
@@ -277,6 +264,7 @@ void WalkWindow::switch_measure() {
     look.measure = Measure::luminance;
   }
   look.interpolation_error = false;
+  if (look.measure == Measure::unshot) leave_sketch();
   change(look);
 }
 
@@ -399,6 +387,8 @@ void WalkWindow::update_text() {
   if (still_.phase() == StillPhase::rendering) {
     status_ += fmt::format("   ray-tracing {:.0f} %", 100.0 * still_.progress());
   }
+  if (shows_sketch()) status_ += "   first look";
+  if (preparing_) status_ += "   " + preparing_->status();
   if (live_) status_ += "   " + text_of(live_state_);
   if (cues_.has_cues()) status_ += "   " + cues_.text();
   if (lights_.has_channels()) status_ += "   " + lights_.text();

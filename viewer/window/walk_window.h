@@ -2,6 +2,7 @@
 
 #include <vtkSmartPointer.h>
 
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -17,6 +18,8 @@
 #include "viewer/window/marks.h"
 #include "viewer/window/overlay.h"
 #include "viewer/window/pointer_tools.h"
+#include "viewer/window/preparation.h"
+#include "viewer/window/preview.h"
 #include "viewer/window/solution_view.h"
 #include "viewer/window/still.h"
 #include "viewer/window/waiting_window.h"
@@ -48,11 +51,20 @@ class WalkWindow {
   /// `opened` is a window that is on the screen already; null: a new one.
   WalkWindow(LiveSolve& live, SolvedScene begun, const ViewOptions& options,
              const OpenWindow* opened = nullptr);
+  /// Shows a sketch until `preparation` is done and the light of shots, which this object then
+  /// starts, surpasses the sketch. Keeps a reference to `preparation`.
+  WalkWindow(SolvedScene sketched, Preparation& preparation, const ViewOptions& options,
+             const OpenWindow* opened = nullptr);
   ~WalkWindow();
   WalkWindow(const WalkWindow&) = delete;
   WalkWindow& operator=(const WalkWindow&) = delete;
 
-  /// Opens the window and returns when the user closes the window.
+  /// Shows the sketch of `preview` once there is one, until the light of shots surpasses it. Keeps
+  /// a reference to `preview`.
+  void expect(Preview& preview);
+
+  /// Opens the window and returns when the user closes the window. Throws what Preparation::take()
+  /// throws.
   void run();
 
   // Events from the interactor style. `key` is an X key symbol, such as "w", "Left" or "F12".
@@ -77,6 +89,8 @@ class WalkWindow {
   const Still& still() const { return still_; }
   /// The solution that is shown.
   const SolvedScene& solved() const { return view_->solved(); }
+  /// True while a sketch is shown in place of the light of shots.
+  bool shows_sketch() const { return preparing_ || solving_; }
   vtkRenderWindowInteractor* interactor() const;
 
  private:
@@ -164,7 +178,15 @@ class WalkWindow {
   void fade(double seconds);
 
   // Progressive refinement.
+  static std::unique_ptr<SolvedScene> begin(const LiveSolve& live, SolvedScene dark);
   void watch();
+  void begin_solving(PreparedSolve prepared);
+  void receive(LiveLight light);
+  void show_sketch(SolvedScene sketched);
+  void leave_sketch();
+  std::unique_ptr<SolvedScene> show_instead(std::unique_ptr<SolvedScene> light);
+  bool is_shooting() const;
+  std::string nothing_to_solve() const;
   void show_arriving_light();
   void show_solution(SolvedScene solved);
   void switch_pause();
@@ -178,6 +200,11 @@ class WalkWindow {
   bool is_opened_ = false;  // surfaces without light are left out as long as one is outside
   std::unique_ptr<SolvedScene> own_;  ///< copy whose light changes; null: the caller's is shown
   LiveSolve* live_;
+  Preparation* preparing_ = nullptr;        ///< of the solve, while a sketch is shown
+  Preview* preview_ = nullptr;              ///< a sketch that is to be shown
+  std::unique_ptr<LiveSolve> prepared_{};   ///< the solve, if `preparing_` made it
+  std::unique_ptr<SolvedScene> solving_{};  ///< light of shots while a sketch is shown instead
+  std::exception_ptr failure_{};            ///< of the preparation
   std::unique_ptr<SolutionView> view_;
   WalkState walk_;
   WalkPhysics physics_;

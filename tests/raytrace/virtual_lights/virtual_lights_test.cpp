@@ -13,7 +13,7 @@
 #include "raytrace/virtual_lights/virtual_light_paths.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
-#include "tests/raytrace/lit_scene.h"
+#include "tests/raytrace/virtual_lights/integrator.h"
 #include "tests/sample_mean.h"
 
 namespace lightwell::virtual_lights_test {
@@ -44,22 +44,8 @@ test::SampleMean irradiance_over_sets(const TracedScene& lit, const SurfacePoint
   return test::mean_of(found);
 }
 
-/// A closed room of one reflectance with a lamp of 4 pi W in its middle.
-struct Integrator {
-  static constexpr float rho = 0.7f;
-  TracedScene lit{[] {
-    Scene scene = SceneBuilder()
-                      .box({.reflectance = rho, .one_sided = true}, {0, 0, 0}, {2, 1, 1.5}, true)
-                      .build();
-    scene.lamps.push_back({.name = "lamp",
-                           .position = {1, 0.5, 0.7},
-                           .intensity = constant_spectrum(scene.bands, 1.0f)});
-    return scene;
-  }()};
-};
-
 TEST(VirtualLights, SendOnAllThatSurfacesReflect) {
-  const Integrator room;
+  const test::Integrator room;
   const LitScene lit{room.lit.scene, room.lit.caster, room.lit.direct_light};
   const LightPaths paths(lit.scene, lit.caster, 10);
   std::vector<double> flux;
@@ -72,7 +58,8 @@ TEST(VirtualLights, SendOnAllThatSurfacesReflect) {
     flux.push_back(sum);
   }
   const test::SampleMean found = test::mean_of(flux);
-  const double expected = 4.0 * std::numbers::pi * Integrator::rho / (1.0 - Integrator::rho);
+  const double expected =
+      4.0 * std::numbers::pi * test::Integrator::rho / (1.0 - test::Integrator::rho);
   std::printf("reflected flux %.4f W, of virtual lights %.4f +- %.4f\n", expected, found.value,
               found.standard_error);
   EXPECT_NEAR(found.value, expected, 4.0 * found.standard_error);
@@ -83,7 +70,7 @@ TEST(VirtualLights, SendOnAllThatSurfacesReflect) {
 }
 
 TEST(VirtualLights, AreAboutAsManyAsAskedFor) {
-  const Integrator room;
+  const test::Integrator room;
   const LitScene lit{room.lit.scene, room.lit.caster, room.lit.direct_light};
   const VirtualLights lights(lit, {.count = 4096});
   // 1229 paths of 3.3 lights, whose number varies by 0.84 of its mean: 2.4 %; several paths may
@@ -173,25 +160,6 @@ TEST(VirtualLights, GivePicturesOfTheSameBitsOnAnyNumberOfThreads) {
     EXPECT_TRUE((image.radiance == first).all()) << threads;
   }
   EXPECT_GT(first.mean(), 0.0f);
-}
-
-TEST(VirtualLights, SketchTheLightAtVertices) {
-  const Integrator room;
-  const LitScene lit{room.lit.scene, room.lit.caster, room.lit.direct_light};
-  const RadiositySolution sketched = sketch(lit, VirtualLights(lit, {.count = 4096}));
-  const BandArray E = element_mean(lit.mesh(), sketched.irradiance());
-  double flux = 0.0, area = 0.0;
-  for (int e = 0; e < lit.mesh().element_count(); ++e) {
-    if (lit.mesh().is_back[lit.mesh().patch[e]] != 0) continue;
-    flux += static_cast<double>(E.row(e).mean()) * lit.mesh().element_area[e];
-    area += lit.mesh().element_area[e];
-  }
-  EXPECT_NEAR(area, 2.0 * (2.0 + 3.0 + 1.5), 1e-9);  // roundings of sums of a few hundred areas
-  const double arriving = 4.0 * std::numbers::pi / (1.0 - Integrator::rho);
-  std::printf("flux on walls %.4f W of %.4f W\n", flux, arriving);
-  // 1229 paths leave 3.5 % of the reflected 70 % (see SendOnAllThatSurfacesReflect), twice which is
-  // allowed; elements of 10 cm miss less than 1 % of the slopes of the lamp's light.
-  EXPECT_NEAR(flux / arriving, 1.0, 0.06);
 }
 
 // Every ray in the gap ends nearby, on a varnished surface that reflects nine tenths: its path must
