@@ -446,6 +446,11 @@ RenderOptions RenderArguments::options() const {
                                                    : Pass::automatic;
   options.gather_rays = gather_samples;
   options.virtual_lights = virtual_lights;
+  if (is_draft) {
+    options.max_subdivision = 1;
+    options.glossy_rays = 1;
+    options.sampling.least = 4;
+  }
   const PictureQuality chosen = effective_quality();
   options.photons = chosen.photons;
   options.max_depth = depth;

@@ -11,10 +11,11 @@ namespace lightwell {
 /// Irradiance at the vertices of a mesh by virtual lights, as a solution without patch radiosities
 /// and without an estimate of its error: a first look at a scene, as fine as the mesh. Caustics are
 /// those of the virtual lights; 0 if there are none. Vertices of surfaces that neither reflect nor
-/// transmit diffuse light stay dark. The same bits for any number of threads. Throws Interrupted
-/// when progress says stop.
+/// transmit diffuse light stay dark. Vertices that face alike in a cell of a grid, `cell` m long,
+/// share their indirect light (0: none do), whose noise neighbours even out. The same bits for any
+/// number of threads. Throws Interrupted when progress says stop.
 RadiositySolution sketch(const LitScene& lit, const VirtualLights& virtual_lights,
-                         const Progress& progress = {});
+                         double cell = 0.0, const Progress& progress = {});
 
 struct SketchOptions {
   int virtual_lights = 1024;    ///< about as many, at least 1

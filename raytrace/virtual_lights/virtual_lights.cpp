@@ -41,10 +41,15 @@ VirtualLights::VirtualLights(const LitScene& lit, const VirtualLightOptions& opt
 }
 
 Spectrum VirtualLights::indirect_irradiance(const ElementCaster& caster, const Query& query) const {
+  const Spectrum E = from_lights(caster, query);
+  return E + from_rays(caster, query, E.mean());
+}
+
+Spectrum VirtualLights::from_lights(const ElementCaster& caster, const Query& query) const {
   const bool is_single = !(query.effort > 0.0f);
   constexpr double coarsest = 0.5;
   const double effort = is_single ? 1.0 : static_cast<double>(query.effort);
-  const Spectrum E = lights_.irradiance(
+  return lights_.irradiance(
       caster, {.at = query.at,
                .key = query.key,
                .shadows = {.min_rays = 1,
@@ -52,15 +57,17 @@ Spectrum VirtualLights::indirect_irradiance(const ElementCaster& caster, const Q
                            .cluster_share = std::min(coarsest, cluster_share / effort)},
                .one_stands_for_all = is_single,
                .relief = query.relief});
-  const int most = paths_.has_specular() ? rays_by_way : rays_beyond_limit;
-  const int rays = is_single ? 1 : std::max(1, static_cast<int>(std::lround(effort * most)));
-  return E + beyond_limit(caster, query, rays, E.mean());
 }
 
-// The light that the limit of the kernel cuts off, and that comes by way of mirrors and glass.
-// `of_lights`: what virtual lights give, mean of the bands.
-Spectrum VirtualLights::beyond_limit(const ElementCaster& caster, const Query& query, int rays,
-                                     float of_lights) const {
+int VirtualLights::rays_of(const Query& query) const {
+  if (!(query.effort > 0.0f)) return 1;
+  const int most = paths_.has_specular() ? rays_by_way : rays_beyond_limit;
+  return std::max(1, static_cast<int>(std::lround(static_cast<double>(query.effort) * most)));
+}
+
+Spectrum VirtualLights::from_rays(const ElementCaster& caster, const Query& query,
+                                  float of_lights) const {
+  const int rays = rays_of(query);
   Spectrum sum = Spectrum::Zero(lit_.scene.bands.count());
   std::vector<Spectrum> found_by_chance;
   const auto& [position, normal, facet] = query.at;
@@ -83,9 +90,9 @@ Spectrum VirtualLights::beyond_limit(const ElementCaster& caster, const Query& q
     if (hit.facet < 0) continue;
     const auto own = random_key(key, static_cast<std::uint64_t>(i), 1);
     const auto gain = query.relief ? static_cast<float>(query.relief->gain(ray.direction)) : 1.0f;
-    sum += gain * near_light(caster, ray, hit, d.z(), query.depth, own);
+    sum += gain * near_light(caster, ray, hit, d.z(), query, own);
     if (paths_.is_specular(hit.facet)) {
-      found_by_chance.emplace_back(gain * by_way(caster, ray, hit, query.depth, own));
+      found_by_chance.emplace_back(gain * by_way(caster, ray, hit, query, own));
     }
   }
   if (!found_by_chance.empty()) sum += limited_sum(found_by_chance, rays, of_lights);
@@ -95,7 +102,7 @@ Spectrum VirtualLights::beyond_limit(const ElementCaster& caster, const Query& q
 // Radiosity at the end of a ray as far as the limit keeps virtual lights from sending it. `cosine`:
 // of the ray to the normal at its start.
 Spectrum VirtualLights::near_light(const ElementCaster& caster, const Ray& ray,
-                                   const ElementHit& hit, double cosine, int depth,
+                                   const ElementHit& hit, double cosine, const Query& query,
                                    std::uint64_t key) const {
   const Spectrum none = Spectrum::Zero(lit_.scene.bands.count());
   if (hit.element < 0 || !paths_.is_diffuse(hit.facet)) return none;
@@ -104,25 +111,32 @@ Spectrum VirtualLights::near_light(const ElementCaster& caster, const Ray& ray,
   const double kernel = cosine * std::max(0.0, -normal.dot(ray.direction)) / (hit.t * hit.t);
   if (!(kernel > most_)) return none;
   const double share = (1.0 - most_ / kernel) * paths_.base_factor(caster, ray, hit);
+  if (query.radiosity) {
+    return static_cast<float>(share) * interpolate(lit_.mesh(), *query.radiosity, hit);
+  }
   if (random_uniform(random_key(key, 6)) >= share) return none;
-  return radiosity(caster, {hit, ray.origin + hit.t * ray.direction, normal, depth}, key);
+  return radiosity(caster, {hit, ray.origin + hit.t * ray.direction, normal, query.depth}, key);
 }
 
 // Radiosity that a ray finds behind mirrors and glass. Shadow rays to virtual lights pass clear
 // panes.
 Spectrum VirtualLights::by_way(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                               int depth, std::uint64_t key) const {
+                               const Query& query, std::uint64_t key) const {
   Spectrum B = Spectrum::Zero(lit_.scene.bands.count());
   std::uint64_t number = 0;  // of arrivals: weak ones go on by Russian roulette
   const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
     if (end.through_panes_only || end.hit.element < 0) return;
     const Spectrum weight = static_cast<float>(end.base_factor) * end.throughput;
+    if (query.radiosity) {
+      B += weight * interpolate(lit_.mesh(), *query.radiosity, end.hit);
+      return;
+    }
     const float chance = std::min(1.0f, weight.maxCoeff());
     const auto own = random_key(key, 7, number++);
     if (!(random_uniform(own) < static_cast<double>(chance))) return;
     const Eigen::Vector3d normal = element_center(lit_.mesh(), end.hit.element).normal;
     B += weight / chance *
-         radiosity(caster, {end.hit, end.position, normal, depth}, random_key(own, 1));
+         radiosity(caster, {end.hit, end.position, normal, query.depth}, random_key(own, 1));
   });
   if (losses.sky.size() > 0 && dome_.size() > 0) {
     B += std::numbers::pi_v<float> * dome_ * losses.sky;

@@ -55,14 +55,23 @@ class VirtualLights {
     float effort = 1.0f;
     const ReliefSlope* relief = nullptr;  ///< light counts times its gain; null: flat
     int depth = 0;  ///< ends of rays, one behind another, that the query is of
+    /// Radiosity at the vertices of the mesh, W/m^2, which rays read where they end, as
+    /// gatherable_radiosity() makes it. Null: rays find it by one light and one further ray.
+    const BandArray* radiosity = nullptr;
   };
   /// Indirect irradiance, W/m^2 per band. `caster` is that of the scene or its ElementCaster::at().
   /// Caustics are not included.
   Spectrum indirect_irradiance(const ElementCaster& caster, const Query& query) const;
 
+  // The two parts of indirect_irradiance(), W/m^2 per band.
+  /// The first sum: light of the lights, as far as the limit of the kernel lets it pass.
+  Spectrum from_lights(const ElementCaster& caster, const Query& query) const;
+  /// The second sum: light that the limit cuts off, and that comes by way of mirrors and glass.
+  /// `of_lights`: the first sum, mean of the bands.
+  Spectrum from_rays(const ElementCaster& caster, const Query& query, float of_lights) const;
+
  private:
-  Spectrum beyond_limit(const ElementCaster& caster, const Query& query, int rays,
-                        float of_lights) const;
+  int rays_of(const Query& query) const;
   /// The end of a ray, `depth` ends of rays behind a query.
   struct End {
     const ElementHit& hit;
@@ -70,9 +79,9 @@ class VirtualLights {
     int depth = 0;
   };
   Spectrum near_light(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                      double cosine, int depth, std::uint64_t key) const;
-  Spectrum by_way(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, int depth,
-                  std::uint64_t key) const;
+                      double cosine, const Query& query, std::uint64_t key) const;
+  Spectrum by_way(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                  const Query& query, std::uint64_t key) const;
   Spectrum radiosity(const ElementCaster& caster, const End& end, std::uint64_t key) const;
 
   LitScene lit_;

@@ -34,8 +34,8 @@ std::optional<SolvedScene> Preview::take() {
 
 bool surpasses_sketch(const LiveState& state) {
   // In the Cornell box the sketch and the shots with their ambient term differ from the solution by
-  // 9 % of the mean alike when this share is unshot.
-  constexpr double as_good = 0.15;
+  // 6 % of the mean alike when this share is unshot.
+  constexpr double as_good = 0.1;
   return !state.lacks_specular && state.unshot_share < as_good;
 }
 

@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <map>
 #include <numbers>
+#include <vector>
 
 #include "scene/errors.h"
 #include "scene/parallel.h"
@@ -31,6 +34,34 @@ TEST(Sketch, HasTheFluxOfTheRoom) {
   // VirtualLights.SendOnAllThatSurfacesReflect), twice which is allowed; elements of 10 cm miss
   // less than 1 % of the slopes of the lamp's light.
   EXPECT_NEAR(flux / arriving, 1.0, 0.06);
+}
+
+/// In a cell larger than the room all vertices of a wall have one indirect light; the direct light
+/// of each stays its own.
+TEST(Sketch, SharesIndirectLightWithinCells) {
+  const test::Integrator room;
+  const LitScene lit{room.lit.scene, room.lit.caster, room.lit.direct_light};
+  const VirtualLights lights(lit, {.count = 500});
+  const RadiositySolution sketched = sketch(lit, lights, 100.0);
+  std::map<int, std::vector<float>> direct, indirect;  // by patch side of a wall
+  const PatchMesh& mesh = lit.mesh();
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int wall = 2 * mesh.facet[e] + (mesh.is_back[mesh.patch[e]] != 0 ? 1 : 0);
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      direct[wall].push_back(sketched.direct_irradiance.row(mesh.corners[e][c]).mean());
+      indirect[wall].push_back(sketched.indirect_irradiance.row(mesh.corners[e][c]).mean());
+    }
+  }
+  int lit_walls = 0;
+  for (const auto& [wall, E] : indirect) {
+    const auto [least, most] = std::ranges::minmax(E);
+    // Evening out equal values leaves the rounding of means of a dozen floats.
+    EXPECT_NEAR(least, most, 1e-5f * most) << wall;
+    if (!(most > 0.0f)) continue;
+    ++lit_walls;
+    EXPECT_LT(std::ranges::min(direct[wall]), 0.9f * std::ranges::max(direct[wall])) << wall;
+  }
+  EXPECT_EQ(lit_walls, 6);
 }
 
 /// A room with a black block.

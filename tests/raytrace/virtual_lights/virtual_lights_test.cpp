@@ -105,6 +105,38 @@ TEST(VirtualLights, LightAFurnaceEvenlyUpToItsCorners) {
   }
 }
 
+/// Rays that read the radiosity of the furnace at the mesh add what the lights leave out.
+TEST(VirtualLights, ReadKnownRadiosityWhereRaysEnd) {
+  constexpr float M = 1.0f, rho = 0.5f, B = M / (1.0f - rho);
+  const TracedScene lit(
+      SceneBuilder()
+          .box({.reflectance = rho, .exitance = M, .one_sided = true}, {0, 0, 0}, {2, 1, 1.5}, true)
+          .build());
+  const BandArray everywhere =
+      BandArray::Constant(lit.mesh.vertex_count(), lit.scene.bands.count(), B);
+  const Vector3d p(0.01, 0.0, 0.01);
+  const Ray down{.origin = p + Vector3d(0, 0.3, 0), .direction = {0, -1, 0}};
+  ElementHit floor;
+  lit.caster.closest_hits({&down, 1}, {&floor, 1});
+  std::vector<double> found;
+  constexpr int sets = 300;
+  for (std::uint64_t set = 0; set < sets; ++set) {
+    const VirtualLights lights({lit.scene, lit.caster, lit.direct_light},
+                               {.count = 400, .key = set});
+    found.push_back(lights
+                        .indirect_irradiance(lit.caster, {.at = {p, Vector3d::UnitY(), floor.facet},
+                                                          .key = set,
+                                                          .radiosity = &everywhere})
+                        .mean());
+  }
+  const test::SampleMean E = test::mean_of(found);
+  std::printf("E / B in a corner: %.4f +- %.4f\n", E.value / B, E.standard_error / B);
+  EXPECT_NEAR(E.value, B, 4.0 * E.standard_error);
+  // At least eight independent lights light the point, and eight rays: 1 / sqrt(8) of B to a set
+  // each, and together 3 % to 300 sets.
+  EXPECT_LT(E.standard_error, 0.03 * B);
+}
+
 /// A room with a mirror wall, a coated floor, a translucent sheet and a lamp with a pane below it.
 TracedScene mixed_room() {
   Scene scene =
