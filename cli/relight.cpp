@@ -21,6 +21,7 @@ struct RelightArguments {
   std::string solution, output, cues, scene, camera;
   std::vector<NamedSetting> settings;
   bool pictures = false;
+  int frames = 0;  // of a film; 0: none
   RenderArguments render;
 };
 
@@ -33,7 +34,8 @@ int relight_solution(const RelightArguments& arguments, Console& console) {
                      .settings = arguments.settings,
                      .scene = arguments.scene,
                      .camera = arguments.camera,
-                     .render = arguments.render},
+                     .render = arguments.render,
+                     .frames = arguments.frames},
                     {console, report});
     report.print();
     return exit_done;
@@ -82,6 +84,13 @@ void add_pictures(CLI::App& command, RelightArguments& arguments) {
           ->needs(pictures)
           ->group(group);
   pictures->needs(scene);
+  command
+      .add_option("--frames", arguments.frames,
+                  "also a film of the fades of all cues: this many pictures, frame-0000.png ...")
+      ->type_name("N")
+      ->check(whole_number(1, 10000))
+      ->needs(pictures)
+      ->group(group);
   command.add_option("--camera", arguments.camera, "which camera (default: the first)")
       ->type_name("NAME")
       ->needs(pictures)

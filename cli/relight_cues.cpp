@@ -1,5 +1,8 @@
 #include "cli/relight_cues.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <optional>
 
 #include "cli/checkpoint.h"
@@ -7,6 +10,8 @@
 #include "cli/outputs.h"
 #include "radiosity/solution/solution_file.h"
 #include "raytrace/cameras/camera_ray.h"
+#include "raytrace/fade_pictures.h"
+#include "scene/errors.h"
 
 namespace lightwell {
 namespace fs = std::filesystem;
@@ -41,6 +46,21 @@ std::vector<CueFiles> name_files(const std::vector<WordedCue>& cues, const Outpu
     if (has_pictures) files.pictures = {folder / (cue.name + ".exr"), folder / (cue.name + ".png")};
     require_writable(files.solution);
     for (const fs::path& picture : files.pictures) require_writable(picture);
+  }
+  return named;
+}
+
+std::vector<fs::path> name_frames(const std::vector<WordedCue>& cues, const OutputFolder& folder,
+                                  int frames) {
+  for (const WordedCue& cue : cues) {
+    if (frames == 0 || !cue.name.starts_with("frame-")) continue;
+    throw InputError(fmt::format(
+        "cue '{}': files whose names begin with 'frame-' are those of the film; rename the cue",
+        cue.name));
+  }
+  std::vector<fs::path> named;
+  for (int i = 0; i < frames; ++i) {
+    require_writable(named.emplace_back(folder / fmt::format("frame-{:04}.png", i)));
   }
   return named;
 }
@@ -84,10 +104,47 @@ Json cue_json(const Cue& cue, const SolvedScene& solved, const CueFiles& files) 
           {"pictures", pictures},       {"scales", scales}};
 }
 
+struct CueFilm {
+  const std::vector<Cue>& cues;
+  const std::vector<fs::path>& files;  // of the frames; empty: no film
+  std::optional<IncidentLight> incident{};
+};
+
+// The film of the fades of all cues, from the light of `before` on.
+void write_film(const RelightByCues& task, const Seen& seen, const CueFilm& film,
+                const SolvedScene& before, const Feedback& feedback) {
+  if (film.files.empty()) return;
+  const Stopwatch watch;
+  RenderOptions options = task.render.options();
+  options.run.progress = feedback.console.progress();
+  const Camera view = task.render.projection.view(seen.camera, seen.scene);
+  const CueSequence sequence(before.solution, film.cues);
+  FadePictures pictures(seen.scene, before, view, options);
+  const double last = std::max<double>(1.0, static_cast<double>(film.files.size()) - 1.0);
+  for (std::size_t i = 0; i < film.files.size(); ++i) {
+    const double second = static_cast<double>(i) / last * sequence.seconds();
+    const Image frame = pictures.at(sequence.shares_at(second));
+    write_picture(film.files[i],
+                  {.image = frame,
+                   .solution = before.solution,
+                   .camera = view,
+                   .render_options = task.render.text(),
+                   .exposure_ev = task.render.exposure_ev,
+                   .incident = film.incident},
+                  task.render.film);
+    feedback.report.add_file(film.files[i]);
+    stop_if_interrupted();
+  }
+  feedback.console.finish_phase();
+  feedback.report.add_phase("film", watch.seconds());
+  feedback.report.add("film", {{"frames", film.files.size()}, {"rendered", pictures.rendered()}});
+}
+
 // Cues with the files that their results go into, one for each.
 struct CueResults {
   const std::vector<Cue>& cues;
   const std::vector<CueFiles>& files;
+  std::optional<IncidentLight> incident{};  // of the .png files
 };
 
 void render_cue(const Seen& seen, const SolvedScene& solved, const PictureTask& picture,
@@ -99,8 +156,7 @@ void render_cue(const Seen& seen, const SolvedScene& solved, const PictureTask& 
 
 void write_cues(const RelightByCues& task, const std::optional<Seen>& seen,
                 const CueResults& results, SolvedScene& solved, const Feedback& feedback) {
-  std::optional<IncidentLight> incident;
-  if (seen) incident = meter_brightest(task, *seen, results.cues, solved);
+  const std::optional<IncidentLight>& incident = results.incident;
   double relighting = 0.0, writing = 0.0;  // s
   Json made = Json::array();
   for (std::size_t i = 0; i < results.cues.size(); ++i) {
@@ -136,11 +192,19 @@ void relight_by_cues(const RelightByCues& task, const Feedback& feedback) {
   const std::optional<Seen> seen = read_seen(task, feedback);
   const OutputFolder folder(task.folder);
   const std::vector<CueFiles> files = name_files(worded, folder, seen.has_value());
+  const std::vector<fs::path> frames = name_frames(worded, folder, task.frames);
   if (seen) task.render.film.check(seen->scene, files.front().pictures);
   SolvedScene solved = read_relightable(task, seen, feedback);
   relight(solved, channel_scales(solved.solution, task.settings, task.solution));
   const std::vector<Cue> cues = cues_of(solved.solution, worded, task.solution);
-  write_cues(task, seen, {cues, files}, solved, feedback);
+  if (task.frames > 0 && !(CueSequence(solved.solution, cues).seconds() > 0.0)) {
+    throw InputError("the cues take no time; give them a 'fade' or a 'hold' for a film");
+  }
+  std::optional<IncidentLight> incident;
+  const SolvedScene before = task.frames > 0 ? solved : SolvedScene();
+  if (seen) incident = meter_brightest(task, *seen, cues, solved);
+  write_cues(task, seen, {cues, files, incident}, solved, feedback);
+  if (seen) write_film(task, *seen, {cues, frames, incident}, before, feedback);
 }
 
 }  // namespace lightwell

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "radiosity/solution/channel_settings.h"
@@ -74,6 +75,31 @@ std::vector<Spectrum> scales_at(const CueFade& fade, double second) {
   return scales;
 }
 
+std::vector<FadeShare> shares_at(const CueFade& fade, double second) {
+  if (second >= fade.seconds) return {{.scales = fade.to}};
+  std::set<double> durations;
+  for (std::size_t c = 0; c < fade.fade.size(); ++c) {
+    if ((fade.from[c] != fade.to[c]).any()) durations.insert(fade.fade[c]);
+  }
+  std::vector<FadeShare> shares;
+  const auto add = [&](const std::vector<Spectrum>& scales, double share) {
+    if (share > 0.0) shares.push_back({scales, share});
+  };
+  std::vector<Spectrum> state = fade.from;
+  double arrived = 1.0;  // share of its way that the state's last channel has gone
+  for (const double duration : durations) {
+    const double since = second - fade.wait;
+    const double next = since >= duration ? 1.0 : std::max(0.0, since / duration);
+    add(state, arrived - next);
+    arrived = next;
+    for (std::size_t c = 0; c < state.size(); ++c) {
+      if (fade.fade[c] == duration) state[c] = fade.to[c];
+    }
+  }
+  add(state, arrived);
+  return shares;
+}
+
 CueSequence::CueSequence(const RadiositySolution& solution, std::span<const Cue> cues) {
   std::vector<Spectrum> scales = effective_scales(solution);
   for (const Cue& cue : cues) {
@@ -83,12 +109,22 @@ CueSequence::CueSequence(const RadiositySolution& solution, std::span<const Cue>
   }
 }
 
-std::vector<Spectrum> CueSequence::at(double second) const {
+CueSequence::Moment CueSequence::moment(double second) const {
   // The cue of the first end after `second`.
   const auto next = std::upper_bound(ends_.begin(), ends_.end(), second);
-  if (next == ends_.end()) return fades_.back().to;
+  if (next == ends_.end()) return {fades_.back(), fades_.back().seconds};
   const double begin = next == ends_.begin() ? 0.0 : *(next - 1);
-  return scales_at(fades_[static_cast<std::size_t>(next - ends_.begin())], second - begin);
+  return {fades_[static_cast<std::size_t>(next - ends_.begin())], second - begin};
+}
+
+std::vector<Spectrum> CueSequence::at(double second) const {
+  const Moment now = moment(second);
+  return scales_at(now.fade, now.second);
+}
+
+std::vector<FadeShare> CueSequence::shares_at(double second) const {
+  const Moment now = moment(second);
+  return lightwell::shares_at(now.fade, now.second);
 }
 
 }  // namespace lightwell

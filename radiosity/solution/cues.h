@@ -41,6 +41,19 @@ CueFade fade_to(const RadiositySolution& solution, std::vector<Spectrum> from, c
 /// cue.
 std::vector<Spectrum> scales_at(const CueFade& fade, double second);
 
+/// A state of all channels, and its share of the light of a moment.
+struct FadeShare {
+  std::vector<Spectrum> scales{};
+  double share = 1.0;  ///< (0, 1]
+};
+
+/// The scales of scales_at() as a mean of a few states' scales, by shares that add up to 1. Light
+/// is linear in scales, so the light of the moment is the same mean of the light of these states.
+/// They are those of the fade whatever the moment, and at most one more than the different
+/// durations of its channels: state k has the channels of the k shortest durations at their end,
+/// and the others at their start.
+std::vector<FadeShare> shares_at(const CueFade& fade, double second);
+
 /// Cues one after another, from the solution's effective scales on: each begins when the one before
 /// has faded and held.
 class CueSequence {
@@ -50,8 +63,17 @@ class CueSequence {
   double seconds() const { return ends_.empty() ? 0.0 : ends_.back(); }
   /// Scales at a time (s) in [0, seconds()]; later those of the last cue.
   std::vector<Spectrum> at(double second) const;
+  /// The same by shares_at().
+  std::vector<FadeShare> shares_at(double second) const;
 
  private:
+  /// A fade, and the seconds since its begin.
+  struct Moment {
+    const CueFade& fade;
+    double second = 0.0;
+  };
+  Moment moment(double second) const;
+
   std::vector<CueFade> fades_{};
   std::vector<double> ends_{};  // of each cue, hold included
 };

@@ -125,6 +125,25 @@ channels = { panel = 0, "spot*" = 2 }
   }
 }
 
+/// The film goes from the light before the cues to that of the last, whose picture it ends with.
+/// Four seconds of fades and holds take the pictures of at most two states each.
+TEST_F(CuesCommand, FilmsAreOfTheFades) {
+  const Words task{"relight", "S.vtp",      "--cues",     "cues.toml",  "-o",
+                   "out",     "--pictures", "--scene",    "stage.toml", "--size",
+                   "40x30",   "--pass",     "interpolate"};
+  const auto json = run_json(task + Words{"--frames", "9"});
+  EXPECT_EQ(json["film"]["frames"], 9);
+  // The light before the cues is a state of no time: 'work' is a cut. Its fade to 'late evening'
+  // has three states, of which its end is a cut to 'night'.
+  EXPECT_EQ(json["film"]["rendered"], 4);
+  EXPECT_TRUE(bytes("out/frame-0008.png") == bytes("out/night.png"));
+  EXPECT_FALSE(bytes("out/frame-0004.png") == bytes("out/frame-0003.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out" / "frame-0009.png"));
+  EXPECT_EQ(run(Words{"relight", "S.vtp", "--cues", "cues.toml", "-o", "o", "--frames", "9"}).code,
+            2)
+      << "a film is one of pictures";
+}
+
 TEST_F(CuesCommand, PagesHoldTheCues) {
   const Ended ended = run({"export", "S.vtp", "--cues", "cues.toml", "-o", "page.html"});
   ASSERT_EQ(ended.code, 0) << ended.err;

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <utility>
 
 #include "radiosity/solution/channel_settings.h"
 #include "scene/errors.h"
@@ -157,6 +159,41 @@ TEST(CueFade, BeginsWithWhateverIsThere) {
 }
 
 /// At the end of a cue the scales are its own to the last bit.
+/// Rising and falling light takes its own time, so that a moment is a mean of three states, which
+/// are the same throughout the fade.
+TEST(CueFade, MomentsAreMeansOfItsStates) {
+  CueFade fade;
+  for (const auto& [from, to] : {std::pair(0.0f, 1.0f), {1.0f, 0.25f}, {0.5f, 0.5f}}) {
+    fade.from.push_back(Spectrum::Constant(3, from));
+    fade.to.push_back(Spectrum::Constant(3, to));
+  }
+  fade.fade = {2.0, 4.0, 9.0};
+  fade.wait = 1.0;
+  fade.seconds = 5.0;
+  std::set<Factors> states;
+  for (const double second : {0.0, 1.0, 1.5, 2.9, 3.0, 4.0, 4.999, 5.0, 7.0}) {
+    const std::vector<FadeShare> shares = shares_at(fade, second);
+    const std::vector<Spectrum> expected = scales_at(fade, second);
+    double sum = 0.0;
+    std::vector<Spectrum> mean(3, Spectrum::Zero(3));
+    for (const FadeShare& each : shares) {
+      EXPECT_GT(each.share, 0.0) << second;
+      sum += each.share;
+      states.insert(factors(each.scales));
+      for (std::size_t c = 0; c < 3; ++c) {
+        mean[c] += static_cast<float>(each.share) * each.scales[c];
+      }
+    }
+    EXPECT_NEAR(sum, 1.0, 1e-15) << second;  // three roundings of doubles
+    for (std::size_t c = 0; c < 3; ++c) {
+      // Six operations on floats of at most 1, 6e-8 each.
+      EXPECT_LT((mean[c] - expected[c]).abs().maxCoeff(), 6 * 6e-8f) << second;
+    }
+  }
+  EXPECT_EQ(states,
+            (std::set<Factors>{{0.0f, 1.0f, 0.5f}, {1.0f, 1.0f, 0.5f}, {1.0f, 0.25f, 0.5f}}));
+}
+
 TEST(CueSequence, CuesFollowEachOtherAfterFadeAndHold) {
   const RadiositySolution s = stage();
   const auto all = [](float factor) {
