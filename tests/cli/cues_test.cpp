@@ -125,17 +125,16 @@ channels = { panel = 0, "spot*" = 2 }
   }
 }
 
-/// The film goes from the light before the cues to that of the last, whose picture it ends with.
-/// Four seconds of fades and holds take the pictures of at most two states each.
+/// The film ends with the picture of the last cue.
 TEST_F(CuesCommand, FilmsAreOfTheFades) {
   const Words task{"relight", "S.vtp",      "--cues",     "cues.toml",  "-o",
                    "out",     "--pictures", "--scene",    "stage.toml", "--size",
                    "40x30",   "--pass",     "interpolate"};
   const auto json = run_json(task + Words{"--frames", "9"});
   EXPECT_EQ(json["film"]["frames"], 9);
-  // The light before the cues is a state of no time: 'work' is a cut. Its fade to 'late evening'
-  // has three states, of which its end is a cut to 'night'.
-  EXPECT_EQ(json["film"]["rendered"], 4);
+  // 'work' and 'night' are cuts, and to 'late evening' all that changes falls in the same time: one
+  // state a cue.
+  EXPECT_EQ(json["film"]["rendered"], 3);
   EXPECT_TRUE(bytes("out/frame-0008.png") == bytes("out/night.png"));
   EXPECT_FALSE(bytes("out/frame-0004.png") == bytes("out/frame-0003.png"));
   EXPECT_FALSE(std::filesystem::exists(folder / "out" / "frame-0009.png"));
