@@ -9,12 +9,10 @@ error of pixels over the mean, beside a picture of 1024 samples of every pixel w
 the sharp picture, whose pixels are other means, has neither. Pixels in which luminous panels are seen are left out.
 """
 import json
-import pathlib
-import resource
 import subprocess
 import sys
 
-from many_lamps import scene
+from many_lamps import scene, seconds_of, task_of
 
 CAMERAS = {"still": "", "lens": "aperture_radius = 0.15\nfocus_distance = 8\n", "shutter": "shutter = [-0.2, 0.2]\n"}
 LAMPS = "0.1"  # W/(m^2 sr): no surface sends on as much, but the ceiling beside lamps
@@ -32,32 +30,20 @@ def blurred_scene(kind, count):
     return text
 
 
-def seconds_of(command):
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([str(word) for word in command], check=True)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-
-
 def main():
-    arguments = sys.argv[1:]
-    split = arguments.index("--") if "--" in arguments else len(arguments)
-    if split < 4:
-        sys.exit(__doc__)
-    program, folder, kind = arguments[0], pathlib.Path(arguments[1]), arguments[2]
-    folder.mkdir(parents=True, exist_ok=True)
+    program, folder, kind, counts, options = task_of(sys.argv[1:], __doc__)
     print(f"{kind:>8} {'camera':>8} {'seconds':>8} {'error':>8} {'mean':>8}")
-    for count in map(int, arguments[3:split]):
+    for count in counts:
         file, solution = folder / f"{kind}{count}.toml", folder / f"{kind}{count}.vtp"
         file.write_text(blurred_scene(kind, count))
-        seconds_of([program, "solve", file, "-o", solution, "--refine", "off", "--quiet"])
+        seconds_of([program, "solve", file, "-o", solution, "--refine", "off", "--quiet"], check=True)
         for camera in CAMERAS:
             picture, reference = folder / f"{kind}{count}_{camera}.exr", folder / f"{kind}{count}_{camera}_reference.exr"
             render = [program, "render", file, solution, "--camera", camera, "--quiet", "--size"]
             if CAMERAS[camera] and not reference.exists():
-                seconds_of(render + ["80x50", "--samples", "1024", "--noise", "0.4%", "-o", reference])
-            least = seconds_of(render + ["1x1", "-o", picture])
-            spent = seconds_of(render + ["80x50", "-o", picture, *arguments[split + 1:]]) - least
+                seconds_of(render + ["80x50", "--samples", "1024", "--noise", "0.4%", "-o", reference], check=True)
+            least, _ = seconds_of(render + ["1x1", "-o", picture], check=True)
+            spent = seconds_of(render + ["80x50", "-o", picture, *options], check=True)[0] - least
             if not CAMERAS[camera]:
                 print(f"{count:8} {camera:>8} {spent:8.2f}", flush=True)
                 continue

@@ -110,22 +110,32 @@ def probes(program, folder, count):
     return worst / mean, outside / len(points)
 
 
-def main():
-    arguments = sys.argv[1:]
+def seconds_of(command, **options):
+    """Processor seconds of a command, and what subprocess.run() returns of it."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    result = subprocess.run([str(word) for word in command], **options)
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime, result
+
+
+def task_of(arguments, usage):
+    """Program, folder (made), kind, counts and further options of a command line."""
     split = arguments.index("--") if "--" in arguments else len(arguments)
     if split < 4:
-        sys.exit(__doc__)
-    program, folder, kind = arguments[0], pathlib.Path(arguments[1]), arguments[2]
+        sys.exit(usage)
+    folder = pathlib.Path(arguments[1])
     folder.mkdir(parents=True, exist_ok=True)
+    return arguments[0], folder, arguments[2], [int(word) for word in arguments[3:split]], arguments[split + 1:]
+
+
+def main():
+    program, folder, kind, counts, options = task_of(sys.argv[1:], __doc__)
     print(f"{kind:>8} {'seconds':>9} {'MB':>6} {'error':>8} {'elements':>9} {'probe':>9} {'outside':>8}")
-    for count in map(int, arguments[3:split]):
+    for count in counts:
         file = folder / f"{kind}{count}.toml"
         file.write_text(scene(kind, count, is_black=False))
-        before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        done = subprocess.run(["/usr/bin/time", "-f", "%M", program, "solve", file, "-o", folder / "hall.vtp", "--json", "--quiet", *arguments[split + 1:]],
-                              capture_output=True, text=True, check=False)
-        after = resource.getrusage(resource.RUSAGE_CHILDREN)
-        spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+        command = ["/usr/bin/time", "-f", "%M", program, "solve", file, "-o", folder / "hall.vtp", "--json", "--quiet", *options]
+        spent, done = seconds_of(command, capture_output=True, text=True, check=False)
         report = json.loads(done.stdout)
         of_probe = probes(program, folder, count) if kind == "point" and count <= 10000 else None
         print(f"{count:8} {spent:9.1f} {int(done.stderr.split()[-1]) / 1024:6.0f} {100 * report['error_estimate']:7.2f}% {report['elements']:9}"

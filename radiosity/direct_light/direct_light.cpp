@@ -221,7 +221,7 @@ LightChoice choice_of(const LightQuery& query) {
 
 }  // namespace
 
-// What a coarse cut with one shadow ray to each light shows. Empty if nothing hangs on it.
+// Asks the lights of a coarse cut by one shadow ray each. Empty if nothing hangs on the result.
 std::optional<LightPilot> DirectLight::pilot(const ElementCaster& caster,
                                              const LightQuery& query) const {
   if (query.shadows.many_lights == ManyLights::all || !sampler_->has_clusters(query.lights)) {

@@ -27,7 +27,7 @@ struct LightShadow {
   int cluster = -1;               ///< see LightSample
   int least = 0, most = 0;        ///< rays
   std::optional<double> share{};  ///< visible; empty: rays are needed
-  EmissionTree::View view{};      // of an emitter that shines by a picture; else without parts
+  EmissionTree::View view{};      ///< of an emitter that shines by a picture; else without parts
   /// Mean exitance of what the point sees of the picture; of a source, what it sends to the point.
   Spectrum pictured{};
 
@@ -50,7 +50,8 @@ void set_effort(std::span<LightShadow> shadows, std::vector<double> other_light,
 void find_share(const ExactShadows& exact, const ElementCaster& caster, const SurfacePoint& at,
                 LightShadow& shadow);
 
-/// What the rays of each light find. `panes` null: nothing passes through panes.
+/// Casts the rays of all lights, and tallies those of each. `panes` null: nothing passes through
+/// panes.
 std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
                                       const ElementCaster& caster, const SobolPoints& sobol,
                                       const SurfacePoint& at, const ClearPanes* panes);

@@ -20,10 +20,10 @@ struct LightCut {
   std::vector<std::size_t> end{};  ///< of each channel's parts
 };
 
-/// What a coarse cut shows of the light at a point.
+/// A coarse cut for a point, and the light that its lights give the point.
 struct LightPilot {
   LightCut cut{};
-  /// By channel: the light that arrives, W/m^2, mean of the bands.
+  /// The light of each channel that arrives, W/m^2, mean of the bands.
   std::vector<double> light{};
 };
 

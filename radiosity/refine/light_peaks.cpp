@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <numbers>
+#include <variant>
 
 #include "mesh/elements/quad_weights.h"
 
@@ -81,11 +82,22 @@ double LightPeaks::unoccluded(int light, const SurfacePoint& at) const {
          light_towards(source, at.position).mean();
 }
 
+// The distance, m, below which rounding may have brought a lamp near to the surface.
+double LightPeaks::clearance_of(int light) const {
+  const auto number = static_cast<std::size_t>(light);
+  const std::size_t emitters = direct_light_.emitters().size();
+  if (number < emitters) return 0.0;
+  const auto* lamp = std::get_if<LampLight>(&direct_light_.free_sources()[number - emitters].shape);
+  return lamp ? lamp->clearance : 0.0;
+}
+
 std::vector<LightPeak> LightPeaks::of_cell(const RefinedElements& elements, int cell, int side,
                                            const Vector3d& normal, int facet) const {
   // At half the longest side L a vertex of the cell, which is no farther than sqrt(2) L / 4 from
   // the foot, has at least (3/2)^(-3/2), half, of the peak.
   constexpr double near = 0.5;
+  // Peaks behind four stronger ones are found in the parts of the cell, if any of the four is
+  // missed; if none is, the strongest may all be hidden, which the four are to make rare.
   constexpr std::size_t most_peaks = 4;
   Corners corners{.count = elements.corner_count(cell)};
   for (int i = 0; i < corners.count; ++i) {
@@ -105,7 +117,7 @@ std::vector<LightPeak> LightPeaks::of_cell(const RefinedElements& elements, int 
     LightPeak peak{.weights = corners.nearest(foot)};
     const Vector3d place = corners.place(peak.weights);
     const double distance = std::max((middle - place).norm(), 0.5 * bound.box.sizes().norm());
-    if (!(distance < reach)) continue;
+    if (!(distance > clearance_of(bound.light)) || !(distance < reach)) continue;
     peak.light = unoccluded(bound.light, {.position = place, .normal = normal, .facet = facet});
     if (!(peak.light > 0.0)) continue;
     // The square of (1 + r^2 / d^2)^(-3/2) over the plane is that of an area pi d^2 / 2 at the

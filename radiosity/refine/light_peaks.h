@@ -33,6 +33,7 @@ class LightPeaks {
                                  const Eigen::Vector3d& normal, int facet) const;
 
  private:
+  double clearance_of(int light) const;
   double unoccluded(int light, const SurfacePoint& at) const;
 
   const DirectLight& direct_light_;

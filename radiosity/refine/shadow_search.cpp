@@ -115,7 +115,6 @@ double ShadowSearch::parts_error(int cell, int side) const {
   return error;
 }
 
-// Square of the greatest error that a peak makes in a cell of this share, by the peak's own light.
 double ShadowSearch::greatest_peak_error(int cell, int side) const {
   const Plane plane = plane_of(cell, side);
   double error = 0.0;

@@ -29,7 +29,8 @@ class ShadowSearch {
   /// bands, (W/m^2)^2. `at_vertices` is the mean squared error at the vertices, on top of which the
   /// result comes, and `shadow_noise` is the squared noise of shadow rays in `at_vertices`.
   double error(int cell, int side, double at_vertices, double shadow_noise) const;
-  /// Bound of what peaks of near lights may add to error().
+  /// The greatest mean squared error that a peak of a near light may make, unobstructed and by its
+  /// own light, (W/m^2)^2.
   double greatest_peak_error(int cell, int side) const;
 
  private:

@@ -15,7 +15,7 @@
 namespace lightwell {
 namespace {
 
-// As many as the parts of a cut for one point.
+// The most pairs of a cut: as many as a cut for one point has parts (see LightSampler).
 constexpr int most_pairs = 2048;
 
 // The light of some lights at a point, as the pixel has it.
@@ -47,7 +47,7 @@ class PairSum {
   // Adds a point that asks one light. `least`: what is worth a shadow ray.
   void add_single(const LightPair& pair, std::size_t number, double least) {
     const double rays = std::min(std::ceil(pair.bound / least), double(effort_.shadows.max_rays));
-    ask(tree_.node(pair.gather).point, {.light = pair.tree->light(pair.light), .cluster = 0},
+    ask(tree_.node(pair.gather).point, {.light = pair.tree->light(pair.light)},
         static_cast<int>(std::max(1.0, rays)), key(number, 0));
   }
 

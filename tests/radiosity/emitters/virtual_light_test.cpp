@@ -49,8 +49,9 @@ TEST(VirtualLight, IsSampledAsItsKernelSays) {
   const double kernel = unoccluded_kernel(light, point, normal);
   ASSERT_GT(kernel, 0.0);
   const SourceSample seen = sample_source(light, point, 0.5, 0.5);
-  // Ten roundings of products and of a normalised direction.
-  EXPECT_NEAR(seen.irradiance * seen.direction.dot(normal), kernel, 1e-14 * kernel);
+  // Two ways to the same quotient of two dot products, of which each term is below the sum's
+  // twofold, and a power of the distance: fewer than 32 roundings of both together.
+  EXPECT_NEAR(seen.irradiance * seen.direction.dot(normal), kernel, 32.0 * 0x1p-53 * kernel);
   const ShadowSample shadow = shadow_sample(light, {point, normal, 3}, 0.5, 0.5);
   EXPECT_EQ(shadow.weight, kernel);
   EXPECT_EQ(shadow.ray.target_group, 7);

@@ -138,8 +138,8 @@ TEST(Refinement, FindsLampsNearAPlaneBetweenItsPoints) {
   const double error = std::sqrt(squares / (n * n)) / (sum / (n * n));
   std::printf("%d lamps 5 cm above a floor: error %.4f, %d elements\n", across * across, error,
               lit.solved.mesh.element_count());
-  // As in ReachesTheToleranceAndKnowsItsError. Peaks that no point sees are an error of
-  // 5 sqrt(pi height^2 / 2), 0.31.
+  // The bound is that of ReachesTheToleranceAndKnowsItsError. Peaks that no point sees are an error
+  // of 5 sqrt(pi height^2 / 2), 0.31.
   EXPECT_LT(error, 1.5 * tolerance);
 }
 

@@ -184,10 +184,10 @@ TEST(CueFade, MomentsAreMeansOfItsStates) {
         mean[c] += static_cast<float>(each.share) * each.scales[c];
       }
     }
-    EXPECT_NEAR(sum, 1.0, 1e-15) << second;  // three roundings of doubles
+    EXPECT_NEAR(sum, 1.0, 3.0 * 0x1p-53) << second;  // three roundings below 1
     for (std::size_t c = 0; c < 3; ++c) {
-      // Six operations on floats of at most 1, 6e-8 each.
-      EXPECT_LT((mean[c] - expected[c]).abs().maxCoeff(), 6 * 6e-8f) << second;
+      // Six roundings of floats of at most 1.
+      EXPECT_LT((mean[c] - expected[c]).abs().maxCoeff(), 6 * 0x1p-24f) << second;
     }
   }
   EXPECT_EQ(states,

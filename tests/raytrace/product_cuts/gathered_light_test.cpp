@@ -17,19 +17,25 @@ namespace {
 
 constexpr int keys = 64;
 
-// The radiance of points with each light asked by each, over keys.
+// The radiance of points with each light asked by each and by itself, over keys: beside brighter
+// lights a light gets few rays, whose visible share is right to some 1e-4 in the mean.
 test::SampleMean of_all_lights(const TracedScene& lit, const std::vector<PixelPoint>& points) {
+  constexpr int few_keys = 16;
   std::vector<double> found;
-  for (int key = 0; key < keys; ++key) {
+  for (int key = 0; key < few_keys; ++key) {
     double sum = 0.0;
     for (const PixelPoint& point : points) {
-      const LightQuery query{.at = point.at,
-                             .key = static_cast<std::uint64_t>(key),
-                             .shadows = {.min_rays = 16, .max_rays = 16, .cluster_share = 0.0},
-                             .base = point.base.get(),
-                             .relief = point.relief ? &*point.relief : nullptr};
-      sum += static_cast<double>(
-          (point.weight * lit.direct_light.irradiance(lit.caster, query)).mean());
+      LightQuery query{.at = point.at,
+                       .key = static_cast<std::uint64_t>(key),
+                       .shadows = {.min_rays = 16, .max_rays = 16},
+                       .base = point.base.get(),
+                       .relief = point.relief ? &*point.relief : nullptr};
+      for (int light = 0; light < lit.direct_light.light_count(); ++light) {
+        const std::vector<LightSample> one{{.light = light}};
+        query.asked = &one;
+        sum += static_cast<double>(
+            (point.weight * lit.direct_light.irradiance(lit.caster, query)).mean());
+      }
     }
     found.push_back(sum);
   }

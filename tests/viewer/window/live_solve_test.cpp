@@ -12,6 +12,7 @@
 #include "tests/sanitizers.h"
 #include "tests/temporary_folder.h"
 #include "tests/viewer/channel_room.h"
+#include "tests/viewer/window/comes_true.h"
 #include "viewer/window/walk_window.h"
 
 namespace lightwell::live_solve_test {
@@ -27,16 +28,6 @@ SolveOptions quick() {
   options.refine.tolerance = 0.0;
   options.error_points = 32;
   return options;
-}
-
-/// Waits until `what` is true; false if that exceeds a time beyond every step of these tests.
-template <class Claim>
-bool comes_true(Claim&& what) {
-  for (int i = 0; i < 6000; ++i) {
-    if (what()) return true;
-    std::this_thread::sleep_for(10ms);
-  }
-  return false;
 }
 
 /// The first shooters are the emitters, with the most unshot power. Before the first shot vertices
@@ -192,14 +183,14 @@ TEST(LiveThread, PausesStepsAndEnds) {
   LiveSolve live(scene, quick(), {});
   live.set_paused(true);
   live.start();
-  EXPECT_TRUE(comes_true([&] { return live.take_light().has_value(); }));
+  EXPECT_TRUE(test::comes_true([&] { return live.take_light().has_value(); }));
   std::this_thread::sleep_for(50ms);
   EXPECT_EQ(live.state().shots, 0);
   EXPECT_EQ(live.state().phase, LivePhase::paused);
   for (int shots = 1; shots < 4; ++shots) {
     live.step_once();
-    EXPECT_TRUE(comes_true([&] { return live.state().shots == shots; }));
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(test::comes_true([&] { return live.state().shots == shots; }));
+    EXPECT_TRUE(test::comes_true([&] {
       const auto light = live.take_light();
       return light && light->shots == shots;
     })) << "every step is shown";
@@ -207,10 +198,10 @@ TEST(LiveThread, PausesStepsAndEnds) {
   std::this_thread::sleep_for(50ms);
   EXPECT_EQ(live.state().shots, 3);
   live.set_paused(false);
-  EXPECT_TRUE(comes_true([&] { return live.state().shots > 3; }));
+  EXPECT_TRUE(test::comes_true([&] { return live.state().shots > 3; }));
   live.stop_shooting();
   std::optional<SolvedScene> solved;
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     solved = live.take_solution();
     return solved.has_value();
   }));
@@ -254,11 +245,11 @@ TEST(LiveWindow, ShowsPausesAndSaves) {
   live.set_paused(true);
   live.start();
   tap("n");
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     window.tick(0.01);
     return window.status().find("step 1,") != std::string::npos;
   })) << window.status();
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     window.tick(0.01);
     return window.solved().solution.direct_irradiance.maxCoeff() > 0.0f;
   }));
@@ -268,7 +259,7 @@ TEST(LiveWindow, ShowsPausesAndSaves) {
   window.release("Control_L");
   EXPECT_NE(window.message().find("Enter"), std::string::npos) << "there is no solution yet";
   tap("Return");
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     window.tick(0.01);
     return std::filesystem::exists(options.solution_file);
   })) << window.status();
@@ -301,7 +292,7 @@ TEST(LiveWindow, KeepsALampDimmedInTheSolution) {
   EXPECT_LT(after, before);
   live.start();
   tap("Return");
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     window.tick(0.01);
     return live.state().phase == LivePhase::done && !window.solved().solution.seconds.empty();
   }));

@@ -10,6 +10,7 @@
 
 #include "raytrace/virtual_lights/sketch.h"
 #include "tests/viewer/channel_room.h"
+#include "tests/viewer/window/comes_true.h"
 #include "viewer/window/walk_window.h"
 
 namespace lightwell::preview_test {
@@ -34,16 +35,6 @@ ViewOptions small_window() {
   return options;
 }
 
-/// Waits until `what` is true; false if that exceeds a time beyond every step of these tests.
-template <class Claim>
-bool comes_true(Claim&& what) {
-  for (int i = 0; i < 6000; ++i) {
-    if (what()) return true;
-    std::this_thread::sleep_for(10ms);
-  }
-  return false;
-}
-
 void tap(WalkWindow& window, const char* key) {
   window.press(key);
   window.release(key);
@@ -52,7 +43,7 @@ void tap(WalkWindow& window, const char* key) {
 TEST(Preview, IsTheSketchOfTheScene) {
   const Scene scene = channel_room();
   Preview preview(scene, {.scene_file = "room.toml"});
-  ASSERT_TRUE(comes_true([&] { return preview.is_ready(); }));
+  ASSERT_TRUE(test::comes_true([&] { return preview.is_ready(); }));
   const std::optional<SolvedScene> taken = preview.take();
   ASSERT_TRUE(taken.has_value());
   EXPECT_TRUE((taken->solution.irradiance() == sketch_scene(scene).solution.irradiance()).all());
@@ -77,7 +68,7 @@ TEST(Preview, EndsAtTheReportOfEachPhase) {
         return true;
       });
       preview = &made;
-      EXPECT_TRUE(comes_true([&] { return seen > 0; })) << wanted << " was never reported";
+      EXPECT_TRUE(test::comes_true([&] { return seen > 0; })) << wanted << " was never reported";
       EXPECT_FALSE(made.is_ready()) << wanted;
       EXPECT_FALSE(made.take().has_value()) << wanted;
     }
@@ -112,13 +103,13 @@ TEST(PreviewWindow, IsLitBeforeTheSolveIsPrepared) {
   EXPECT_NE(window.message().find("prepared"), std::string::npos) << "nothing can shoot yet";
   may_go_on = true;
   const int vertices = window.solved().mesh.vertex_count();
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     window.tick(0.01);
     return !window.shows_sketch();
   })) << window.status();
   EXPECT_NE(window.solved().mesh.vertex_count(), vertices) << "the mesh of the solve";
   EXPECT_EQ(window.status().find("first look"), std::string::npos) << window.status();
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     window.tick(0.01);
     return window.status().find("solved in") != std::string::npos;
   })) << window.status();
@@ -137,7 +128,7 @@ TEST(PreviewWindow, ShowsTheShotsThatKeysAskFor) {
     EXPECT_FALSE(window.shows_sketch());
     live.set_paused(true);
     live.start();
-    EXPECT_TRUE(comes_true([&] {
+    EXPECT_TRUE(test::comes_true([&] {
       window.tick(0.01);
       return window.shows_sketch();
     }));
@@ -160,7 +151,7 @@ TEST(PreviewWindow, ShowsTheShotsOfADimmedLamp) {
   window.expect(preview);
   live.set_paused(true);
   live.start();
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     window.tick(0.01);
     return window.shows_sketch();
   }));
@@ -177,7 +168,7 @@ TEST(PreviewWindow, KeepsTheLightOfMirrorsUntilTheSolution) {
   Preparation preparation(scene, quick());
   WalkWindow window(sketch_scene(scene), preparation, small_window());
   bool was_solved = false;
-  EXPECT_TRUE(comes_true([&] {
+  EXPECT_TRUE(test::comes_true([&] {
     window.tick(0.01);
     was_solved = window.status().find("solved in") != std::string::npos;
     return !window.shows_sketch();
