@@ -9,6 +9,7 @@
 
 #include "radiosity/emitters/emitter.h"
 #include "radiosity/emitters/free_source.h"
+#include "radiosity/many_lights/drawn_half.h"
 #include "scene/surface_point.h"
 
 namespace lightwell {
@@ -104,13 +105,11 @@ LightTree::Draw LightTree::draw_by(int node, double u, const Weight& weight) con
   Draw draw;
   while (is_cluster(node)) {
     const int child = this->node(node).child;
-    const double first = weight(this->node(child)), second = weight(this->node(child + 1));
-    if (!(first + second > 0.0)) return {.light = -1};
-    const double share = first / (first + second);
-    const bool is_first = u < share;
-    u = is_first ? u / share : (u - share) / (1.0 - share);
-    draw.chance *= is_first ? share : 1.0 - share;
-    node = is_first ? child : child + 1;
+    const DrawnHalf drawn = draw_half(weight(this->node(child)), weight(this->node(child + 1)), u);
+    if (drawn.half < 0) return {.light = -1};
+    draw.chance *= drawn.chance;
+    u = drawn.u;
+    node = child + drawn.half;
   }
   draw.light = light(node);
   return draw;

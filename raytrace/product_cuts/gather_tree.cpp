@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "radiosity/many_lights/drawn_half.h"
+
 namespace lightwell {
 namespace {
 
@@ -111,14 +113,12 @@ GatherTree::Draw GatherTree::draw(int number, const LightNode& lights, double u)
   Draw draw;
   while (is_cluster(number)) {
     const int child = node(number).child;
-    const double first = share_of_light(node(child), lights),
-                 second = share_of_light(node(child + 1), lights);
-    if (!(first + second > 0.0)) return {.point = -1};
-    const double share = first / (first + second);
-    const bool is_first = u < share;
-    u = is_first ? u / share : (u - share) / (1.0 - share);
-    draw.chance *= is_first ? share : 1.0 - share;
-    number = is_first ? child : child + 1;
+    const DrawnHalf drawn =
+        draw_half(share_of_light(node(child), lights), share_of_light(node(child + 1), lights), u);
+    if (drawn.half < 0) return {.point = -1};
+    draw.chance *= drawn.chance;
+    u = drawn.u;
+    number = child + drawn.half;
   }
   draw.point = node(number).point;
   return draw;
