@@ -37,9 +37,7 @@ void PatchBuilder::add_facet(int facet, int surface, const Vector3d& normal, Fac
   const bool is_flat = !normal.isZero();
   std::vector<char> at_reflex_corner;
   if (is_flat) at_reflex_corner = split_reflex_corners(mesh);
-  const int first = static_cast<int>(parent_.size());
-  parent_.resize(parent_.size() + mesh.position.size());
-  std::iota(parent_.begin() + first, parent_.end(), first);
+  const int first = shared_.add(mesh.position.size());
   pieces_.push_back({.facet = facet,
                      .surface = surface,
                      .first_vertex = first,
@@ -61,11 +59,6 @@ void PatchBuilder::add_round(int facet, int surface, const RoundShape& shape,
                     .sectors = elements.sectors,
                     .element = std::move(elements.element)});
   round_area_.push_back(std::move(elements.area));
-}
-
-int PatchBuilder::root(int vertex) {
-  while (parent_[vertex] != vertex) vertex = parent_[vertex] = parent_[parent_[vertex]];
-  return vertex;
 }
 
 // The border edges of all pieces, sorted by their points: sides that meet at an edge are
@@ -126,10 +119,7 @@ void PatchBuilder::share_smooth_edges(const std::vector<Side>& sides) {
       return normal_at(a.piece, end.first).dot(normal_at(b.piece, end.second)) >= least_cosine;
     });
     if (!is_smooth) return;
-    for (const auto& [one, other] : ends) {
-      const int r = root(one), s = root(other);
-      parent_[std::max(r, s)] = std::min(r, s);
-    }
+    for (const auto& [one, other] : ends) shared_.join(one, other);
   });
 }
 
@@ -227,7 +217,7 @@ void PatchBuilder::emit_patch(const std::vector<Part>& parts, bool is_back,
   for (const auto& [p, i] : parts) {
     const Piece& piece = pieces_[p];
     const auto vertex = [&](int local) {
-      int& n = number[root(piece.first_vertex + local)];
+      int& n = number[shared_.root(piece.first_vertex + local)];
       if (n < 0) {
         n = static_cast<int>(positions.size());
         positions.push_back(piece.mesh.position[local]);
@@ -263,7 +253,7 @@ PatchMesh PatchBuilder::finish() {
   sides = {};
   PatchMesh out;
   std::vector<Vector3d> positions;
-  std::vector<int> front(parent_.size(), -1), back(parent_.size(), -1);
+  std::vector<int> front(shared_.size(), -1), back(shared_.size(), -1);
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     const Piece& piece = pieces_[p];
     const Material& material = scene_.materials[scene_.surfaces[piece.surface].material];

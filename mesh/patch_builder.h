@@ -4,6 +4,7 @@
 #include "mesh/facets/group_facets.h"
 #include "mesh/patches/patch_mesh.h"
 #include "mesh/patches/round_grid.h"
+#include "scene/disjoint_sets.h"
 #include "scene/facet_normals.h"
 
 namespace lightwell {
@@ -50,7 +51,6 @@ class PatchBuilder {
   std::vector<Side> border_sides() const;
   void share_smooth_edges(const std::vector<Side>& sides);
   Eigen::Vector3d normal_at(int piece, int vertex) const;
-  int root(int vertex);
   FacetPatch facet_patch(const Part& part) const;
   /// Parts that share an edge at which nothing else stands. `first_part` is per piece its first
   /// part.
@@ -70,7 +70,7 @@ class PatchBuilder {
   std::vector<Piece> pieces_;
   std::vector<RoundGrid> grids_;
   std::vector<std::vector<double>> round_area_;
-  std::vector<int> parent_;  ///< union-find over front vertices
+  DisjointSets shared_;  ///< front vertices; those of a set become one
   std::vector<double> element_area_, patch_area_;
 };
 

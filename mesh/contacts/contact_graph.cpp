@@ -1,7 +1,8 @@
 #include "mesh/contacts/contact_graph.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "scene/disjoint_sets.h"
 
 namespace lightwell {
 namespace {
@@ -174,12 +175,7 @@ std::vector<int> ContactGraph::crease_atoms(int index) const {
 // slightly trapezoidal wall is a grid of quadrilaterals. A contact line with two free ends gets a
 // point of its own, at which the values on the line's two sides can differ.
 void ContactGraph::count_pieces() {
-  std::vector<int> parent(atoms_.size());
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&parent](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets opposite(atoms_.size());
   const auto length = [&](int atom) {
     return (welded_[atoms_[atom].a] - welded_[atoms_[atom].b]).norm();
   };
@@ -204,16 +200,16 @@ void ContactGraph::count_pieces() {
       if (one.size() != 1 || other.size() != 1) continue;
       const double ratio = length(one[0]) / length(other[0]);
       constexpr double nearly = 1.1;
-      if (ratio < nearly && ratio * nearly > 1.0) parent[root(one[0])] = root(other[0]);
+      if (ratio < nearly && ratio * nearly > 1.0) opposite.join(one[0], other[0]);
     }
   }
   std::vector<int> most(atoms_.size(), 0);
   for (std::size_t i = 0; i < atoms_.size(); ++i) {
-    int& m = most[root(static_cast<int>(i))];
+    int& m = most[opposite.root(static_cast<int>(i))];
     m = std::max(m, atoms_[i].pieces);
   }
   for (std::size_t i = 0; i < atoms_.size(); ++i) {
-    const int wanted = most[root(static_cast<int>(i))];
+    const int wanted = most[opposite.root(static_cast<int>(i))];
     // Limits the effect of a long chain of ever longer edges on its short end.
     if (wanted <= 1.25 * atoms_[i].pieces + size_.elements_per_edge) atoms_[i].pieces = wanted;
   }

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
+
+#include "scene/disjoint_sets.h"
 
 namespace lightwell {
 namespace {
@@ -53,25 +54,6 @@ const Material& material_of(const Scene& scene, const FacetPlane& plane) {
   return scene.materials[scene.surfaces[plane.surface].material];
 }
 
-// Disjoint sets of planes, joined across seams (union-find).
-class Sheets {
- public:
-  explicit Sheets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int root(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void join(int a, int b) {
-    a = root(a), b = root(b);
-    parent_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<int> parent_;
-};
-
 void add_border_edge(const std::array<int, 2>& ends, const PlaneEdge& use, EmittingPolygon& emitter,
                      std::map<int, int>& corner_of_point) {
   const Vector3d d = (use.high - use.low).normalized();
@@ -90,7 +72,7 @@ std::vector<EmittingPolygon> emitting_polygons(const Scene& scene,
                                                const std::vector<FacetPlane>& planes) {
   const PlaneEdges uses = plane_edges(
       planes, [&](const FacetPlane& plane) { return material_of(scene, plane).is_emitter(); });
-  Sheets sheets(planes.size());
+  DisjointSets sheets(planes.size());  // planes, joined across seams
   // Emission is the same on both sides of a seam only within a material and a side.
   const auto joins = [&](const std::vector<PlaneEdge>& edge) {
     return is_seam(edge, planes) && edge[0].is_forward != edge[1].is_forward &&

@@ -8,6 +8,7 @@
 #include "mesh/facets/group_patches.h"
 #include "mesh/facets/inner_points.h"
 #include "mesh/facets/pair_triangles.h"
+#include "scene/disjoint_sets.h"
 
 namespace lightwell {
 namespace {
@@ -54,12 +55,7 @@ SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<ch
     }
   }
   // Corners (3 t + c) are joined across every open edge. A fan of joined corners is one vertex.
-  std::vector<int> parent(3 * count);
-  std::iota(parent.begin(), parent.end(), 0);
-  const auto root = [&parent](int i) {
-    while (parent[i] != i) i = parent[i] = parent[parent[i]];
-    return i;
-  };
+  DisjointSets fans(3 * static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     for (int c = 0; c < 3; ++c) {
       const int n = split.neighbor[i][c];
@@ -68,8 +64,7 @@ SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<ch
         const auto& of_n = source[n];
         const int there =
             static_cast<int>(std::find(of_n.begin(), of_n.end(), source[i][end]) - of_n.begin());
-        const int a = root(3 * i + end), b = root(3 * n + there);
-        parent[std::max(a, b)] = std::min(a, b);
+        fans.join(3 * i + end, 3 * n + there);
       }
     }
   }
@@ -77,7 +72,7 @@ SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<ch
   for (int i = 0; i < count; ++i) {
     auto& triangle = split.triangles.emplace_back();
     for (int c = 0; c < 3; ++c) {
-      int& v = vertex[root(3 * i + c)];
+      int& v = vertex[fans.root(3 * i + c)];
       if (v < 0) {
         v = static_cast<int>(split.source.size());
         split.source.push_back(source[i][c]);

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <set>
 #include <tuple>
 #include <utility>
 
+#include "scene/disjoint_sets.h"
+
 namespace lightwell {
 namespace {
-
-int root_vertex(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
 
 struct DirectedEdge {
   int low, high;  // vertices
@@ -57,18 +53,16 @@ void drop_seams(std::vector<LightRegions::Edge>& bounds) {
 }  // namespace
 
 LightRegions light_regions(const PatchMesh& mesh) {
-  std::vector<int> parent(mesh.vertex_count());
-  std::iota(parent.begin(), parent.end(), 0);
+  DisjointSets joined(static_cast<std::size_t>(mesh.vertex_count()));
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const int first = root_vertex(parent, mesh.corners[e][0]);
     for (int c = 1; c < mesh.corner_count(e); ++c) {
-      parent[root_vertex(parent, mesh.corners[e][c])] = first;
+      joined.join(mesh.corners[e][0], mesh.corners[e][c]);
     }
   }
   LightRegions regions;
   std::vector<int> number(mesh.vertex_count(), -1);
   for (int e = 0; e < mesh.element_count(); ++e) {
-    int& region = number[root_vertex(parent, mesh.corners[e][0])];
+    int& region = number[joined.root(mesh.corners[e][0])];
     if (region < 0) {
       region = regions.count();
       regions.bounds.emplace_back();

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <tuple>
 
+#include "scene/disjoint_sets.h"
+
 namespace lightwell {
 namespace {
 
@@ -26,14 +28,11 @@ ChartNeighbours::ChartNeighbours(const BakedModel& model, const BakedPart& part)
     for (int c = 0; c < model.corner_count(f); ++c) around_.emplace_back(model.faces[f][c], f);
   }
   std::sort(around_.begin(), around_.end());
-  for (int v = 0; v < part.vertex_count; ++v) weld_.push_back(v);
   find_creases(part);
 }
 
 int ChartNeighbours::joined(int vertex) const {
-  int v = vertex - first_vertex_;
-  while (weld_[v] != v) v = weld_[v];
-  return v + first_vertex_;
+  return joined_[static_cast<std::size_t>(vertex - first_vertex_)];
 }
 
 // Edges sorted by the positions of their ends, so that both sides of a crease are adjacent.
@@ -55,6 +54,7 @@ void ChartNeighbours::find_creases(const BakedPart& part) {
   std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
     return std::tie(a.place, a.face) < std::tie(b.place, b.face);
   });
+  DisjointSets weld(static_cast<std::size_t>(part.vertex_count));
   for (std::size_t i = 1; i < edges.size(); ++i) {
     const Edge &one = edges[i - 1], &other = edges[i];
     if (one.place != other.place || one.vertex == other.vertex) continue;
@@ -65,11 +65,11 @@ void ChartNeighbours::find_creases(const BakedPart& part) {
     across_.emplace_back(one.face, other.face);
     across_.emplace_back(other.face, one.face);
     for (const int end : {0, 1}) {
-      const int a = joined(one.vertex[end]), b = joined(other.vertex[end]);
-      weld_[std::max(a, b) - first_vertex_] = std::min(a, b) - first_vertex_;
+      weld.join(one.vertex[end] - first_vertex_, other.vertex[end] - first_vertex_);
     }
   }
   std::sort(across_.begin(), across_.end());
+  for (int v = 0; v < part.vertex_count; ++v) joined_.push_back(weld.root(v) + first_vertex_);
 }
 
 // A number for each vertex of the part, equal for vertices at equal positions.

@@ -53,9 +53,9 @@ class ChartNeighbours {
 
   const BakedModel& model_;
   int first_vertex_;
-  Pairs around_{};           // (vertex, face), sorted
-  Pairs across_{};           // (face, face) across a crease, both ways, sorted
-  std::vector<int> weld_{};  // union-find over the part's vertices
+  Pairs around_{};             // (vertex, face), sorted
+  Pairs across_{};             // (face, face) across a crease, both ways, sorted
+  std::vector<int> joined_{};  // see joined(), by vertex of the part
 };
 
 }  // namespace lightwell
