@@ -5,6 +5,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/scene.h"
 
 namespace lightwell {

@@ -3,7 +3,9 @@
 #include <Eigen/Geometry>
 #include <vector>
 
+#include "scene/io/corner_maps.h"
 #include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/scene.h"
 
 namespace lightwell {

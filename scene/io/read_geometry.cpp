@@ -12,10 +12,13 @@
 
 #include "scene/errors.h"
 #include "scene/io/convex_cut.h"
+#include "scene/io/corner_maps.h"
 #include "scene/io/default_material.h"
+#include "scene/io/mesh_builder.h"
 #include "scene/io/mesh_file.h"
 #include "scene/io/ply_file.h"
 #include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 #include "scene/io/text_file.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "scene/errors.h"
-#include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/scene.h"
 
 namespace lightwell {

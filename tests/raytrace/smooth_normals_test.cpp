@@ -9,6 +9,8 @@
 #include "radiosity/solve.h"
 #include "raytrace/caustics/caustic_map.h"
 #include "scene/facet_normals.h"
+#include "scene/io/corner_maps.h"
+#include "scene/io/mesh_builder.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
 #include "tests/raytrace/lit_scene.h"

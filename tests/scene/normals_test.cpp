@@ -6,8 +6,10 @@
 #include <sstream>
 
 #include "scene/facet_normals.h"
+#include "scene/io/corner_maps.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/optics.h"
 #include "scene/sampling.h"
 #include "tests/scene/gltf_text.h"

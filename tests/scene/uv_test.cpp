@@ -2,8 +2,11 @@
 #include <algorithm>
 
 #include "scene/facet_textures.h"
+#include "scene/io/corner_maps.h"
+#include "scene/io/mesh_builder.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/sampling.h"
 #include "tests/scene/gltf_text.h"
 #include "tests/scene/scene_file_test.h"

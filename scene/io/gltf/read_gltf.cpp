@@ -6,14 +6,17 @@
 #include <cmath>
 #include <set>
 
+#include "scene/io/corner_maps.h"
 #include "scene/io/gltf/gltf_camera.h"
 #include "scene/io/gltf/gltf_file.h"
 #include "scene/io/gltf/gltf_geometry.h"
 #include "scene/io/gltf/gltf_light.h"
 #include "scene/io/gltf/gltf_materials.h"
+#include "scene/io/mesh_builder.h"
 #include "scene/io/numbered_names.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 #include "scene/io/scene_size.h"

@@ -3,6 +3,7 @@
 #include <optional>
 #include <vector>
 
+#include "scene/io/corner_maps.h"
 #include "scene/io/polygon.h"
 
 namespace lightwell {

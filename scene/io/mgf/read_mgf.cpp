@@ -8,11 +8,14 @@
 #include <vector>
 
 #include "scene/errors.h"
+#include "scene/io/corner_maps.h"
+#include "scene/io/mesh_builder.h"
 #include "scene/io/mgf/mgf_shapes.h"
 #include "scene/io/mgf/mgf_state.h"
 #include "scene/io/numbered_names.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/io/radiance/text/radiance_xform.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"

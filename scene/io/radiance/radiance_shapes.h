@@ -4,8 +4,9 @@
 #include <string>
 #include <variant>
 
+#include "scene/io/mesh_builder.h"
 #include "scene/io/numbered_names.h"
-#include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/io/radiance/radiance_lamps.h"
 #include "scene/io/radiance/radiance_materials.h"
 #include "scene/io/radiance/radiance_sky.h"

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "scene/io/toml/toml_materials.h"
 #include "scene/io/toml/toml_projectors.h"
+#include "scene/io/toml/toml_spectra.h"
 #include "scene/io/toml/toml_value.h"
 #include "scene/scene.h"
 

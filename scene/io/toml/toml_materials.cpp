@@ -19,110 +19,6 @@
 namespace lightwell {
 namespace {
 
-enum class Quantity { share, emission };
-
-Spectrum constant(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
-  const double x =
-      quantity == Quantity::share ? value.number_within(0.0, 1.0) : value.number_at_least(0.0);
-  return constant_spectrum(bands.bands, static_cast<float>(x));
-}
-
-Spectrum per_band(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
-  const auto elements = value.elements("band");
-  if (static_cast<int>(elements.size()) != bands.bands.count()) {
-    value.fail(fmt::format("has {} numbers, but the scene has {} bands; give one number per band",
-                           elements.size(), bands.bands.count()));
-  }
-  Spectrum result(bands.bands.count());
-  for (int k = 0; k < result.size(); ++k) {
-    const TomlValue& x = elements[static_cast<std::size_t>(k)];
-    result[k] = static_cast<float>(quantity == Quantity::share ? x.number_within(0.0, 1.0)
-                                                               : x.number_at_least(0.0));
-  }
-  return result;
-}
-
-SpectrumSamples inline_samples(const TomlTable& table) {
-  SpectrumSamples samples;
-  for (const auto& nm : table.require("wavelengths").elements("wavelength")) {
-    samples.wavelengths_nm.push_back(nm.positive());
-    const std::size_t n = samples.wavelengths_nm.size();
-    if (n > 1 && !(samples.wavelengths_nm[n - 1] > samples.wavelengths_nm[n - 2])) {
-      nm.fail(fmt::format("is {}, after {}; wavelengths must rise", samples.wavelengths_nm[n - 1],
-                          samples.wavelengths_nm[n - 2]));
-    }
-  }
-  const TomlValue values = table.require("values");
-  for (const auto& value : values.elements("value")) samples.values.push_back(value.number());
-  if (samples.values.size() != samples.wavelengths_nm.size() || samples.values.size() < 2) {
-    values.fail(fmt::format("has {} numbers for {} wavelengths; give one each, at least two",
-                            samples.values.size(), samples.wavelengths_nm.size()));
-  }
-  return samples;
-}
-
-SpectrumSamples read_samples(const TomlTable& table) {
-  if (!table.has("file")) return inline_samples(table);
-  if (table.has("wavelengths") || table.has("values")) {
-    table.fail("has a 'file' and also samples in place; keep one of them");
-  }
-  const std::string column = table.has("column") ? table.require("column").name() : "";
-  const TomlValue file = table.require("file");
-  const auto path = (file.file().parent_path() / file.name()).lexically_normal();
-  try {
-    return read_spectrum_csv(path, column);
-  } catch (const InputError& error) {
-    file.fail(fmt::format("cannot be used: {}", error.what()));
-  }
-}
-
-Spectrum sampled(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
-  const bool emits = quantity == Quantity::emission;
-  const TomlTable table =
-      emits ? value.table({"file", "column", "wavelengths", "values", "scale", "per"})
-            : value.table({"file", "column", "wavelengths", "values", "scale"});
-  const SpectrumSamples samples = read_samples(table);
-  const double scale = table.has("scale") ? table.require("scale").number_at_least(0.0) : 1.0;
-  const bool per_nm = table.has("per") && table.require("per").one_of({"band", "nm"}) == "nm";
-  Spectrum result(bands.bands.count());
-  for (int k = 0; k < result.size(); ++k) {
-    const auto [low, high] = bands.edges[static_cast<std::size_t>(k)];
-    if (!covers(samples, low, high)) {
-      value.fail(
-          fmt::format("covers {}-{} nm, but band {} is {}-{} nm; extend the spectrum or "
-                      "narrow the bands",
-                      samples.wavelengths_nm.front(), samples.wavelengths_nm.back(),
-                      bands.bands.names[static_cast<std::size_t>(k)], low, high));
-    }
-    const double x = mean(samples, low, high) * scale * (per_nm ? high - low : 1.0);
-    if (!(x >= 0.0) || (!emits && !(x <= 1.0))) {
-      value.fail(fmt::format("is {} in band {}; it must {}", x,
-                             bands.bands.names[static_cast<std::size_t>(k)],
-                             emits ? "be at least 0" : "lie between 0 and 1"));
-    }
-    result[k] = static_cast<float>(x);
-  }
-  return result;
-}
-
-Spectrum spectral(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
-  if (!value.is_number() && !value.is_array() && !value.is_table()) {
-    value.fail("must be a number, an array of one number per band, or a spectrum { file = ... }");
-  }
-  const Spectrum result = value.is_array()   ? per_band(value, bands, quantity)
-                          : value.is_table() ? sampled(value, bands, quantity)
-                                             : constant(value, bands, quantity);
-  if (!result.isFinite().all()) value.fail("is too large a number");
-  return result;
-}
-
-Spectrum spectral_or(const TomlTable& table, const char* key, const TomlBands& bands,
-                     float otherwise) {
-  const auto value = table.find(key);
-  return value ? spectral(*value, bands, Quantity::share)
-               : constant_spectrum(bands.bands, otherwise);
-}
-
 float read_roughness(const TomlTable& table) {
   const auto value = table.find("roughness");
   return value ? static_cast<float>(value->number_within(0.0, 1.0)) : 0.0f;
@@ -141,11 +37,12 @@ void read_glass(const TomlTable& table, const TomlBands& bands, Material& materi
                     "between {} and {} (glass: 1.5)",
                     ior.number(), lowest_index, highest_index));
   }
-  Dielectric dielectric{.index_of_refraction = index, .tint = spectral_or(t, "tint", bands, 1.0f)};
+  Dielectric dielectric{.index_of_refraction = index,
+                        .tint = read_toml_share_or(t, "tint", bands, 1.0f)};
   dielectric.roughness = read_roughness(t);
   if (const auto thin = t.find("thin")) dielectric.thin = thin->boolean();
   if (const auto absorption = t.find("absorption")) {
-    dielectric.absorption = spectral(*absorption, bands, Quantity::emission);
+    dielectric.absorption = read_toml_emission(*absorption, bands);
     if (!(dielectric.absorption <= highest_absorption).all()) {
       absorption->fail(
           fmt::format("is above {:g} per metre, which nothing passes", highest_absorption));
@@ -162,7 +59,7 @@ void read_glass(const TomlTable& table, const TomlBands& bands, Material& materi
           "goes with thin = true alone: it is the share of light that crosses a pane's body; "
           "without thin give an 'absorption'");
     }
-    dielectric.transmissivity = spectral(*transmissivity, bands, Quantity::share);
+    dielectric.transmissivity = read_toml_share(*transmissivity, bands);
   }
   material.dielectric = dielectric;
   for (const char* other :
@@ -189,7 +86,7 @@ void read_metal(const TomlTable& table, const TomlBands& bands, Material& materi
   const TomlTable t = metal->table({"eta", "k"});
   const auto part = [&](const char* key) {
     const TomlValue value = t.require(key);
-    const Spectrum result = spectral(value, bands, Quantity::emission);
+    const Spectrum result = read_toml_emission(value, bands);
     if (!(result <= highest_metal_index).all()) {
       value.fail(fmt::format("is above {}, which no metal has", highest_metal_index));
     }
@@ -231,7 +128,7 @@ std::optional<GivenCoat> read_coat(const TomlTable& table, const TomlBands& band
                     given.index, lowest_coat_index, highest_index));
   }
   if (!t) return given;
-  given.share = spectral_or(*t, "share", bands, 1.0f);
+  given.share = read_toml_share_or(*t, "share", bands, 1.0f);
   given.roughness = read_roughness(*t);
   if (const auto base = t->find("base")) {
     if (table.has("reflectance")) {
@@ -239,7 +136,7 @@ std::optional<GivenCoat> read_coat(const TomlTable& table, const TomlBands& band
           "is a second statement of the diffuse reflectance, after 'reflectance', which is that of "
           "base and coat together; keep one");
     }
-    material.reflectance = spectral(*base, bands, Quantity::share);
+    material.reflectance = read_toml_share(*base, bands);
     given.has_base = true;
   }
   return given;
@@ -282,7 +179,7 @@ void read_sheet(const TomlTable& table, const TomlBands& bands, bool has_reflect
       value->fail(
           "needs both sides of the surface, but sides is 'one'; remove one of the two keys");
     }
-    share = spectral(*value, bands, Quantity::share);
+    share = read_toml_share(*value, bands);
     if (!has_reflectance) make_room(share, material);
     const Spectrum all = mean_sent_on(material);
     constexpr float rounding = 1e-5f;
@@ -313,7 +210,7 @@ Spectrum read_emitted(const TomlTable& table, const std::string& key, const Toml
                       "number for each band",
                       key));
     }
-    return spectral(value, bands, Quantity::emission);
+    return read_toml_emission(value, bands);
   }
   if (!value.is_number()) {
     value.fail(
@@ -371,67 +268,6 @@ void read_emission(const TomlTable& table, const TomlBands& bands, TomlMaterial&
 
 }  // namespace
 
-Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands) {
-  return spectral(value, bands, Quantity::share);
-}
-
-TomlBands read_toml_bands(const TomlValue& value) {
-  const TomlTable table = value.table({"kind", "lumens_per_watt", "from", "to", "count", "step"});
-  const bool spectral_kind =
-      table.has("kind") && table.require("kind").one_of({"rgb", "spectral"}) == "spectral";
-  if (!spectral_kind) {
-    for (const auto& key : table.present({"from", "to", "count", "step"})) {
-      table.require(key).fail("belongs to kind = \"spectral\"; RGB bands have no edges to choose");
-    }
-    TomlBands result;
-    if (const auto efficacy = table.find("lumens_per_watt")) {
-      result.bands = rgb_bands(efficacy->positive());
-    }
-    return result;
-  }
-  if (const auto efficacy = table.find("lumens_per_watt")) {
-    efficacy->fail("belongs to kind = \"rgb\"; wavelengths have theirs from the CIE observer");
-  }
-  const double low = table.has("from") ? table.require("from").number_within(360, 830) : 400.0;
-  const double high = table.has("to") ? table.require("to").number_within(360, 830) : 700.0;
-  if (!(low < high))
-    table.fail(fmt::format("go from {} nm to {} nm; 'to' must be greater", low, high));
-  if (table.has("count") == table.has("step")) table.fail("need exactly one of 'count' and 'step'");
-  int count = 0;
-  if (table.has("count")) {
-    count = static_cast<int>(table.require("count").integer_within(1, max_bands));
-  } else {
-    const TomlValue step = table.require("step");
-    const double exact = (high - low) / step.positive();
-    if (!(exact > 0.5 && exact < max_bands + 0.5)) {
-      step.fail(fmt::format("makes {:.6g} bands; it must make between 1 and {}", exact, max_bands));
-    }
-    if (!(std::abs(exact - std::round(exact)) <= 1e-6)) {
-      step.fail(fmt::format("cuts {}-{} nm into {:.6g} bands; it must make a whole number of them",
-                            low, high, exact));
-    }
-    count = static_cast<int>(std::round(exact));
-  }
-  TomlBands result{.bands = spectral_bands(low, high, count), .edges = {}};
-  const double width = (high - low) / count;
-  for (int k = 0; k < count; ++k) result.edges.push_back({low + k * width, low + (k + 1) * width});
-  return result;
-}
-
-Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands) {
-  return spectral(value, bands, Quantity::emission);
-}
-
-Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands) {
-  const auto colour = table.find("colour");
-  if (!colour) return constant_spectrum(bands.bands, 1.0f);
-  const Spectrum values = read_toml_emission(*colour, bands);
-  if (!(luminous(bands.bands, values) > 0.0)) {
-    colour->fail("is black; give a colour that people see, or remove it");
-  }
-  return values;
-}
-
 TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures) {
   const TomlTable table = value.table({"reflectance",
@@ -463,8 +299,8 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                        "translucent_texture"});
   TomlMaterial result{.material = {.name = name}};
   Material& material = result.material;
-  material.reflectance = spectral_or(table, "reflectance", bands, 0.0f);
-  material.specular = spectral_or(table, "specular", bands, 0.0f);
+  material.reflectance = read_toml_share_or(table, "reflectance", bands, 0.0f);
+  material.specular = read_toml_share_or(table, "specular", bands, 0.0f);
   for (int k = 0; k < bands.bands.count(); ++k) {
     constexpr float rounding = 1e-5f;  // tolerance for decimals that should add up to 1
     if (material.reflectance[k] + material.specular[k] > 1.0f + rounding) {

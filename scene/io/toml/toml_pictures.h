@@ -1,7 +1,7 @@
 #pragma once
 
 #include "scene/io/pictures/picture_mean.h"
-#include "scene/io/toml/toml_materials.h"
+#include "scene/io/toml/toml_spectra.h"
 #include "scene/io/toml/toml_value.h"
 
 namespace lightwell {

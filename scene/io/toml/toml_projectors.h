@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "scene/io/pictures/picture_mean.h"
-#include "scene/io/toml/toml_materials.h"
+#include "scene/io/toml/toml_spectra.h"
 #include "scene/io/toml/toml_value.h"
 #include "scene/projected_picture.h"
 

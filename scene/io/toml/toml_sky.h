@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/io/toml/toml_materials.h"
+#include "scene/io/toml/toml_spectra.h"
 #include "scene/io/toml/toml_value.h"
 #include "scene/sky.h"
 

@@ -4,19 +4,21 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 
 #include "scene/errors.h"
+#include "scene/io/corner_maps.h"
+#include "scene/io/mesh_builder.h"
 #include "scene/io/mesh_file.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/numbered_names.h"
 #include "scene/io/placed_mesh.h"
 #include "scene/io/polygon.h"
+#include "scene/io/polygon_repair.h"
 #include "scene/io/remarks.h"
 #include "scene/io/round_facets.h"
 #include "scene/io/text_file.h"
 #include "scene/io/toml/toml_motions.h"
+#include "scene/io/toml/toml_placement.h"
 
 namespace lightwell {
 namespace {
@@ -27,64 +29,6 @@ constexpr std::initializer_list<const char*> shape_keys = {"polygon",  "polygons
 // True for meshes of formats that name their unit of length, and bring materials.
 bool has_unit(std::string_view extension) {
   return extension == ".dae" || extension == ".fbx";
-}
-
-// Placement of a shape: x -> scale * rotation * x + offset, in metres.
-struct Placement {
-  double scale = 1.0;
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();
-
-  Eigen::Vector3d operator()(const Eigen::Vector3d& p) const {
-    return scale * (rotation * p) + offset;
-  }
-  UvMap operator()(const UvMap& map) const {
-    const Eigen::Matrix<double, 2, 3> gradient = map.gradient * rotation.transpose() / scale;
-    return {.gradient = gradient, .offset = map.offset - gradient * offset};
-  }
-  NormalMap operator()(const NormalMap& map) const {
-    const Eigen::Matrix3d gradient = rotation * map.gradient * rotation.transpose() / scale;
-    return {.gradient = gradient, .offset = rotation * map.offset - gradient * offset};
-  }
-};
-
-// Cosine and sine, exact for quarter turns: a wall turned by 90 degrees stays parallel to the axes.
-Eigen::Vector2d cos_sin(double degrees) {
-  const double quarters = std::remainder(degrees, 360.0) / 90.0;
-  if (quarters == std::round(quarters)) {
-    const int q = (static_cast<int>(quarters) + 4) % 4;
-    return {q == 0 ? 1.0 : q == 2 ? -1.0 : 0.0, q == 1 ? 1.0 : q == 3 ? -1.0 : 0.0};
-  }
-  const double angle = quarters * std::numbers::pi / 2.0;
-  return {std::cos(angle), std::sin(angle)};
-}
-
-Eigen::Matrix3d turn_about(int axis, double degrees) {
-  const Eigen::Vector2d cs = cos_sin(degrees);
-  const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-  Eigen::Matrix3d m = Eigen::Matrix3d::Identity();
-  m(u, u) = m(v, v) = cs[0];
-  m(v, u) = cs[1];
-  m(u, v) = -cs[1];
-  return m;
-}
-
-Placement read_placement(const TomlTable& table, double metres_per_unit) {
-  Placement placement;
-  if (const auto scale = table.find("scale")) placement.scale = scale->positive();
-  if (const auto rotate = table.find("rotate")) {
-    const Eigen::Vector3d degrees = rotate->vector();
-    placement.rotation =
-        turn_about(2, degrees[2]) * turn_about(1, degrees[1]) * turn_about(0, degrees[0]);
-  }
-  if (const auto pivot = table.find("pivot")) {
-    const Eigen::Vector3d p = pivot->vector();
-    placement.offset = p - placement(p);
-  }
-  if (const auto translate = table.find("translate")) placement.offset += translate->vector();
-  placement.scale *= metres_per_unit;
-  placement.offset *= metres_per_unit;
-  return placement;
 }
 
 Loop read_loop(const TomlValue& value, const Placement& place) {

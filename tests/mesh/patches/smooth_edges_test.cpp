@@ -10,6 +10,8 @@
 #include "mesh/cleaning/planar_regions.h"
 #include "mesh/patches/patch_mesh.h"
 #include "scene/facet_normals.h"
+#include "scene/io/corner_maps.h"
+#include "scene/io/mesh_builder.h"
 #include "scene/io/polygon.h"
 #include "tests/mesh/mesh_scenes.h"
 

@@ -1,4 +1,6 @@
 #include "scene/io/polygon.h"
+#include "scene/io/mesh_builder.h"
+#include "scene/io/polygon_repair.h"
 
 #include <gtest/gtest.h>
 

@@ -16,7 +16,7 @@ struct Variable {
   std::size_t least;
 };
 
-constexpr Variable variables[] = {
+constexpr Variable rif_variables[] = {
     {"AMBFILE", 3},  {"DETAIL", 3},    {"EXPOSURE", 3},   {"EYESEP", 3},  {"illum", 3},
     {"INDIRECT", 3}, {"materials", 3}, {"mkillum", 3},    {"mkpmap", 3},  {"objects", 3},
     {"oconv", 3},    {"OCTREE", 3},    {"OPTFILE", 3},    {"PCMAP", 2},   {"PENUMBRAS", 3},
@@ -55,12 +55,12 @@ void RadianceProject::assign(std::string_view text, const RadianceLocation& loca
   const std::string_view name = text.substr(0, end);
   if (name.empty()) return;
   const std::size_t value = std::min(text.find_first_not_of(" \t=", name.size()), text.size());
-  const auto* found = std::ranges::find_if(variables, [&](const Variable& v) {
+  const auto* found = std::ranges::find_if(rif_variables, [&](const Variable& v) {
     return name.size() >= v.least && v.name.starts_with(name);
   });
-  if (found == std::end(variables)) {
+  if (found == std::end(rif_variables)) {
     std::vector<std::string> names;
-    for (const Variable& v : variables) names.emplace_back(v.name);
+    for (const Variable& v : rif_variables) names.emplace_back(v.name);
     location.fail(fmt::format("there is no variable '{}'.{}", excerpt(name),
                               did_you_mean(std::string(name), names)));
   }

@@ -16,7 +16,7 @@ namespace {
 
 // Variables of the formulas: the ray's direction in the pattern's coordinates, the cosine at the
 // surface, and the table's value.
-const std::vector<std::string> variables = {"Dx", "Dy", "Dz", "Rdot", "table_value"};
+const std::vector<std::string> direction_variables = {"Dx", "Dy", "Dz", "Rdot", "table_value"};
 
 // Number of the string argument that names the function file.
 std::size_t file_argument(const RadiancePrimitive& pattern) {
@@ -53,12 +53,12 @@ DirectionPattern::DirectionPattern(const RadiancePrimitive& pattern, std::size_t
     data_ = std::make_shared<const RadianceData>(*path);
     for (; transform <= file + data_->dimensions(); ++transform) {
       if (transform == words.size()) pattern.fail("lacks a coordinate of its table");
-      coordinates_.push_back(functions_.formula(words[transform], variables));
+      coordinates_.push_back(functions_.formula(words[transform], direction_variables));
     }
-    factors_.push_back(functions_.formula(words[0] + "(table_value)", variables));
+    factors_.push_back(functions_.formula(words[0] + "(table_value)", direction_variables));
   } else {
     for (std::size_t i = 0; i < file; ++i) {
-      factors_.push_back(functions_.formula(words[i], variables));
+      factors_.push_back(functions_.formula(words[i], direction_variables));
     }
   }
   const auto end = words.begin() + static_cast<std::ptrdiff_t>(transform);

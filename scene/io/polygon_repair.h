@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/io/mesh_builder.h"
+
+namespace lightwell {
+
+/// Counts of repairs to the polygons of a mesh file.
+struct Repairs {
+  int split = 0;     ///< not planar, or with a hole joined by a bridge: cut into triangles
+  int thin = 0;      ///< without area: dropped
+  int crossing = 0;  ///< crossing themselves: cut into convex_pieces()
+
+  void add(const Repairs& other) {
+    split += other.split;
+    thin += other.thin;
+    crossing += other.crossing;
+  }
+  /// One note for each count that is not zero.
+  std::vector<std::string> notes() const;
+};
+
+/// Adds the convex_pieces() of a polygon. `uv` and `normals` are given at all corners, of the
+/// boundary, then of the holes; or empty. False, with nothing added, if the pieces have no area.
+bool add_pieces(MeshBuilder& mesh, const Polygon& polygon, const UvLoop& uv = {},
+                const NormalLoop& normals = {});
+
+/// Adds a polygon of a mesh file, repaired where possible. A polygon is cut into triangles if it is
+/// not planar, if a bridge joins a hole to its boundary, or if its texture coordinates or normals
+/// are not linear; and into convex_pieces() if it crosses itself.
+void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv = {},
+                  NormalLoop normals = {});
+
+}  // namespace lightwell

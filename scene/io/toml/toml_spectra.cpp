@@ -1,0 +1,179 @@
+#include "scene/io/toml/toml_spectra.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "scene/errors.h"
+
+namespace lightwell {
+namespace {
+
+enum class Quantity { share, emission };
+
+Spectrum constant(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
+  const double x =
+      quantity == Quantity::share ? value.number_within(0.0, 1.0) : value.number_at_least(0.0);
+  return constant_spectrum(bands.bands, static_cast<float>(x));
+}
+
+Spectrum per_band(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
+  const auto elements = value.elements("band");
+  if (static_cast<int>(elements.size()) != bands.bands.count()) {
+    value.fail(fmt::format("has {} numbers, but the scene has {} bands; give one number per band",
+                           elements.size(), bands.bands.count()));
+  }
+  Spectrum result(bands.bands.count());
+  for (int k = 0; k < result.size(); ++k) {
+    const TomlValue& x = elements[static_cast<std::size_t>(k)];
+    result[k] = static_cast<float>(quantity == Quantity::share ? x.number_within(0.0, 1.0)
+                                                               : x.number_at_least(0.0));
+  }
+  return result;
+}
+
+SpectrumSamples inline_samples(const TomlTable& table) {
+  SpectrumSamples samples;
+  for (const auto& nm : table.require("wavelengths").elements("wavelength")) {
+    samples.wavelengths_nm.push_back(nm.positive());
+    const std::size_t n = samples.wavelengths_nm.size();
+    if (n > 1 && !(samples.wavelengths_nm[n - 1] > samples.wavelengths_nm[n - 2])) {
+      nm.fail(fmt::format("is {}, after {}; wavelengths must rise", samples.wavelengths_nm[n - 1],
+                          samples.wavelengths_nm[n - 2]));
+    }
+  }
+  const TomlValue values = table.require("values");
+  for (const auto& value : values.elements("value")) samples.values.push_back(value.number());
+  if (samples.values.size() != samples.wavelengths_nm.size() || samples.values.size() < 2) {
+    values.fail(fmt::format("has {} numbers for {} wavelengths; give one each, at least two",
+                            samples.values.size(), samples.wavelengths_nm.size()));
+  }
+  return samples;
+}
+
+SpectrumSamples read_samples(const TomlTable& table) {
+  if (!table.has("file")) return inline_samples(table);
+  if (table.has("wavelengths") || table.has("values")) {
+    table.fail("has a 'file' and also samples in place; keep one of them");
+  }
+  const std::string column = table.has("column") ? table.require("column").name() : "";
+  const TomlValue file = table.require("file");
+  const auto path = (file.file().parent_path() / file.name()).lexically_normal();
+  try {
+    return read_spectrum_csv(path, column);
+  } catch (const InputError& error) {
+    file.fail(fmt::format("cannot be used: {}", error.what()));
+  }
+}
+
+Spectrum sampled(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
+  const bool emits = quantity == Quantity::emission;
+  const TomlTable table =
+      emits ? value.table({"file", "column", "wavelengths", "values", "scale", "per"})
+            : value.table({"file", "column", "wavelengths", "values", "scale"});
+  const SpectrumSamples samples = read_samples(table);
+  const double scale = table.has("scale") ? table.require("scale").number_at_least(0.0) : 1.0;
+  const bool per_nm = table.has("per") && table.require("per").one_of({"band", "nm"}) == "nm";
+  Spectrum result(bands.bands.count());
+  for (int k = 0; k < result.size(); ++k) {
+    const auto [low, high] = bands.edges[static_cast<std::size_t>(k)];
+    if (!covers(samples, low, high)) {
+      value.fail(
+          fmt::format("covers {}-{} nm, but band {} is {}-{} nm; extend the spectrum or "
+                      "narrow the bands",
+                      samples.wavelengths_nm.front(), samples.wavelengths_nm.back(),
+                      bands.bands.names[static_cast<std::size_t>(k)], low, high));
+    }
+    const double x = mean(samples, low, high) * scale * (per_nm ? high - low : 1.0);
+    if (!(x >= 0.0) || (!emits && !(x <= 1.0))) {
+      value.fail(fmt::format("is {} in band {}; it must {}", x,
+                             bands.bands.names[static_cast<std::size_t>(k)],
+                             emits ? "be at least 0" : "lie between 0 and 1"));
+    }
+    result[k] = static_cast<float>(x);
+  }
+  return result;
+}
+
+Spectrum spectral(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
+  if (!value.is_number() && !value.is_array() && !value.is_table()) {
+    value.fail("must be a number, an array of one number per band, or a spectrum { file = ... }");
+  }
+  const Spectrum result = value.is_array()   ? per_band(value, bands, quantity)
+                          : value.is_table() ? sampled(value, bands, quantity)
+                                             : constant(value, bands, quantity);
+  if (!result.isFinite().all()) value.fail("is too large a number");
+  return result;
+}
+
+}  // namespace
+
+Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands) {
+  return spectral(value, bands, Quantity::share);
+}
+
+Spectrum read_toml_share_or(const TomlTable& table, const char* key, const TomlBands& bands,
+                            float otherwise) {
+  const auto value = table.find(key);
+  return value ? spectral(*value, bands, Quantity::share)
+               : constant_spectrum(bands.bands, otherwise);
+}
+
+TomlBands read_toml_bands(const TomlValue& value) {
+  const TomlTable table = value.table({"kind", "lumens_per_watt", "from", "to", "count", "step"});
+  const bool spectral_kind =
+      table.has("kind") && table.require("kind").one_of({"rgb", "spectral"}) == "spectral";
+  if (!spectral_kind) {
+    for (const auto& key : table.present({"from", "to", "count", "step"})) {
+      table.require(key).fail("belongs to kind = \"spectral\"; RGB bands have no edges to choose");
+    }
+    TomlBands result;
+    if (const auto efficacy = table.find("lumens_per_watt")) {
+      result.bands = rgb_bands(efficacy->positive());
+    }
+    return result;
+  }
+  if (const auto efficacy = table.find("lumens_per_watt")) {
+    efficacy->fail("belongs to kind = \"rgb\"; wavelengths have theirs from the CIE observer");
+  }
+  const double low = table.has("from") ? table.require("from").number_within(360, 830) : 400.0;
+  const double high = table.has("to") ? table.require("to").number_within(360, 830) : 700.0;
+  if (!(low < high))
+    table.fail(fmt::format("go from {} nm to {} nm; 'to' must be greater", low, high));
+  if (table.has("count") == table.has("step")) table.fail("need exactly one of 'count' and 'step'");
+  int count = 0;
+  if (table.has("count")) {
+    count = static_cast<int>(table.require("count").integer_within(1, max_bands));
+  } else {
+    const TomlValue step = table.require("step");
+    const double exact = (high - low) / step.positive();
+    if (!(exact > 0.5 && exact < max_bands + 0.5)) {
+      step.fail(fmt::format("makes {:.6g} bands; it must make between 1 and {}", exact, max_bands));
+    }
+    if (!(std::abs(exact - std::round(exact)) <= 1e-6)) {
+      step.fail(fmt::format("cuts {}-{} nm into {:.6g} bands; it must make a whole number of them",
+                            low, high, exact));
+    }
+    count = static_cast<int>(std::round(exact));
+  }
+  TomlBands result{.bands = spectral_bands(low, high, count), .edges = {}};
+  const double width = (high - low) / count;
+  for (int k = 0; k < count; ++k) result.edges.push_back({low + k * width, low + (k + 1) * width});
+  return result;
+}
+
+Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands) {
+  return spectral(value, bands, Quantity::emission);
+}
+
+Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands) {
+  const auto colour = table.find("colour");
+  if (!colour) return constant_spectrum(bands.bands, 1.0f);
+  const Spectrum values = read_toml_emission(*colour, bands);
+  if (!(luminous(bands.bands, values) > 0.0)) {
+    colour->fail("is black; give a colour that people see, or remove it");
+  }
+  return values;
+}
+
+}  // namespace lightwell
