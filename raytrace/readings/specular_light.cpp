@@ -1,18 +1,15 @@
 #include "raytrace/readings/specular_light.h"
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
-#include <limits>
-#include <map>
 #include <numbers>
-#include <optional>
 #include <vector>
 
+#include "raytrace/readings/specular_chains.h"
 #include "raytrace/shading/shade.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
@@ -32,46 +29,6 @@ struct Stratum {
   double own = 0.0;  // standard error of the mean of bands, by the stratum's own rays
 };
 
-// A path by way of smooth surfaces from one of the first rays.
-struct Seed {
-  Eigen::Vector3d direction;     // at the point, unit
-  Eigen::Vector3d origin, exit;  // last straight part; exit is unit
-  double end = 0.0;              // m, of the last straight part
-  double weight = 0.0;           // mean of the bands
-};
-struct Chain {
-  ChainTurns turns{};
-  std::vector<Seed> seeds{};
-  double weight = 0.0;      // sum over seeds
-  double heaviest = 0.0;    // weight of a seed
-  bool is_straight = true;  // light leaves it in the direction in which it came, as from a slab
-  bool is_sought = false;   // Newton's method seeks its paths
-
-  void add(const Seed& seed) {
-    constexpr double unbent = 1e-6;
-    seeds.push_back(seed);
-    weight += seed.weight;
-    heaviest = std::max(heaviest, seed.weight);
-    is_straight = is_straight && (seed.exit - seed.direction).norm() < unbent;
-  }
-};
-using Chains = std::map<std::uint64_t, Chain>;
-
-// A point that a path is to end at, or a direction that the path is to end in.
-struct Goal {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  bool is_direction = false;  // `position` is a unit direction towards a source at infinity
-};
-
-// A path that ends at its goal.
-struct Solution {
-  Eigen::Vector3d direction;  // unit, at the point
-  Eigen::Vector3d exit;       // unit, of the last straight part
-  double distance = 0.0;      // m, of the last straight part, to the goal
-  double spread = 0.0;        // |det A|, m^2/sr; for a direction sr/sr
-  Spectrum weight{};
-};
-
 class PointLight {
  public:
   PointLight(const LitScene& lit, const RayTree& tree, const GatherPoint& at,
@@ -81,7 +38,8 @@ class PointLight {
         at_(at),
         options_(options),
         key_(key),
-        bands_(lit.scene.bands.count()) {
+        bands_(lit.scene.bands.count()),
+        paths_(lit.scene, tree, at) {
     frame_.col(2) = at.normal;
     Eigen::Vector3d a, b;
     tangent_frame(at.normal, a, b);
@@ -119,7 +77,7 @@ class PointLight {
   static double area(const Stratum& s) { return side(s) * side(s); }
 
   // Traces a stratum's rays. `chains` gets the paths of these rays; null: not wanted.
-  void sample(Stratum& s, Chains* chains) {
+  void sample(Stratum& s, SpecularChains* chains) {
     s.mean = Spectrum::Zero(bands_);
     std::array<double, rays_per_stratum> value{};
     for (int i = 0; i < rays_per_stratum; ++i) {
@@ -133,7 +91,7 @@ class PointLight {
         visit = [&](const SpecularSegment& part) {
           has_specular_ = true;
           if (part.turns.count == 0) return;
-          Chain& chain = (*chains)[part.chain];
+          SpecularChain& chain = (*chains)[part.chain];
           chain.turns = part.turns;
           const double length = part.ray.direction.norm();
           chain.add({.direction = d.normalized(),
@@ -163,18 +121,19 @@ class PointLight {
     }
   }
 
-  // Chooses the chains that are sought, the heaviest of both kinds. Chains through parallel faces
-  // are many, since light goes to and fro between any two of them; see all_straight() for the
+  // Chooses the chains that are sought, the heaviest of both kinds. SpecularChains through parallel
+  // faces are many, since light goes to and fro between any two of them; see all_straight() for the
   // others.
   void choose_chains() {
     constexpr std::size_t most = 256;
-    std::array<std::vector<Chain*>, 2> kinds;
+    std::array<std::vector<SpecularChain*>, 2> kinds;
     for (auto& [key, chain] : chains_) kinds[chain.is_straight ? 1 : 0].push_back(&chain);
-    for (std::vector<Chain*>& kind : kinds) {
-      std::ranges::stable_sort(
-          kind, [](const Chain* a, const Chain* b) { return a->weight > b->weight; });
+    for (std::vector<SpecularChain*>& kind : kinds) {
+      std::ranges::stable_sort(kind, [](const SpecularChain* a, const SpecularChain* b) {
+        return a->weight > b->weight;
+      });
       if (kind.size() > most) kind.resize(most);
-      for (Chain* chain : kind) chain->is_sought = true;
+      for (SpecularChain* chain : kind) chain->is_sought = true;
     }
   }
 
@@ -252,120 +211,6 @@ class PointLight {
     }
   }
 
-  // Offset of a path from its goal across its last straight part: m, or sines for a direction.
-  static Eigen::Vector2d offset(const Goal& goal, const Eigen::Vector3d& origin,
-                                const Eigen::Vector3d& exit, const Eigen::Matrix3d& axes) {
-    if (goal.is_direction) {
-      const Eigen::Vector3d d = exit - goal.position;
-      return {d.dot(axes.col(0)), d.dot(axes.col(1))};
-    }
-    // Where the path crosses the plane through the goal across axes.col(2).
-    const double along = exit.dot(axes.col(2));
-    const double t = (goal.position - origin).dot(axes.col(2)) / along;
-    const Eigen::Vector3d d = origin + t * exit - goal.position;
-    return {d.dot(axes.col(0)), d.dot(axes.col(1))};
-  }
-
-  struct Traced {
-    Eigen::Vector3d origin, exit;
-    double end = 0.0;
-    Spectrum weight{};
-    Media media{};
-  };
-  std::optional<Traced> trace(const Eigen::Vector3d& direction, std::uint64_t chain,
-                              const ChainTurns& turns) const {
-    std::optional<Traced> found;
-    if (!(direction.dot(at_.normal) > 0.0)) return found;
-    tree_.trace_chain(ray(direction), turns, [&](const SpecularSegment& part) {
-      if (part.chain != chain) return;
-      found = Traced{.origin = part.ray.origin,
-                     .exit = part.ray.direction.normalized(),
-                     .end = part.end * part.ray.direction.norm(),
-                     .weight = part.weight,
-                     .media = part.media};
-    });
-    return found;
-  }
-
-  // Newton's method from the nearest of the first rays; empty where the chain does not lead to the
-  // goal, or where another surface hides the goal (`clearance`, m, before it).
-  std::optional<Solution> solve(const Goal& goal, std::uint64_t key, const Chain& chain,
-                                double clearance) const {
-    const auto miss = [&](const Seed& seed) {
-      const Eigen::Vector3d to = goal.is_direction
-                                     ? goal.position
-                                     : Eigen::Vector3d((goal.position - seed.origin).normalized());
-      return -to.dot(seed.exit.normalized());
-    };
-    const auto& nearest = *std::ranges::min_element(
-        chain.seeds, [&](const Seed& a, const Seed& b) { return miss(a) < miss(b); });
-    Eigen::Vector3d w = nearest.direction.normalized();
-    auto path = trace(w, key, chain.turns);
-    constexpr int most_steps = 20;
-    // Hits are known to about 1e-7 of their distance, and a difference over 1e-3 rad is exact to
-    // 1e-6 where the chain is flat.
-    constexpr double probe_angle = 1e-3;
-    for (int step = 0; path && step < most_steps; ++step) {
-      Eigen::Matrix3d axes;
-      axes.col(2) = path->exit;
-      Eigen::Vector3d a, b;
-      tangent_frame(path->exit, a, b);
-      axes.col(0) = a;
-      axes.col(1) = b;
-      const Eigen::Vector2d r = offset(goal, path->origin, path->exit, axes);
-      Eigen::Vector3d p, q;
-      tangent_frame(w, p, q);
-      const auto derivative = [&](const Eigen::Vector3d& side) -> std::optional<Eigen::Vector2d> {
-        const auto value = [&](double angle) -> std::optional<Eigen::Vector2d> {
-          const auto beside = trace((w + angle * side).normalized(), key, chain.turns);
-          if (!beside) return std::nullopt;
-          return offset(goal, beside->origin, beside->exit, axes);
-        };
-        const auto above = value(probe_angle), below = value(-probe_angle);
-        if (above && below) return (*above - *below) / (2.0 * probe_angle);
-        if (above) return (*above - r) / probe_angle;
-        if (below) return (r - *below) / probe_angle;
-        return std::nullopt;
-      };
-      const auto dp = derivative(p), dq = derivative(q);
-      if (!dp || !dq) return std::nullopt;
-      Eigen::Matrix2d A;
-      A << *dp, *dq;
-      const double det = A.determinant();
-      if (!(std::abs(det) > 0.0)) return std::nullopt;
-      const double distance =
-          goal.is_direction ? 0.0 : (goal.position - path->origin).dot(path->exit);
-      const double scale = goal.is_direction ? 1.0 : std::max(distance, clearance);
-      if (r.norm() <= 1e-6 * scale) {
-        const bool is_hidden = goal.is_direction
-                                   ? std::isfinite(path->end)
-                                   : distance <= 0.0 || path->end < distance - clearance;
-        if (is_hidden) return std::nullopt;
-        return Solution{
-            .direction = w,
-            .exit = path->exit,
-            .distance = distance,
-            .spread = std::abs(det),
-            .weight =
-                goal.is_direction
-                    ? path->weight
-                    : Spectrum(path->weight * path->media.passed(lit_.scene, -1, false, distance))};
-      }
-      Eigen::Vector2d move = -A.inverse() * r;
-      if (!(move.norm() < 1e6)) return std::nullopt;
-      if (move.norm() > 0.5) move *= 0.5 / move.norm();
-      std::optional<Traced> next;
-      Eigen::Vector3d moved = w;
-      for (int halving = 0; halving < 8 && !next; ++halving, move *= 0.5) {
-        moved = (w + move.x() * p + move.y() * q).normalized();
-        next = trace(moved, key, chain.turns);
-      }
-      path = next;
-      w = moved;
-    }
-    return std::nullopt;
-  }
-
   // Light of lamps without surface, and of the sun, by way of smooth surfaces.
   Spectrum lamps_without_surface() const {
     Spectrum E = Spectrum::Zero(bands_);
@@ -384,7 +229,7 @@ class PointLight {
     Spectrum E = Spectrum::Zero(bands_);
     const SourceSample seen = sample_source(source, at_.position, u, v);
     const auto* lamp = std::get_if<LampLight>(&source.shape);
-    Goal goal{.position = seen.direction, .is_direction = true};
+    PathGoal goal{.position = seen.direction, .is_direction = true};
     double clearance = 0.0;
     if (lamp) {
       clearance = lamp->clearance;
@@ -395,7 +240,7 @@ class PointLight {
     Eigen::Vector3d towards = Eigen::Vector3d::Zero();
     for (const auto& [key, chain] : chains_) {
       if (!chain.is_sought) continue;
-      const auto path = solve(goal, key, chain, clearance);
+      const auto path = paths_.find(goal, key, chain, clearance);
       if (!path) continue;
       double intensity = 1.0;
       Spectrum light = source.light;
@@ -412,31 +257,8 @@ class PointLight {
       towards = path->direction;
     }
     if (found.empty()) return E;
-    return E + static_cast<float>(all_straight(goal, towards, found, clearance)) * straight;
-  }
-
-  // Light of all straight chains over that of the chains in `found`, by the first rays within ten
-  // degrees of `towards` whose last part passes the goal: chains through parallel faces lead to the
-  // goal from nearly the same direction.
-  double all_straight(const Goal& goal, const Eigen::Vector3d& towards,
-                      const std::vector<std::uint64_t>& found, double clearance) const {
-    const double near = std::cos(std::numbers::pi / 18.0);
-    double all = 0.0, of_found = 0.0;
-    for (const auto& [key, chain] : chains_) {
-      if (!chain.is_straight) continue;
-      const bool is_found = std::ranges::binary_search(found, key);
-      for (const Seed& seed : chain.seeds) {
-        if (seed.direction.dot(towards) < near) continue;
-        const double distance = (goal.position - seed.origin).dot(seed.exit);
-        const bool passes = goal.is_direction ? !std::isfinite(seed.end)
-                                              : distance > 0.0 && seed.end >= distance - clearance;
-        if (!passes) continue;
-        all += seed.weight;
-        if (is_found) of_found += seed.weight;
-      }
-    }
-    constexpr double most = 2.0;
-    return of_found > 0.0 ? std::min(most, all / of_found) : 1.0;
+    return E +
+           static_cast<float>(all_straight(chains_, goal, towards, found, clearance)) * straight;
   }
 
   // Splits the strata in which emitters are seen by way of smooth surfaces until a stratum is not
@@ -454,7 +276,7 @@ class PointLight {
       const double radius = emitter.is_sphere ? emitter.sphere.radius : std::sqrt(emitter.area);
       for (const auto& [key, chain] : chains_) {
         if (!chain.is_sought || chain.heaviest < least_sought) continue;
-        const auto path = solve({.position = middle}, key, chain, 2.0 * radius);
+        const auto path = paths_.find({.position = middle}, key, chain, 2.0 * radius);
         if (!path) continue;
         const double facing = emitter.is_sphere ? 1.0 : std::abs(path->exit.dot(emitter.normal));
         const double cosine = path->direction.dot(at_.normal);
@@ -507,10 +329,11 @@ class PointLight {
   const SpecularLightOptions& options_;
   std::uint64_t key_;
   int bands_, rays_ = 0;
+  SpecularPaths paths_;
   bool has_specular_ = false;
   Eigen::Matrix3d frame_;
   std::vector<Stratum> strata_{};
-  Chains chains_{};
+  SpecularChains chains_{};
 };
 
 }  // namespace

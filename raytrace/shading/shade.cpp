@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <numeric>
 
 #include "radiosity/gather/final_gather.h"
 #include "raytrace/shading/indirect_slant.h"
@@ -16,45 +15,9 @@
 namespace lightwell {
 namespace {
 
-int root_facet(std::vector<int>& parent, int i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-// Returns the smooth surface of each facet: facets that share mesh vertices belong together, so
-// that the facets of a tessellated column do not count as edges.
-std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
-  std::vector<int> parent(facet_count);
-  std::iota(parent.begin(), parent.end(), 0);
-  std::vector<int> facet_of_vertex(mesh.vertex_count(), -1);
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    const int facet = mesh.facet[e];
-    for (int c = 0; c < mesh.corner_count(e); ++c) {
-      int& other = facet_of_vertex[mesh.corners[e][c]];
-      if (other < 0) other = facet;
-      parent[root_facet(parent, facet)] = root_facet(parent, other);
-    }
-  }
-  for (int f = 0; f < facet_count; ++f) parent[f] = root_facet(parent, f);
-  return parent;
-}
-
 // True if a material is rough somewhere. One of varying roughness may be smooth in the mean.
 bool is_rough(const Material& material) {
   return material.gloss_roughness() > 0.0f || (material.pattern && material.pattern->roughness);
-}
-
-// Returns the part of SpecularSegment::chain that stands for a facet. Facets of one plane have the
-// same; so have all facets of a curved surface.
-std::uint64_t chain_key(bool is_curved, int surface, const Eigen::Vector3d& normal,
-                        const Eigen::Vector3d& point, double diagonal) {
-  constexpr double steps = 1e5;  // of directions, and of distances to the scene's diagonal
-  if (is_curved) return random_key(static_cast<std::uint64_t>(surface), 1);
-  const auto rounded = [](double x) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(steps * x)));
-  };
-  return random_key(random_key(rounded(normal.x()), rounded(normal.y()), rounded(normal.z())),
-                    rounded(normal.dot(point) / diagonal), 2);
 }
 
 }  // namespace
@@ -78,7 +41,8 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       visible_lamps_(options.visible_lamps ? options.visible_lamps
                                            : std::make_shared<const VisibleLamps>(
                                                  scene, caster, direct_light, solution)),
-      bases_(scene.materials) {
+      bases_(scene.materials),
+      facets_(scene, caster.mesh(), normals_) {
   if (textures_->is_empty()) textures_ = nullptr;
   constexpr double rounding = 1e-6;  // share of the scene's diagonal
   if (!normals_.is_empty()) least_lift_ = rounding * scene_bounds(scene).diagonal();
@@ -122,28 +86,6 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   if (std::any_of(scene.materials.begin(), scene.materials.end(), is_rough_mirror)) {
     bright_ =
         BrightPatches(scene, caster, gatherable_radiosity(caster.mesh(), direct_light, solution));
-  }
-  for (const FacetRef& ref : scene_facets(scene)) {
-    const Surface& surface = scene.surfaces[ref.surface];
-    FacetShape shape{.material = surface.material};
-    if (const auto round = round_shape(surface)) {
-      shape.round = static_cast<int>(round_shapes_.size());
-      round_shapes_.push_back(*round);
-    } else {
-      const auto& polygons = std::get<PolygonMesh>(surface.shape);
-      const Facet& facet = polygons.facets[ref.facet];
-      shape.point = polygons.vertices[facet.boundary.front()];
-      shape.normal = facet_normal(polygons, facet);
-    }
-    facets_.push_back(shape);
-  }
-  const auto joined = smooth_surfaces(caster.mesh(), static_cast<int>(facets_.size()));
-  const double diagonal = scene_bounds(scene).diagonal();
-  for (std::size_t f = 0; f < facets_.size(); ++f) {
-    FacetShape& shape = facets_[f];
-    shape.smooth_surface = joined[f];
-    shape.chain = chain_key(shape.round >= 0 || normals_.is_given(static_cast<int>(f)), joined[f],
-                            shape.normal, shape.point, diagonal);
   }
 }
 
@@ -507,7 +449,7 @@ RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& h
                   .pose = caster.pose_of(hit.facet)};
   at.rest = at.pose ? Eigen::Vector3d(at.pose->inverse() * at.position) : at.position;
   if (facet.round >= 0) {
-    at.rest_normal = front_normal(round_shapes_[static_cast<std::size_t>(facet.round)], at.rest);
+    at.rest_normal = front_normal(facets_.round(facet), at.rest);
   } else {
     // The point is projected onto the facet's plane in double, since the caster's distances are
     // float.

@@ -18,6 +18,7 @@
 #include "raytrace/caustics/caustic_map.h"
 #include "raytrace/product_cuts/gathered_light.h"
 #include "raytrace/shading/dome_on_mesh.h"
+#include "raytrace/shading/facet_shapes.h"
 #include "raytrace/shading/lamp_samples.h"
 #include "raytrace/shading/pixel_gather.h"
 #include "raytrace/shading/render_options.h"
@@ -27,7 +28,6 @@
 #include "scene/facet_normals.h"
 #include "scene/facet_relief.h"
 #include "scene/facet_textures.h"
-#include "scene/round_shape.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
@@ -203,15 +203,6 @@ class RayTree {
   void add_specular(const Spectrum& light, RaySample& sample) const;
 
  private:
-  /// Geometry and material of a facet.
-  struct FacetShape {
-    int material = 0;
-    int smooth_surface = 0;   ///< the same for facets that share vertices
-    int round = -1;           ///< index into round_shapes_; -1: a polygon
-    std::uint64_t chain = 0;  ///< the same for facets of one plane or of one curved surface
-    Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< on the plane
-    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  };
   /// A point hit by a ray. The normal is unit and on the side that the ray came from.
   struct ShadingPoint {
     Eigen::Vector3d position, normal;
@@ -438,8 +429,7 @@ class RayTree {
   std::vector<std::array<std::optional<RoughLobe>, 2>> lobes_{};
   CoatedBases bases_;
   bool absorbs_ = false;  ///< whether any body absorbs light
-  std::vector<FacetShape> facets_{};
-  std::vector<RoundShape> round_shapes_{};
+  FacetShapes facets_;
 };
 
 }  // namespace lightwell
