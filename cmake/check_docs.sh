@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Checks that every page begins with a heading, and that the files the documentation names exist: targets of links, and
-# paths of sources in backquotes. Prints one line for each fault; exits with 1 if there is any.
+# Checks that every page begins with a heading, that the README of a room has at most 25 lines, and that the files the
+# documentation names exist: targets of links, and paths of sources in backquotes. Prints one line for each fault; exits
+# with 1 if there is any.
 #   cmake/check_docs.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,6 +11,10 @@ missing() { printf '%s names %s, which does not exist.\n' "$1" "$2"; status=1; }
 while IFS= read -r page; do
   folder=$(dirname "$page")
   head -n 1 "$page" | grep -q '^# ' || { printf '%s does not begin with a heading.\n' "$page"; status=1; }
+  case $page in
+    scene/*|mesh/*|radiosity/*|raytrace/*|viewer/*|cli/*|bench/*)
+      [ "$(wc -l < "$page")" -le 25 ] || { printf '%s has more than 25 lines.\n' "$page"; status=1; } ;;
+  esac
   while IFS= read -r target; do
     case $target in http*|mailto:*|'') continue ;; esac
     [ -e "$folder/${target%%#*}" ] || missing "$page" "$target"
