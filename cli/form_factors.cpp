@@ -384,7 +384,7 @@ Action add_form_factors(CLI::App& command) {
   command
       .add_option("scene", arguments->scene,
                   "geometry: .obj, .stl, .ply, .toml, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
-                  ".mgf, .vs3")
+                  ".mgf, .pov, .vs3")
       ->required()
       ->type_name("SCENE");
   command

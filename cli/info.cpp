@@ -428,7 +428,7 @@ Action add_info(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.description(
       "Describes a scene (.toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
-      ".mgf, .vs3), a "
+      ".mgf, .pov, .vs3), a "
       "solution (.vtp), a picture (.exr) or a luminaire (.ies, .ldt).");
   command.add_option("file", arguments->file, "the file")->required()->type_name("FILE");
   command.add_flag("--ugr", arguments->ugr,

@@ -137,7 +137,7 @@ Action add_mesh(CLI::App& command) {
   command
       .add_option("scene", arguments->scene,
                   "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
-                  ".mgf, .vs3")
+                  ".mgf, .pov, .vs3")
       ->required()
       ->type_name("SCENE");
   auto* const output = command

@@ -52,7 +52,7 @@ Action add_solve(CLI::App& command) {
   command
       .add_option("scene", arguments->scene,
                   "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
-                  ".mgf, .vs3")
+                  ".mgf, .pov, .vs3")
       ->required()
       ->type_name("SCENE");
   command.add_option("-o,--output", arguments->output, "the solution, .vtp (opens in ParaView)")

@@ -7,8 +7,13 @@ namespace {
 
 constexpr double on_the_line = 1e-9;  // relative to the hole's size; far above rounding
 
-// Clips a convex loop to the part where `side` * distance >= 0 (Sutherland & Hodgman 1974).
-Loop clip(const Loop& loop, const std::vector<double>& distance, double side) {
+bool has_area(const Loop& loop, double size) {
+  return loop.size() >= 3 && area_vector(loop).norm() > on_the_line * size * size_of(loop);
+}
+
+}  // namespace
+
+Loop clip_convex(const Loop& loop, const std::vector<double>& distance, double side) {
   Loop kept;
   for (std::size_t i = 0; i < loop.size(); ++i) {
     const std::size_t next = (i + 1) % loop.size();
@@ -20,12 +25,6 @@ Loop clip(const Loop& loop, const std::vector<double>& distance, double side) {
   }
   return kept;
 }
-
-bool has_area(const Loop& loop, double size) {
-  return loop.size() >= 3 && area_vector(loop).norm() > on_the_line * size * size_of(loop);
-}
-
-}  // namespace
 
 Eigen::Vector3d area_vector(const Loop& loop) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -59,9 +58,9 @@ std::vector<Loop> cut_out(const std::vector<Loop>& pieces, const Loop& hole) {
         const double d = (p - hole[i]).dot(outwards);
         distance.push_back(std::abs(d) > on_the_line * size ? d : 0.0);
       }
-      Loop outside = clip(piece, distance, 1.0);
+      Loop outside = clip_convex(piece, distance, 1.0);
       if (has_area(outside, size)) left.push_back(std::move(outside));
-      piece = clip(piece, distance, -1.0);
+      piece = clip_convex(piece, distance, -1.0);
     }
   }
   return left;

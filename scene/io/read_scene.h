@@ -10,9 +10,10 @@ namespace lightwell {
 enum class References { anywhere, inside_folder };
 
 /// Reads a scene whose format follows from the extension: .toml (native, docs/scene-format.md),
-/// .obj, .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .dae (COLLADA), .fbx, .mgf, .rad and
-/// .rif (RADIANCE). The result has passed validate(). Throws InputError naming file, line or
-/// object, value and remedy; LimitError for a reference that `references` forbids.
+/// .obj, .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .dae (COLLADA), .fbx, .mgf, .pov and
+/// .inc (POV-Ray), .rad and .rif (RADIANCE). The result has passed validate(). Throws InputError
+/// naming file, line or object, value and remedy; LimitError for a reference that `references`
+/// forbids.
 Scene read_scene(const std::filesystem::path& path, References references = References::anywhere);
 
 /// Reads the native format (grammar: docs/scene-format.md).
@@ -50,6 +51,12 @@ Scene read_interchange(const std::filesystem::path& path);
 /// Reads the Materials and Geometry Format (Ward 1995). One unit is a metre; exitance is in lm/m^2,
 /// 683 lm/W. See docs/scene-format.md.
 Scene read_mgf(const std::filesystem::path& path);
+
+/// Reads POV-Ray's scene text: shapes, textures, lights and cameras, with the directives and macros
+/// of the language. One unit is a metre; z is turned around, since the text's axes are left-handed.
+/// Light has no known unit (Scene::relative_units). Unread contents are named in the notes. See
+/// docs/from-pov.md.
+Scene read_pov(const std::filesystem::path& path);
 
 /// Reads RADIANCE: a scene file (.rad) or the variables for rad (.rif), which name scene files and
 /// views. Commands in the files (xform, genbox ...) are evaluated by this reader, never by a shell.

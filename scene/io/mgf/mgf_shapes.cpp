@@ -2,11 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "scene/io/placed_mesh.h"
+#include "scene/io/torus_loops.h"
 
 namespace lightwell {
 
@@ -17,26 +16,9 @@ MgfShape mgf_bubble() {
 }
 
 MgfShape mgf_torus(double inner, double outer, bool is_inward) {
-  constexpr int around = 32, across = 16;
-  const double tube = 0.5 * (outer - inner), middle = 0.5 * (outer + inner);
-  const auto angle = [](int i, int of) { return 2.0 * std::numbers::pi * (i % of) / of; };
-  const auto corner = [&](int i, int k, double radius, double far) {
-    const double u = angle(i, around), v = angle(k, across);
-    const double r = far + radius * std::cos(v);
-    return Eigen::Vector3d(r * std::cos(u), r * std::sin(u), radius * std::sin(v));
-  };
-  MgfShape shape{.is_inward = is_inward};
-  for (int i = 0; i < around; ++i) {
-    for (int k = 0; k < across; ++k) {
-      Loop& loop = shape.loops.emplace_back();
-      NormalLoop& of_loop = shape.normals.emplace_back();
-      for (const auto& [a, b] : {std::pair{i, k}, {i + 1, k}, {i + 1, k + 1}, {i, k + 1}}) {
-        loop.push_back(corner(a, b, tube, middle));
-        of_loop.push_back(corner(a, b, 1.0, 0.0));
-      }
-    }
-  }
-  return shape;
+  TorusLoops torus = torus_loops(inner, outer);
+  return {
+      .loops = std::move(torus.loops), .normals = std::move(torus.normals), .is_inward = is_inward};
 }
 
 std::optional<MgfShape> mgf_prism(Loop base, double length) {

@@ -79,6 +79,7 @@ TEST_F(References, OutsideOfTheFolderAreRefused) {
                              R"({"baseColorTexture":{"index":0}}}])",
                              R"(,"material":0)"));
   expect_refused("include.mgf", "v a =\nsph a 1\ni ../outside.mgf\n");
+  expect_refused("include.pov", "sphere { 0, 1 }\n#include \"../outside.inc\"\n");
   expect_refused("mesh_of_fbx.toml", grey + mesh_surface + "../outside.fbx'\n");
   expect_refused(
       "picture.dae",
