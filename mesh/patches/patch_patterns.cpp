@@ -6,8 +6,10 @@
 namespace lightwell {
 
 struct PatchPatterns::Sums {
-  explicit Sums(int bands)
-      : specular(Eigen::ArrayXd::Zero(bands)),
+  Sums(int bands, const CoatLevels* rough_coat)
+      : coat(rough_coat),
+        specular(Eigen::ArrayXd::Zero(bands)),
+        by_coat(specular),
         bare(specular),
         straight(specular),
         transmittance(specular) {}
@@ -15,6 +17,7 @@ struct PatchPatterns::Sums {
   void add(const Material& m, double weight) {
     area += weight;
     add(m.specular, weight, specular);
+    if (coat) add(m.specular, weight * coat->at(m.specular_roughness).mean_mirrored(), by_coat);
     if (m.coat) {
       cover += weight * double{m.coat->cover};
       add(m.coat->bare, weight, bare);
@@ -24,8 +27,9 @@ struct PatchPatterns::Sums {
     roughness += weight * double{m.dielectric ? m.dielectric->roughness : m.specular_roughness};
   }
 
+  const CoatLevels* coat;  // of a coat whose roughness varies; null: none
   double area = 0.0, cover = 0.0, roughness = 0.0;
-  Eigen::ArrayXd specular, bare, straight, transmittance;
+  Eigen::ArrayXd specular, by_coat, bare, straight, transmittance;
 
  private:
   static void add(const Spectrum& share, double weight, Eigen::ArrayXd& sum) {
@@ -51,7 +55,7 @@ PatchPatterns::PatchPatterns(const Scene& scene, const PatchMesh& mesh)
       if (!is_given(p)) continue;
       const Material& material = scene.materials[static_cast<std::size_t>(mesh.material[p])];
       coat_[static_cast<std::size_t>(row_[p])] = material.pattern->coat_levels;
-      Sums sums(bands);
+      Sums sums(bands, material.pattern->roughness ? material.pattern->coat_levels.get() : nullptr);
       for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
         add_element(scene, mesh, e, sums);
       }
@@ -96,6 +100,12 @@ void PatchPatterns::keep(int patch, const Sums& sums) {
   mean(sums.transmittance, transmittance_);
   cover_[row] = static_cast<float>(sums.cover / sums.area);
   roughness_[row] = static_cast<float>(sums.roughness / sums.area);
+  if (!sums.coat) return;
+  // A coat of the mean roughness mirrors another share than the mean of the points does.
+  const double at_mean = sums.coat->at(roughness_[row]).mean_mirrored();
+  if (at_mean > 0.0) {
+    specular_.row(row) = (sums.by_coat / (sums.area * at_mean)).cast<float>().transpose();
+  }
 }
 
 Material PatchPatterns::mirror_of(const Material& material, int patch) const {

@@ -45,7 +45,7 @@ class Assembly {
       settle_rows(found);
     }
     store(*result, found);
-    if (rows_.has_specular()) assemble_specular(mesh_, rows_, options_, *result);
+    if (rows_.has_specular()) assemble_specular(mesh_, rows_, options_, entering_, *result);
     result->rows.close();
     result->specular.close();
     lightwell::report(options_.progress, "balance", 1.0);
@@ -214,6 +214,8 @@ class Assembly {
 
   void store(StoredFormFactors& result, FormFactorReport& found) {
     ArrayXd closure_error = ArrayXd::Zero(n_), reciprocity_error = closure_error;
+    const BandArray& mirrored = options_.mirrored;
+    if (mirrored.size() > 0) entering_.setZero(n_, mirrored.cols());
     found.closure_shift.assign(static_cast<std::size_t>(n_), 0.0f);
     S_.consume([&](int i, std::span<const Exchange> row) {
       std::vector<FormFactor> factors;
@@ -232,6 +234,9 @@ class Assembly {
           worst = std::max(worst, static_cast<float>(shift));
         }
         sum += F;
+        if (mirrored.size() > 0) {
+          entering_.row(i) += static_cast<double>(F) * mirrored.row(j).cast<double>();
+        }
         // Row j computes its F_ji from the same S.
         const auto back = static_cast<float>(S / mesh_.area[j]);
         const double difference = std::abs(mesh_.area[i] * F - mesh_.area[j] * back);
@@ -265,7 +270,8 @@ class Assembly {
   const AssemblyOptions& options_;
   int steps_ = 0;
   ExchangeMatrix S_;
-  PerKind weight_;         // S_ij is scaled by weight_ of i and of j
+  PerKind weight_;              // S_ij is scaled by weight_ of i and of j
+  Eigen::ArrayXXd entering_{};  // share of row i that patches which also diffuse mirror at once
   ArrayXd target_, open_;  // wanted row sum, and its part that leaves the scene, both times A_i
 };
 

@@ -31,6 +31,9 @@ struct AssemblyOptions {
   std::shared_ptr<MemoryBudget> budget{};  ///< storage of the result
   Progress progress{};
   PhaseOf phase_of{};  ///< phases that keep the states of the scalings
+  /// Shares of even light, [0,1], that patches mirror or pass straight on besides what they
+  /// diffuse, patches x bands; empty: no patch does both.
+  BandArray mirrored{};
 };
 
 /// Joins the two estimates of every pair, replaces pairs by known exchange, closes the rows

@@ -20,6 +20,7 @@
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
+#include "radiosity/paths/mirrored_shares_of_patches.h"
 #include "radiosity/visibility/pair_shafts.h"
 #include "scene/parallel.h"
 
@@ -104,6 +105,15 @@ class Estimator {
     for (int i = 0; i < mesh_.patch_count(); ++i) {
       receives_.push_back(paths_.is_diffuse(mesh_.facet[mesh_.first_element[i]]));
     }
+  }
+
+  // Shares that receiving patches mirror or pass straight on; empty: none does.
+  BandArray mirrored() const {
+    BandArray shares = mirrored_shares(scene_, mesh_);
+    for (int i = 0; i < mesh_.patch_count(); ++i) {
+      if (receives_[static_cast<std::size_t>(i)] == 0) shares.row(i).setZero();
+    }
+    return (shares > 0.0f).any() ? shares : BandArray();
   }
 
   Estimate estimate() const {
@@ -323,7 +333,8 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
   const PatchMesh& mesh = lit.mesh();
   budget->plan(bytes_beside_rows(
       mesh, static_cast<std::int64_t>(lit.direct_light.emitters().size()), options));
-  Estimate estimate = Estimator(lit, options, budget).estimate();
+  const Estimator estimator(lit, options, budget);
+  Estimate estimate = estimator.estimate();
   const auto phase_of = [&](std::string_view name) -> JournalPhase {
     return {options.run.journal, name, [&](Fingerprint& print) {
               add_form_factor_inputs(print, lit.scene, lit.direct_light, mesh, options);
@@ -340,7 +351,8 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
                                       {.enforce_closure = options.enforce_closure,
                                        .budget = budget,
                                        .progress = options.run.progress,
-                                       .phase_of = phase_of},
+                                       .phase_of = phase_of,
+                                       .mirrored = estimator.mirrored()},
                                       report);
   if (report) {
     report->row_error = std::move(estimate.row_error);

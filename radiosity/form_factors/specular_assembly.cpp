@@ -65,19 +65,59 @@ Eigen::ArrayXXd product(const RecordStore& S, const Eigen::ArrayXXd& x) {
   return own + below;
 }
 
-Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const RecordStore& S,
+// Light of rows behind mirrors and glass, per band.
+struct RowLight {
+  Eigen::ArrayXXd left;  // 1 - s_j: what a patch does not mirror of what arrives there
+  Eigen::ArrayXXd
+      own;  // sum of the row's own estimates, times `left` of the patches that they reach
+  Eigen::ArrayXXd
+      ratio;  // light that enters mirrors by the row's form factors, over that of its rays
+  Eigen::ArrayXXd unfound;  // light that enters, though no ray of the row did
+};
+
+RowLight row_light(RowEstimates& rows, const AssemblyOptions& options,
+                   const Eigen::ArrayXXd& entering) {
+  const int n = rows.patch_count(), bands = rows.bands();
+  RowLight light{.left = Eigen::ArrayXXd::Ones(n, bands),
+                 .own = Eigen::ArrayXXd::Zero(n, bands),
+                 .ratio = Eigen::ArrayXXd::Ones(n, bands),
+                 .unfound = Eigen::ArrayXXd::Zero(n, bands)};
+  const bool is_mixed = entering.size() > 0 && options.enforce_closure;
+  if (is_mixed) light.left -= options.mirrored.cast<double>();
+  for (int i = 0; i < n; ++i) {
+    if (!is_mixed) {
+      light.own.row(i) = rows.specular_sum(i);
+      continue;
+    }
+    const RecordSpan row = rows.specular_shares().row(i);
+    for (std::size_t k = 0; k < row.size(); ++k) {
+      light.own.row(i) += values_of(row[k], bands).cast<double>() * light.left.row(row.patch(k));
+    }
+    const Eigen::Array<double, 1, Eigen::Dynamic> entered = rows.specular(i) + entering.row(i);
+    const Eigen::Array<double, 1, Eigen::Dynamic> found =
+        light.own.row(i) +
+        (rows.specular_escaped(i) + rows.absorbed(i) + rows.cut(i)).cast<double>();
+    light.ratio.row(i) = (found > 0.0).select(entered / found, 1.0);
+    light.unfound.row(i) = (found > 0.0).select(0.0 * entered, entered);
+  }
+  return light;
+}
+
+Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowLight& light, const RecordStore& S,
                         const PhaseOf& phase_of) {
-  Eigen::ArrayXXd target = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
-  for (int i = 0; i < rows.patch_count(); ++i) target.row(i) = mesh.area[i] * rows.specular_sum(i);
+  Eigen::ArrayXXd target = light.left * light.ratio * light.own;
+  target.colwise() *= mesh.area;
+  const auto scaled = [&](const Eigen::ArrayXXd& x) -> Eigen::ArrayXXd {
+    return light.left * product(S, light.left * x);
+  };
   // Bounds on the scaling: few rays of a row may have missed what others sent to the row, and
   // targets may contradict each other. Factors would then grow without bound.
   constexpr double most_stretch = 2.0, largest_factor = 4.0;
-  constexpr int most_iterations = 50;
-  const Eigen::ArrayXXd has = product(S, Eigen::ArrayXXd::Ones(target.rows(), target.cols()));
+  constexpr int most_iterations = 200;
+  const Eigen::ArrayXXd has = scaled(Eigen::ArrayXXd::Ones(target.rows(), target.cols()));
   target = target.max(has / most_stretch).min(has * most_stretch);
   constexpr double tolerance = 1e-8;
-  return symmetric_scaling([&](const Eigen::ArrayXXd& x) { return product(S, x); },
-                           Eigen::ArrayXXd::Zero(target.rows(), target.cols()), target,
+  return symmetric_scaling(scaled, Eigen::ArrayXXd::Zero(target.rows(), target.cols()), target,
                            phase_of("balance of mirrors and glass"), tolerance, most_iterations)
       .max(1.0 / largest_factor)
       .min(largest_factor);
@@ -86,10 +126,11 @@ Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowEstimates& rows, const R
 }  // namespace
 
 void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, const AssemblyOptions& options,
-                       StoredFormFactors& result) {
+                       const Eigen::ArrayXXd& entering, StoredFormFactors& result) {
+  const RowLight light = row_light(rows, options, entering);
   RecordStore S = joined_records(mesh, rows, options.budget);
   Eigen::ArrayXXd d = Eigen::ArrayXXd::Ones(rows.patch_count(), rows.bands());
-  if (options.enforce_closure) d = balance(mesh, rows, S, options.phase_of);
+  if (options.enforce_closure) d = balance(mesh, light, S, options.phase_of);
   Eigen::ArrayXXd kept = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
   unfold_symmetric(S, [&](int i, RecordSpan below, RecordSpan upper) {
     std::vector<int> patches;
@@ -106,27 +147,29 @@ void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, const Assembly
       }
     }
     for (std::size_t k = 0; k < values.size(); ++k) {
-      kept(i, static_cast<Eigen::Index>(k) % rows.bands()) += values[k];
+      const auto band = static_cast<Eigen::Index>(k) % rows.bands();
+      const int j = patches[k / static_cast<std::size_t>(rows.bands())];
+      kept(i, band) += light.left(j, band) * static_cast<double>(values[k]);
     }
     result.append_specular(i, patches, values);
   });
   for (int i = 0; i < rows.patch_count(); ++i) {
     if (!rows.is_measured(i)) continue;
-    // The change by balancing is offset against the row's losses, so that rows sum to 1.
+    // The change by balancing is offset against the row's losses, so that rows keep their light.
+    using Row = Eigen::Array<double, 1, Eigen::Dynamic>;
     const auto as_row = [](const auto& spectrum) {
       return spectrum.template cast<double>().eval();
     };
-    const Eigen::Array<double, 1, Eigen::Dynamic> change =
-        options.enforce_closure
-            ? Eigen::Array<double, 1, Eigen::Dynamic>(as_row(rows.specular_sum(i)) - kept.row(i))
-            : Eigen::Array<double, 1, Eigen::Dynamic>::Zero(rows.bands());
-    const Eigen::Array<double, 1, Eigen::Dynamic> absorbed =
-        as_row(rows.absorbed(i) + rows.cut(i)) + change;
+    const Row ratio = light.ratio.row(i);
+    const Row change = options.enforce_closure ? Row(ratio * light.own.row(i) - kept.row(i))
+                                               : Row(Row::Zero(rows.bands()));
+    const Row absorbed =
+        ratio * as_row(rows.absorbed(i) + rows.cut(i)) + change + light.unfound.row(i);
     result.absorbed_share.row(i) = absorbed.max(0.0).cast<float>();
-    result.escaped_share.row(i) =
-        (as_row(result.escaped_share.row(i)) + as_row(rows.specular_escaped(i)) + absorbed.min(0.0))
-            .max(0.0)
-            .cast<float>();
+    result.escaped_share.row(i) = (as_row(result.escaped_share.row(i)) +
+                                   ratio * as_row(rows.specular_escaped(i)) + absorbed.min(0.0))
+                                      .max(0.0)
+                                      .cast<float>();
   }
 }
 

@@ -9,8 +9,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "mesh/patches/patch_patterns.h"
 #include "mesh/patches/patch_sampler.h"
+#include "radiosity/paths/mirrored_shares_of_patches.h"
 #include "scene/coat.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
@@ -257,16 +257,10 @@ class Collector {
         }
       });
     }
-    std::vector<Spectrum> sent_on;
-    for (const Material& material : scene.materials) sent_on.push_back(mean_specular(material));
+    const BandArray sent_on = mirrored_shares(scene, mesh);
     for (int i = 0; i < mesh.patch_count(); ++i) {
       from_afar_.col(i) += mesh.area[i] * E.row(i).transpose().cast<double>();
-      const auto material = static_cast<std::size_t>(mesh.material[static_cast<std::size_t>(i)]);
-      const bool has_pattern = mesh.patterns && mesh.patterns->is_given(i);
-      const Spectrum sent =
-          has_pattern ? mean_specular(mesh.patterns->mirror_of(scene.materials[material], i))
-                      : sent_on[material];
-      const Eigen::ArrayXd kept = 1.0 - sent.cast<double>();
+      const Eigen::ArrayXd kept = 1.0 - sent_on.row(i).transpose().cast<double>();
       for (Eigen::Index k = 0; k < from_afar_.rows(); k += bands_) {
         light_.emitted.segment(k, bands_) += kept * from_afar_.col(i).segment(k, bands_);
       }
