@@ -139,7 +139,7 @@ void PovLanguage::read_statements(const Visit& visit) {
     } catch (const LimitError&) {
       throw;
     } catch (const InputError& error) {
-      constexpr std::int64_t steps_of_a_failure = 100;
+      constexpr std::int64_t steps_of_a_failure = 1000;
       spend(steps_of_a_failure);
       skip_statement();
       remarks_.add_unusable("Statements that cannot be used were left out", failed_, error.what());

@@ -17,10 +17,10 @@
 namespace lightwell {
 namespace {
 
-constexpr std::array<std::string_view, 15> shapes_left_out = {
-    "blob",          "isosurface",     "sor",           "text",         "height_field",
-    "julia_fractal", "superellipsoid", "bicubic_patch", "parametric",   "quadric",
-    "quartic",       "cubic",          "poly",          "sphere_sweep", "ovus"};
+constexpr std::array<std::string_view, 14> shapes_left_out = {
+    "blob",           "isosurface",    "text",         "height_field", "julia_fractal",
+    "superellipsoid", "bicubic_patch", "parametric",   "quadric",      "quartic",
+    "cubic",          "poly",          "sphere_sweep", "ovus"};
 
 constexpr std::array<std::string_view, 4> groups = {"union", "merge", "object", "light_group"};
 

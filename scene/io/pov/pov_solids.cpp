@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scene/io/placed_mesh.h"
+#include "scene/io/pov/pov_profile.h"
 #include "scene/io/round_facets.h"
 #include "scene/io/torus_loops.h"
 
@@ -102,17 +103,23 @@ PovSolid read_torus(PovCursor& cursor, Remarks& remarks) {
 
 // The profile's points are (distance from the axis, height).
 PovSolid read_pov_lathe(PovCursor& cursor) {
-  for (const char* curve : {"quadratic_spline", "cubic_spline", "bezier_spline"}) {
-    if (cursor.take(curve)) {
-      cursor.node().fail(fmt::format("is a {}; only linear ones are read", curve));
-    }
-  }
+  PovCurve curve = cursor.node().keyword == "sor" ? PovCurve::squared_radius : PovCurve::linear;
+  if (cursor.take("quadratic_spline")) curve = PovCurve::quadratic;
+  if (cursor.take("cubic_spline")) curve = PovCurve::cubic;
+  if (cursor.take("bezier_spline")) curve = PovCurve::bezier;
   cursor.take("linear_spline");
   const std::size_t count = cursor.need_count("number of points");
-  std::vector<Eigen::Vector2d> profile;
+  std::vector<Eigen::Vector2d> given;
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d p = cursor.need_point("profile");
-    profile.emplace_back(std::abs(p.x()), p.y());
+    given.emplace_back(p.x(), p.y());
+  }
+  const bool is_open = cursor.take("open");
+  std::vector<Eigen::Vector2d> profile = pov_profile(curve, given);
+  for (Eigen::Vector2d& p : profile) p.x() = std::abs(p.x());
+  if (curve == PovCurve::squared_radius && !is_open && !profile.empty()) {
+    profile.insert(profile.begin(), {0.0, profile.front().y()});  // discs at both ends
+    profile.emplace_back(0.0, profile.back().y());
   }
   PovSolid solid{.is_closed = false};
   if (profile.size() < 2) return solid;
@@ -153,7 +160,7 @@ std::optional<PovSolid> read_pov_solid(PovCursor& cursor, Remarks& remarks) {
   if (keyword == "cone") return read_cone(cursor);
   if (keyword == "disc") return read_disc(cursor);
   if (keyword == "torus") return read_torus(cursor, remarks);
-  if (keyword == "lathe") return read_pov_lathe(cursor);
+  if (keyword == "lathe" || keyword == "sor") return read_pov_lathe(cursor);
   if (keyword == "prism") return read_pov_prism(cursor);
   if (keyword == "polygon") return read_pov_polygon(cursor);
   if (keyword == "triangle" || keyword == "smooth_triangle") return read_pov_triangle(cursor);

@@ -16,6 +16,8 @@ mesh { smooth_triangle { 0, y, x, y + x, z, y } triangle { x, y, z } translate 2
 prism { linear_sweep linear_spline 0, 0.2, 5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0> translate <3, 0, 2> finish { reflection { 0.1, 0.8 falloff 2 } } }
 polygon { 5, <0, 0>, <1, 0>, <1, 1>, <0, 1>, <0, 0> matrix <1, 0, 0, 0, 1, 0, 0, 0, 1, 1, 1, 2> finish { emission rgb <3, 3, 2> } }
 lathe { linear_spline 3, <0, 0>, <0.2, 0.1>, <0, 0.3> translate 2 }
+sor { 5, <0.1, -1>, <0.2, 0>, <0.3, 0.2>, <0.1, 0.4>, <0.1, 1> open translate x }
+lathe { bezier_spline 4, <0.1, 0>, <0.2, 0.1>, <0.2, 0.2>, <0.1, 0.3> translate z }
 disc { <2, 0.01, 2>, y, 0.5, 0.2 }
 #declare N = 0;
 #while (N < 2) #if (N = 1) light_source { <2, 2.4, 1.5 - N>, White area_light x, z, 3, 3 fade_distance 1 fade_power 2 } #else light_source { <1, 2, 1>, rgb 0.5 spotlight point_at 0 tightness 3 } #end #declare N = N + 1; #end

@@ -56,6 +56,7 @@ TEST_F(Pov, RoundShapesAreExact) {
   // A profile like that of a cylinder makes the same surface.
   EXPECT_NEAR(area(read("lathe { linear_spline 4, <0, 0>, <1, 0>, <1, 2>, <0, 2> }")), 6.0 * pi,
               4 * rounding);
+  EXPECT_NEAR(area(read("sor { 4, <1, -1>, <1, 0>, <1, 2>, <1, 3> }")), 6.0 * pi, 4 * rounding);
   EXPECT_TRUE(has_loss(read("sphere { 0, 1 scale <1, 2, 1> }"), "no longer round"));
 }
 
