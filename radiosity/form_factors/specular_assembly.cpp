@@ -113,7 +113,7 @@ Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowLight& light, const Reco
   // Bounds on the scaling: few rays of a row may have missed what others sent to the row, and
   // targets may contradict each other. Factors would then grow without bound.
   constexpr double most_stretch = 2.0, largest_factor = 4.0;
-  constexpr int most_iterations = 200;
+  constexpr int most_iterations = 50;
   const Eigen::ArrayXXd has = scaled(Eigen::ArrayXXd::Ones(target.rows(), target.cols()));
   target = target.max(has / most_stretch).min(has * most_stretch);
   constexpr double tolerance = 1e-8;
