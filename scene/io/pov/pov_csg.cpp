@@ -116,7 +116,8 @@ std::vector<PovCutFace> pov_difference(const PovConvex& first, const std::vector
   std::vector<PovCutFace> all;
   for (const Loop& face : first.faces) {
     std::vector<Loop> left = {face};
-    // What is cut off flush with the face opens it; a body that touches from outside does not.
+    // A body that is cut off flush with the face opens it; a body that touches from outside does
+    // not.
     const Touches touches{.same = Touch::drop, .opposite = Touch::keep};
     for (const PovConvex& other : others) left = outside_of(std::move(left), other, touches, size);
     append(0, std::move(left), false, all);

@@ -28,7 +28,7 @@ float clear_share(const PovVector& color) {
   return static_cast<float>(std::clamp(color.c[3] + color.c[4], 0.0, 1.0));
 }
 
-/// What passes a surface: all colours by `transmit`, its own colour by `filter`.
+/// Light that passes a surface: all colours by `transmit`, its own colour by `filter`.
 Spectrum passed_by(const PovVector& color, double gamma) {
   const Spectrum passed =
       static_cast<float>(color.c[3]) * pov_linear(color, gamma) + static_cast<float>(color.c[4]);

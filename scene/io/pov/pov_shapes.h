@@ -15,7 +15,7 @@
 
 namespace lightwell {
 
-/// What a block of shapes inherits from the blocks around it, and what it adds.
+/// Place and looks that a block of shapes inherits from the blocks around it and adds to.
 struct PovPlacement {
   Eigen::Affine3d to_world = Eigen::Affine3d::Identity();
   PovLook look{};

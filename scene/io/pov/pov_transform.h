@@ -11,7 +11,7 @@ namespace lightwell {
 /// towards y, y towards z and z towards x. Throws InputError for a transformation without values.
 bool take_pov_transform(PovCursor& cursor, Eigen::Affine3d& all);
 
-/// From the left-handed axes of scene texts to those of a Scene: z is turned around.
+/// Transformation from the left-handed axes of scene texts to those of a Scene: z is turned around.
 Eigen::Affine3d from_pov_axes();
 
 }  // namespace lightwell

@@ -26,7 +26,7 @@ TEST(PovProfile, CurvesPassThroughTheirPoints) {
   EXPECT_TRUE(pov_profile(PovCurve::cubic, {{1, 0}, {1, 1}, {1, 2}}).empty());
 }
 
-// Each curve has the shapes of its degree: a Bezier curve of points in even steps on a line, a
+// Curves have the shapes of their degree: a Bezier curve of points in even steps on a line, a
 // parabola, a Catmull-Rom spline of points on a line, and a cylinder, whose r^2 is even.
 TEST(PovProfile, CurvesReproduceWhatTheirDegreeAllows) {
   for (const auto& p : pov_profile(PovCurve::bezier, {{0, 0}, {1, 2}, {2, 4}, {3, 6}})) {
