@@ -26,14 +26,6 @@ Loop clip_convex(const Loop& loop, const std::vector<double>& distance, double s
   return kept;
 }
 
-Eigen::Vector3d area_vector(const Loop& loop) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
-    sum += (loop[i] - loop[0]).cross(loop[i + 1] - loop[0]);
-  }
-  return 0.5 * sum;
-}
-
 bool is_convex(const Loop& loop) {
   const Eigen::Vector3d area = area_vector(loop);
   const std::size_t n = loop.size();

@@ -6,10 +6,6 @@
 
 namespace lightwell {
 
-/// Vector area of a loop: half the sum of the cross products of its edges, that is area times
-/// normal (Newell).
-Eigen::Vector3d area_vector(const Loop& loop);
-
 /// True if no corner of a loop with an area turns inwards.
 bool is_convex(const Loop& loop);
 

@@ -69,7 +69,7 @@ bool agrees(const UvMap& map, const Loop& loop, const UvLoop& uv) {
 
 NormalLoop bent_normals(const Loop& loop, const NormalLoop& normals) {
   if (normals.size() != loop.size()) return {};
-  const Eigen::Vector3d flat = vector_area(loop).normalized();
+  const Eigen::Vector3d flat = area_vector(loop).normalized();
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const Eigen::Vector3d& n : normals) sum += n.stableNormalized();
   const double side = sum.dot(flat) < 0.0 ? -1.0 : 1.0;

@@ -40,14 +40,6 @@ struct OpenPiece {
   }
 };
 
-Vector3d area_vector(const Loop& loop) {
-  Vector3d sum = Vector3d::Zero();
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    sum += (loop[i] - loop[0]).cross(loop[(i + 1) % loop.size()] - loop[0]);
-  }
-  return 0.5 * sum;
-}
-
 // The normal of the plane that fits the loop best, on the side of its area or, where the parts of
 // the area cancel, of its sharpest corner.
 Vector3d fitted_normal(const Loop& loop) {

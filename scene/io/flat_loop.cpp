@@ -14,14 +14,6 @@ Eigen::Vector3d mean_point(const Loop& loop) {
   return loop[0] + sum / static_cast<double>(loop.size());
 }
 
-Eigen::Vector3d vector_area(const Loop& loop) {
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < loop.size(); ++i) {
-    sum += (loop[i] - loop[0]).cross(loop[(i + 1) % loop.size()] - loop[0]);
-  }
-  return 0.5 * sum;
-}
-
 bool has_area(double area, const Loop& loop) {
   const double size = size_of(loop);
   return area > 0.5 * flatness * size * size;
@@ -29,7 +21,7 @@ bool has_area(double area, const Loop& loop) {
 
 LoopPlane::LoopPlane(const Loop& boundary) : size(size_of(boundary)) {
   origin = mean_point(boundary);
-  const Eigen::Vector3d area = vector_area(boundary);
+  const Eigen::Vector3d area = area_vector(boundary);
   normal = area.norm() > 0.0 ? Eigen::Vector3d(area.normalized()) : Eigen::Vector3d::UnitZ();
   tangent_frame(normal, x, y);
 }

@@ -15,9 +15,6 @@ using FlatLoop = std::vector<Eigen::Vector2d>;
 /// The mean of the corners, m.
 Eigen::Vector3d mean_point(const Loop& loop);
 
-/// The vector area of a loop, m^2: along Newell's normal, as long as the area.
-Eigen::Vector3d vector_area(const Loop& loop);
-
 /// True if an area (m^2) inside a loop is more than nothing. The test value, twice the area over
 /// the squared size, is about width over length for a thin strip.
 bool has_area(double area, const Loop& loop);

@@ -58,10 +58,10 @@ void MeshBuilder::add(const Polygon& polygon, const UvLoop& uv, const NormalLoop
   Facet facet{.boundary = indices(polygon.boundary),
               .uv_map = uv_map(polygon.boundary, uv),
               .normal_map = normal_map(polygon.boundary, normals)};
-  const Eigen::Vector3d normal = vector_area(polygon.boundary);
+  const Eigen::Vector3d normal = area_vector(polygon.boundary);
   for (const Loop& hole : polygon.holes) {
     facet.holes.push_back(indices(hole));
-    if (vector_area(hole).dot(normal) > 0.0)
+    if (area_vector(hole).dot(normal) > 0.0)
       std::reverse(facet.holes.back().begin(), facet.holes.back().end());
   }
   mesh_.facets.push_back(std::move(facet));

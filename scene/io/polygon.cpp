@@ -140,6 +140,14 @@ std::string holes_fault(const Polygon& polygon, const LoopPlane& plane, const Fl
 
 }  // namespace
 
+Eigen::Vector3d area_vector(const Loop& loop) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 1; i + 1 < loop.size(); ++i) {
+    sum += (loop[i] - loop[0]).cross(loop[i + 1] - loop[0]);
+  }
+  return 0.5 * sum;
+}
+
 double size_of(const Loop& loop) {
   const Eigen::Vector3d middle = mean_point(loop);
   double radius = 0.0;
@@ -148,7 +156,7 @@ double size_of(const Loop& loop) {
 }
 
 bool is_thin(const Loop& loop) {
-  return !has_area(vector_area(loop).norm(), loop);
+  return !has_area(area_vector(loop).norm(), loop);
 }
 
 double deviation_from_plane(const Polygon& polygon) {

@@ -31,6 +31,10 @@ std::string fault(const Polygon& polygon);
 /// the centroid), divided by the boundary's size.
 double deviation_from_plane(const Polygon& polygon);
 
+/// Vector area of a loop: half the sum of the cross products of its edges, that is area times
+/// normal (Newell).
+Eigen::Vector3d area_vector(const Loop& loop);
+
 /// Twice the largest distance of a vertex from the vertices' mean.
 double size_of(const Loop& loop);
 

@@ -79,7 +79,7 @@ bool add_pieces(MeshBuilder& mesh, const Polygon& polygon, const UvLoop& uv,
   for (const Loop& hole : polygon.holes) all.insert(all.end(), hole.begin(), hole.end());
   const auto pieces = convex_pieces(polygon);
   double area = 0.0;
-  for (const auto& piece : pieces) area += vector_area(values_of(piece, all)).norm();
+  for (const auto& piece : pieces) area += area_vector(values_of(piece, all)).norm();
   if (!has_area(area, polygon.boundary)) return false;
   for (const auto& piece : pieces) {
     const Loop corners = values_of(piece, all);

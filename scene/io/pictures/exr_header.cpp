@@ -33,7 +33,7 @@ std::int32_t number(std::ifstream& file) {
 }
 
 // Bytes of a value of a type whose values have the same size; empty for other types.
-std::optional<std::size_t> size_of(std::string_view type) {
+std::optional<std::size_t> bytes_of(std::string_view type) {
   constexpr auto sizes = std::to_array<std::pair<std::string_view, std::size_t>>(
       {{"box2f", 16},      {"box2i", 16},   {"chromaticities", 32},
        {"compression", 1}, {"double", 8},   {"envmap", 1},
@@ -86,7 +86,7 @@ bool is_preview(std::string_view value) {
 // Whether OpenEXR reads as many bytes of a value as the file says, which it does not compare, and
 // takes no more memory than these.
 bool is_sound(std::string_view type, std::string_view value) {
-  if (const auto size = size_of(type)) return value.size() == *size;
+  if (const auto size = bytes_of(type)) return value.size() == *size;
   if (type == "chlist") return are_channels(value);
   if (type == "stringvector") return are_strings(value);
   if (type == "preview") return is_preview(value);
