@@ -72,8 +72,10 @@ std::vector<Found> truth_of(const RandomRoom& room) {
     for (int i = begin; i < end; ++i) {
       const RoomPlace& place = room.places[static_cast<std::size_t>(i)];
       const int rays = place.gap > 0.0 ? 8192 : 2048;
+      // Furniture is less than 2 m wide.
+      const double widths = place.gap > 0.0 ? 2.0 / place.gap : 0.0;
       const auto E = tracer.irradiance(place.position, place.normal, facet_at(caster, place), 1024,
-                                       rays, static_cast<std::uint64_t>(i));
+                                       rays, static_cast<std::uint64_t>(i), widths);
       found[static_cast<std::size_t>(i)] = {
           .truth = lumens * E.mean, .noise = lumens * E.error, .gap = place.gap};
     }

@@ -1,5 +1,6 @@
 #include "radiosity/gather/gap_light.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,8 +16,15 @@ namespace {
 constexpr double widest_gap = 0.15;
 // Greatest cosine between the normals of surfaces that face each other.
 constexpr double facing = -0.5;
-// A path that is still in the gap after so many bounces reads the mesh.
-constexpr int most_bounces = 16;
+// A path that is still in the gap after so many bounces reads the mesh. Of surfaces that reflect 90
+// % one path in 10^12 is.
+constexpr int most_bounces = 256;
+// Number of the key of rays near a portal.
+constexpr std::uint64_t near_portal = 16;
+// Share of rays that a path draws among the exits of its gap.
+constexpr float to_exits = 0.2f;
+// Size of the largest gaps, in patches.
+constexpr double patches_wide = 8.0;
 // Narrower gaps are contacts: which of two surfaces in one plane a ray meets is a matter of
 // rounding.
 constexpr double narrowest_gap = 1e-4;
@@ -33,6 +41,19 @@ Ray scattered(const SurfacePoint& at, std::uint64_t key) {
   return {.origin = at.position,
           .direction = d.x() * a + d.y() * b + d.z() * at.normal,
           .origin_group = at.facet};
+}
+
+// Draws a fifth of the rays among the exits instead; returns the weight of the ray.
+double draw_among_exits(const GapExits& exits, const SurfacePoint& at, std::uint64_t key,
+                        Ray& ray) {
+  const auto number = [&](std::uint64_t i) { return random_uniform(random_key(key, i)); };
+  if (number(4) < double{to_exits}) {
+    ray.direction = exits.draw(at.normal, number(5), number(6), number(7));
+  }
+  const double by_cosine = ray.direction.dot(at.normal) * std::numbers::inv_pi;
+  if (!(by_cosine > 0.0)) return 0.0;
+  return by_cosine / ((1.0 - double{to_exits}) * by_cosine +
+                      double{to_exits} * exits.density(at.normal, ray.direction));
 }
 
 }  // namespace
@@ -138,33 +159,72 @@ void GapLight::add_end(const ElementCaster& caster, const Ray& ray, const Elemen
   });
 }
 
-void GapLight::add(const ElementCaster& caster, const Ray& first_ray, const ElementHit& first_hit,
-                   std::uint64_t key, Eigen::ArrayXd& sum) const {
+std::optional<GapExits> GapLight::exits(const ElementCaster& caster, const SurfacePoint& at,
+                                        std::span<const Ray> rays, std::span<const ElementHit> hits,
+                                        int count, std::uint64_t key) const {
+  // The steepest ray tells most places from gaps without a further ray.
+  const auto steepest = std::ranges::max_element(
+      rays, {}, [&](const Ray& ray) { return ray.direction.dot(at.normal); });
+  if (steepest == rays.end() ||
+      !is_gap(at.normal, *steepest, hits[static_cast<std::size_t>(steepest - rays.begin())])) {
+    return std::nullopt;
+  }
+  const Ray across{.origin = at.position, .direction = at.normal, .origin_group = at.facet};
+  ElementHit hit;
+  caster.closest_hits({&across, 1}, {&hit, 1});
+  if (!is_gap(at.normal, across, hit)) return std::nullopt;
   const PatchMesh& mesh = lit_.mesh();
-  Spectrum share = Spectrum::Ones(lit_.scene.bands.count());
-  Ray ray = first_ray;
-  ElementHit hit = first_hit;
+  const double reach = patches_wide * std::sqrt(mesh.area[mesh.patch[hit.element]]);
+  return GapExits(caster, at, {.width = hit.t, .reach = reach, .rays = count}, key,
+                  [&](const Ray& ray, const ElementHit& end) {
+                    return end.facet >= 0 && !is_gap(at.normal, ray, end);
+                  });
+}
+
+void GapLight::follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                      std::uint64_t key, const GapExits* exits,
+                      const std::function<void(const Stop&)>& at_surface,
+                      const std::function<void(const Stop&)>& at_end) const {
+  const PatchMesh& mesh = lit_.mesh();
+  Stop stop{.ray = ray, .hit = hit, .share = Spectrum::Ones(lit_.scene.bands.count())};
   for (int bounce = 0; bounce < most_bounces; ++bounce) {
-    const auto bounce_key =
-        random_key(key, RandomPurpose::gap_rays, static_cast<std::uint64_t>(bounce));
-    const Eigen::Vector3d normal = normal_towards(ray, hit);
-    const SurfacePoint at{
-        .position = ray.origin + hit.t * ray.direction, .normal = normal, .facet = hit.facet};
+    stop.key = random_key(key, RandomPurpose::gap_rays, static_cast<std::uint64_t>(bounce));
+    const Eigen::Vector3d normal = normal_towards(stop.ray, stop.hit);
+    stop.at = {.position = stop.ray.origin + stop.hit.t * stop.ray.direction,
+               .normal = normal,
+               .facet = stop.hit.facet};
     // Paths end by chance (Arvo & Kirk 1990), at once or after as many bounces as light makes.
-    const auto rho = mesh.reflectance.row(mesh.patch[hit.element]);
-    const float survival = rho.maxCoeff();
-    if (random_uniform(random_key(bounce_key, 3)) >= static_cast<double>(survival)) return;
-    share *= rho.transpose() / survival;
-    add_direct(caster,
-               {.at = at, .key = bounce_key, .shadows = shadows, .one_stands_for_all = true}, share,
-               sum);
-    ray = scattered(at, bounce_key);
-    caster.closest_hits({&ray, 1}, {&hit, 1});
-    if (hit.facet < 0) return;
-    if (bounce + 1 < most_bounces && is_gap(normal, ray, hit)) continue;
-    add_end(caster, ray, hit, bounce_key, share, sum);
+    // Where some rays are drawn among exits, the others weigh more, and more paths go on instead.
+    const auto rho = mesh.reflectance.row(mesh.patch[stop.hit.element]);
+    const float survival =
+        exits ? std::min(1.0f, rho.maxCoeff() / (1.0f - to_exits)) : rho.maxCoeff();
+    if (random_uniform(random_key(stop.key, 3)) >= static_cast<double>(survival)) return;
+    stop.share *= rho.transpose() / survival;
+    at_surface(stop);
+    stop.ray = scattered(stop.at, stop.key);
+    if (exits) {
+      const double weight = draw_among_exits(*exits, stop.at, stop.key, stop.ray);
+      if (!(weight > 0.0)) return;
+      stop.share *= static_cast<float>(weight);
+    }
+    caster.closest_hits({&stop.ray, 1}, {&stop.hit, 1});
+    if (stop.hit.facet < 0) return;
+    if (bounce + 1 < most_bounces && is_gap(normal, stop.ray, stop.hit)) continue;
+    at_end(stop);
     return;
   }
+}
+
+void GapLight::add(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                   std::uint64_t key, Eigen::ArrayXd& sum, const GapExits* exits) const {
+  follow(
+      caster, ray, hit, key, exits,
+      [&](const Stop& stop) {
+        const LightQuery query{
+            .at = stop.at, .key = stop.key, .shadows = shadows, .one_stands_for_all = true};
+        add_direct(caster, query, stop.share, sum);
+      },
+      [&](const Stop& stop) { add_end(caster, stop.ray, stop.hit, stop.key, stop.share, sum); });
 }
 
 bool GapLight::is_near_portal(const Portals& portals, const Ray& ray, const ElementHit& hit) const {
@@ -180,7 +240,7 @@ void GapLight::add_near_portal(const ElementCaster& caster, const Portals& porta
   const SurfacePoint at{.position = first_ray.origin + first_hit.t * first_ray.direction,
                         .normal = normal_towards(first_ray, first_hit),
                         .facet = first_hit.facet};
-  const std::uint64_t portal_key = random_key(key, RandomPurpose::gap_rays, most_bounces);
+  const std::uint64_t portal_key = random_key(key, RandomPurpose::gap_rays, near_portal);
   const Spectrum rho = mesh.reflectance.row(mesh.patch[first_hit.element]).transpose();
   add_direct(caster, {.at = at, .key = portal_key, .shadows = shadows, .one_stands_for_all = true},
              rho, sum);

@@ -2,10 +2,14 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/gather/gap_exits.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/solution.h"
@@ -41,10 +45,32 @@ class GapLight {
   /// and its frame: as is_gap(), but for the surface that faces the one that was hit.
   bool is_narrow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const;
 
+  /// The directions out of the gap that a point lies in; empty if it lies in none. `rays` are the
+  /// first of a gather's rays from there, and `hits` their ends; `count` is the number of all.
+  std::optional<GapExits> exits(const ElementCaster& caster, const SurfacePoint& at,
+                                std::span<const Ray> rays, std::span<const ElementHit> hits,
+                                int count, std::uint64_t key) const;
+
+  /// A place that a path in a gap comes to: a surface in the gap, or the end of its last ray.
+  struct Stop {
+    SurfacePoint at{};  // on a surface in the gap
+    Ray ray{};          // that ended here
+    ElementHit hit{};   // its end
+    Spectrum share{};   // of the radiosity here in that where the path began
+    std::uint64_t key = 0;
+  };
+  /// Follows a path from the end of a ray in a gap until a ray leaves the gap. `key` decides the
+  /// path. Calls `at_surface` on each surface, with the share that its irradiance has, and `at_end`
+  /// at the end of the last ray, unless the path ends before or meets nothing. With `exits` a fifth
+  /// of the rays is drawn among these, weighed by the balance heuristic.
+  void follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
+              const GapExits* exits, const std::function<void(const Stop&)>& at_surface,
+              const std::function<void(const Stop&)>& at_end) const;
+
   /// Adds the radiosity B at the end of a ray in a gap to the columns of `sum`. `key` decides the
   /// further rays. `caster` is that of the scene or its ElementCaster::at().
   void add(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
-           Eigen::ArrayXd& sum) const;
+           Eigen::ArrayXd& sum, const GapExits* exits = nullptr) const;
 
   /// True if a ray ends on a surface that reflects, so near a portal that its element does not show
   /// how light varies there (see Portals::is_near).

@@ -9,6 +9,8 @@ namespace lightwell {
 namespace {
 
 constexpr int gather_batch = 128;
+// Numbers of keys of gap rays that no ray has.
+constexpr std::uint64_t pilots = 1ULL << 40, exit_aims = pilots + 1;
 
 int ray_count(const GatherPoint& at, const GatherOptions& options) {
   return at.rays > 0 ? at.rays : std::max(1, options.rays);
@@ -45,7 +47,7 @@ HemisphereGather::HemisphereGather(const LitScene& lit, const BandArray& radiosi
 void HemisphereGather::gather(const GatherPoint& at, std::uint64_t key, float* irradiance,
                               float& variance) const {
   const Eigen::Index columns = radiosity_.cols();
-  std::array<Eigen::ArrayXd, 2> sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
+  Sums sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
   const HemisphereSets& set = sets_.at(ray_count(at, options_));
   const HemisphereSets::Draw draw = set.draw(random_key(key, RandomPurpose::gather_rays));
   const Eigen::Matrix3d frame = draw.frame(at.normal);
@@ -66,6 +68,11 @@ void HemisphereGather::gather(const GatherPoint& at, std::uint64_t key, float* i
                 .origin_group = at.facet};
     }
     caster_.closest_hits({ray.data(), n}, {hit.data(), n});
+    if (begin == 0 && at.facet >= 0) {
+      const SurfacePoint here{.position = at.position, .normal = at.normal, .facet = at.facet};
+      place.exits = gaps_.exits(caster_, here, {ray.data(), n}, {hit.data(), n}, count,
+                                random_key(key, RandomPurpose::gap_rays, pilots));
+    }
     for (std::size_t r = 0; r < n; ++r) {
       const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;
       const int rank = begin / HemisphereSets::block * HemisphereSets::block + points[r].rank;
@@ -75,20 +82,27 @@ void HemisphereGather::gather(const GatherPoint& at, std::uint64_t key, float* i
   }
   if (!place.bright.is_empty()) aim_at_bright(place, sum);
   if (!place.portals.is_empty()) aim_at_portals(place, sum);
+  if (place.exits) aim_at_exits(place, sum);
   Eigen::Map<Eigen::ArrayXf>(irradiance, columns) = ((sum[0] + sum[1]) / set.count()).cast<float>();
   variance = half_difference(sum, set.count());
 }
 
-// Number times density, 1/sr, of rays aimed at the portals that the ray passes.
+// Number times density, 1/sr, of rays aimed at the portals that the ray passes, and at exits.
 double HemisphereGather::aimed_density(const Place& place, const Ray& ray,
                                        const ElementHit& hit) const {
-  if (place.portals.is_empty()) return 0.0;
-  return Portals::aimed(place.rays) *
-         options_.portals->density(place.portals, ray.origin, ray.direction, hit.t);
+  double sum = 0.0;
+  if (!place.portals.is_empty()) {
+    sum += Portals::aimed(place.rays) *
+           options_.portals->density(place.portals, ray.origin, ray.direction, hit.t);
+  }
+  if (place.exits) {
+    sum += GapExits::aimed(place.rays) * place.exits->density(place.at.normal, ray.direction);
+  }
+  return sum;
 }
 
 // Adds rays towards bright patches; each counts only the light straight from a bright element.
-void HemisphereGather::aim_at_bright(const Place& place, std::array<Eigen::ArrayXd, 2>& sum) const {
+void HemisphereGather::aim_at_bright(const Place& place, Sums& sum) const {
   const GatherPoint& at = place.at;
   const SobolPoints& aims = aims_.at(place.rays);
   std::array<Ray, gather_batch> ray;
@@ -117,20 +131,36 @@ void HemisphereGather::aim_at_bright(const Place& place, std::array<Eigen::Array
 }
 
 // Adds rays towards portals. Each counts whatever it finds, if it passes a portal.
-void HemisphereGather::aim_at_portals(const Place& place,
-                                      std::array<Eigen::ArrayXd, 2>& sum) const {
+void HemisphereGather::aim_at_portals(const Place& place, Sums& sum) const {
+  const auto direction = [&](const Eigen::Array4d& u) {
+    return options_.portals->draw(place.portals, place.at.position, u[0], u[1], u[2]);
+  };
+  aim(place, portal_aims_.at(place.rays), random_key(place.key, RandomPurpose::gather_portals),
+      place.rays, direction, sum);
+}
+
+// Adds rays towards the exits of a gap. Each counts whatever it finds.
+void HemisphereGather::aim_at_exits(const Place& place, Sums& sum) const {
+  const auto direction = [&](const Eigen::Array4d& u) {
+    return place.exits->draw(place.at.normal, u[0], u[1], u[2]);
+  };
+  aim(place, SobolPoints(GapExits::aimed(place.rays)),
+      random_key(place.key, RandomPurpose::gap_rays, exit_aims), 2 * place.rays, direction, sum);
+}
+
+// Adds aimed rays, whose `direction` four random numbers give; they are numbered from `first_index`
+// on.
+template <class Direction>
+void HemisphereGather::aim(const Place& place, const SobolPoints& aims, std::uint64_t key,
+                           int first_index, Direction direction, Sums& sum) const {
   const GatherPoint& at = place.at;
-  const SobolPoints& aims = portal_aims_.at(place.rays);
-  const std::uint64_t key = random_key(place.key, RandomPurpose::gather_portals);
   std::array<Ray, gather_batch> ray;
   std::array<ElementHit, gather_batch> hit;
   for (int begin = 0; begin < aims.count(); begin += gather_batch) {
     const auto n = static_cast<std::size_t>(std::min(gather_batch, aims.count() - begin));
     for (std::size_t r = 0; r < n; ++r) {
       const Eigen::Array4d u = aims.point(begin + static_cast<int>(r), key).cast<double>();
-      ray[r] = {.origin = at.position,
-                .direction = options_.portals->draw(place.portals, at.position, u[0], u[1], u[2]),
-                .origin_group = at.facet};
+      ray[r] = {.origin = at.position, .direction = direction(u), .origin_group = at.facet};
     }
     caster_.closest_hits({ray.data(), n}, {hit.data(), n});
     for (std::size_t r = 0; r < n; ++r) {
@@ -138,7 +168,7 @@ void HemisphereGather::aim_at_portals(const Place& place,
       if (!(density > 0.0) || !(at.normal.dot(ray[r].direction) > 0.0)) continue;
       const std::size_t index = static_cast<std::size_t>(begin) + r;
       const bool is_first = index < static_cast<std::size_t>(aims.count() / 2);
-      add(place, ray[r], hit[r], static_cast<std::uint64_t>(place.rays) + index, density,
+      add(place, ray[r], hit[r], static_cast<std::uint64_t>(first_index) + index, density,
           sum[is_first ? 0 : 1]);
     }
   }
@@ -156,7 +186,7 @@ void HemisphereGather::add(const Place& place, const Ray& ray, const ElementHit&
   const bool in_gap = (at.facet >= 0 && gaps_.is_gap(at.normal, ray, hit)) ||
                       (aimed > 0.0 && gaps_.is_narrow(caster_, ray, hit));
   if (in_gap) {
-    add_of_gap(ray, hit, random_key(place.key, RandomPurpose::gap_rays, index), share, sum);
+    add_of_gap(place, ray, hit, random_key(place.key, RandomPurpose::gap_rays, index), share, sum);
     return;
   }
   if (is_near_portal(place, ray, hit)) {
@@ -178,14 +208,15 @@ void HemisphereGather::add(const Place& place, const Ray& ray, const ElementHit&
   }
 }
 
-void HemisphereGather::add_of_gap(const Ray& ray, const ElementHit& hit, std::uint64_t key,
-                                  double share, Eigen::ArrayXd& sum) const {
+void HemisphereGather::add_of_gap(const Place& place, const Ray& ray, const ElementHit& hit,
+                                  std::uint64_t key, double share, Eigen::ArrayXd& sum) const {
+  const GapExits* const exits = place.exits ? &*place.exits : nullptr;
   if (share == 1.0) {
-    gaps_.add(caster_, ray, hit, key, sum);
+    gaps_.add(caster_, ray, hit, key, sum, exits);
     return;
   }
   Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
-  gaps_.add(caster_, ray, hit, key, found);
+  gaps_.add(caster_, ray, hit, key, found, exits);
   sum += share * found;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/gather/final_gather.h"
@@ -30,26 +31,34 @@ class HemisphereGather {
   void gather(const GatherPoint& at, std::uint64_t key, float* irradiance, float& variance) const;
 
  private:
-  // A gather point, and the bright patches and portals that are seen from there.
+  // A gather point, and the bright patches, portals and exits of a gap that are seen from there.
   struct Place {
     const GatherPoint& at;
     std::uint64_t key = 0;
     int rays = 0;  // cosine-distributed
     BrightPatches::View bright{};
     Portals::View portals{};
+    std::optional<GapExits> exits{};
   };
+  using Sums = std::array<Eigen::ArrayXd, 2>;  // of the two halves of the rays
 
   double aimed_density(const Place& place, const Ray& ray, const ElementHit& hit) const;
 
-  void aim_at_bright(const Place& place, std::array<Eigen::ArrayXd, 2>& sum) const;
+  void aim_at_bright(const Place& place, Sums& sum) const;
 
-  void aim_at_portals(const Place& place, std::array<Eigen::ArrayXd, 2>& sum) const;
+  void aim_at_portals(const Place& place, Sums& sum) const;
+
+  void aim_at_exits(const Place& place, Sums& sum) const;
+
+  template <class Direction>
+  void aim(const Place& place, const SobolPoints& aims, std::uint64_t key, int first_index,
+           Direction direction, Sums& sum) const;
 
   void add(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
            double aimed, Eigen::ArrayXd& sum) const;
 
-  void add_of_gap(const Ray& ray, const ElementHit& hit, std::uint64_t key, double share,
-                  Eigen::ArrayXd& sum) const;
+  void add_of_gap(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t key,
+                  double share, Eigen::ArrayXd& sum) const;
 
   bool is_near_portal(const Place& place, const Ray& ray, const ElementHit& hit) const;
 

@@ -40,10 +40,10 @@ struct Plates {
     return scene;
   }
 
-  double gathered(double x, int rays) const {
+  double gathered(double x, int rays, std::uint64_t replica = 0) const {
     const std::vector<GatherPoint> points = {{.position = {x, 0.0, 0.0}, .facet = desk}};
-    return gather_irradiance({scene, caster, light}, radiosity, points, {.rays = rays})
-        .indirect(0, 0);
+    const GatherOptions options{.rays = rays, .replica = replica};
+    return gather_irradiance({scene, caster, light}, radiosity, points, options).indirect(0, 0);
   }
 
   Scene scene;
@@ -94,6 +94,26 @@ TEST(GapLight, BetweenLongPlatesIsThatOfTheIntegralEquation) {
       EXPECT_NEAR(plates.gathered(x, rays), expected, noise + 0.01 * expected)
           << "gap " << gap << ", depth " << x;
     }
+  }
+}
+
+// Deep in a gap one cosine-distributed ray in thousands gets out.
+TEST(GapLight, DeepInAGapIsKnownByAFewHundredRays) {
+  for (const double gap : {0.001, 0.004}) {
+    const Plates plates(gap);
+    const double x = 0.4 * width, expected = between_long_plates(x, gap);
+    constexpr int rays = 512, replicas = 64;
+    Eigen::ArrayXd found(replicas);
+    for (int i = 0; i < replicas; ++i) {
+      found[i] = plates.gathered(x, rays, static_cast<std::uint64_t>(i));
+    }
+    const double deviation = std::sqrt((found - found.mean()).square().sum() / (replicas - 1));
+    // Cosine-distributed rays alone bring B0 or nothing and deviate by 0.5 at least, as a share.
+    ASSERT_GT(std::sqrt(B0 / (rays * expected)), 0.5);
+    EXPECT_LT(deviation, 0.2 * expected) << "gap " << gap;
+    // Four standard errors; 1 % for the plates' finite length.
+    EXPECT_NEAR(found.mean(), expected, 4.0 * deviation / std::sqrt(replicas) + 0.01 * expected)
+        << "gap " << gap;
   }
 }
 
