@@ -174,7 +174,8 @@ DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const Lig
                        .channel = lights_->channel(i),
                        .key = random_key(query.key, static_cast<std::uint64_t>(i)),
                        .chance = chance,
-                       .cluster = cluster};
+                       .cluster = cluster,
+                       .by_expected_weight = query.one_stands_for_all};
     if (lights_->is_emitter(i)) {
       shadow.emitter = &emitters()[i];
     } else {

@@ -49,9 +49,18 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
   }
   batch.flush();
   for (std::size_t i = 0; i < shadows.size(); ++i) {
-    if (!shadows[i].share && tallies[i].is_mixed()) add(i, shadows[i].least, shadows[i].most);
+    const LightShadow& shadow = shadows[i];
+    if (shadow.share || (!tallies[i].is_mixed() && !shadow.by_expected_weight)) continue;
+    add(i, shadow.least, shadow.most);
   }
   batch.flush();
+  for (std::size_t i = 0; i < shadows.size(); ++i) {
+    const LightShadow& shadow = shadows[i];
+    if (shadow.share || !shadow.by_expected_weight || !shadow.emitter || shadow.has_picture())
+      continue;
+    tallies[i].all = shadow.most * expected_emitter_weight(*shadow.emitter, shadow.sampler,
+                                                           at.position, shadow.F);
+  }
   return tallies;
 }
 

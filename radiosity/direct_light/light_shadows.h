@@ -23,9 +23,13 @@ struct LightShadow {
   double F = 0.0;
   int channel = 0;
   std::uint64_t key = 0;
-  double chance = 1.0;            ///< by which the light was drawn
-  int cluster = -1;               ///< see LightSample
-  int least = 0, most = 0;        ///< rays
+  double chance = 1.0;      ///< by which the light was drawn
+  int cluster = -1;         ///< see LightSample
+  int least = 0, most = 0;  ///< rays
+  /// True if the share seen is the sum of the weights of unblocked rays over the expected sum
+  /// (expected_weight) in place of the sum of all. The latter has less noise and a bias that falls
+  /// with the number of rays: a single one is seen or not, however much its direction weighs.
+  bool by_expected_weight = false;
   std::optional<double> share{};  ///< visible; empty: rays are needed
   EmissionTree::View view{};      ///< of an emitter that shines by a picture; else without parts
   /// Mean exitance of what the point sees of the picture; of a source, what it sends to the point.

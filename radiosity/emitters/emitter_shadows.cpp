@@ -83,4 +83,17 @@ ShadowSample emitter_shadow_sample(const Emitter& emitter, const SolidAngleSampl
   return sample;
 }
 
+double expected_emitter_weight(const Emitter& emitter, const SolidAngleSampler& sampler,
+                               const Eigen::Vector3d& point, double F) {
+  double range = emitter.area;
+  if (emitter.is_sphere) {
+    const double sin_alpha = emitter.sphere.radius / (emitter.sphere.center - point).norm();
+    const double sine2 = std::min(1.0, sin_alpha * sin_alpha);
+    range = 2.0 * std::numbers::pi * sine2 / (1.0 + std::sqrt(1.0 - sine2));
+  } else if (!sampler.empty()) {
+    range = sampler.solid_angle();
+  }
+  return std::numbers::pi * F / range;
+}
+
 }  // namespace lightwell

@@ -19,4 +19,9 @@ ShadowSample emitter_shadow_sample(const Emitter& emitter, const SolidAngleSampl
                                    const SurfacePoint& at, double u, double v,
                                    const EmissionTree::View* view = nullptr);
 
+/// The mean weight of the samples of an emitter whose form factor from `point` is F: pi F over the
+/// solid angle or the area that samples are uniform in. Samples are not those of a picture.
+double expected_emitter_weight(const Emitter& emitter, const SolidAngleSampler& sampler,
+                               const Eigen::Vector3d& point, double F);
+
 }  // namespace lightwell

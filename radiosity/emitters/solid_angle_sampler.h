@@ -20,6 +20,8 @@ class SolidAngleSampler {
   SolidAngleSampler(const Emitter& emitter, const Eigen::Vector3d& point);
 
   bool empty() const { return triangles_.empty(); }
+  /// The solid angle of the polygon, sr; the sampler must not be empty.
+  double solid_angle() const { return triangles_.back().up_to; }
   /// The vector from the point to a sample point of the polygon, metres, for (u, v) in [0,1)^2.
   Eigen::Vector3d to_point(double u, double v) const;
 

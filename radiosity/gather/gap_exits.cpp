@@ -17,7 +17,9 @@ constexpr double least_log_reach = 1.5;
 
 GapExits::GapExits(const ElementCaster& caster, const SurfacePoint& at, const Size& size,
                    std::uint64_t key, const IsOut& is_out)
-    : log_reach_(std::max(std::log(size.reach / size.width), least_log_reach)),
+    : across_(at.normal),
+      width_(size.width),
+      log_reach_(std::max(std::log(size.reach / size.width), least_log_reach)),
       side_(size.rays < 256 ? 8 : 16) {
   tangent_frame(at.normal, a_, b_);
   const int cells = side_ * side_;

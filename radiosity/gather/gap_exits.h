@@ -42,6 +42,9 @@ class GapExits {
   /// True if no pilot ray got out.
   bool is_closed() const { return !(out_ > 0.0); }
 
+  double width() const { return width_; }                    ///< metres
+  const Eigen::Vector3d& across() const { return across_; }  ///< normal of the point, unit
+
   /// Unit direction above a surface in the gap, whose unit normal `normal` is about that of the
   /// point or the opposite one; u, v and `which` are random numbers in [0,1).
   Eigen::Vector3d draw(const Eigen::Vector3d& normal, double u, double v, double which) const;
@@ -49,7 +52,7 @@ class GapExits {
   double density(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction) const;
 
   /// Number of rays aimed at exits beside `rays` cosine-distributed ones.
-  static int aimed(int rays) { return (rays + 1) / 2; }
+  static int aimed(int rays) { return rays; }
 
  private:
   // Axes beside a normal, nearest to those of the point.
@@ -60,7 +63,9 @@ class GapExits {
   double even_density(double cosine) const;
 
   Eigen::Vector3d a_ = Eigen::Vector3d::UnitX(), b_ = Eigen::Vector3d::UnitY();  // in the gap
-  double log_reach_ = 1.0;                                                       // ln T
+  Eigen::Vector3d across_ = Eigen::Vector3d::UnitZ();
+  double width_ = 0.0;
+  double log_reach_ = 1.0;            // ln T
   double out_ = 0.0;                  // sum of the weights of pilot rays that got out
   int side_ = 1;                      // rows and columns of cells
   std::vector<double> cell_up_to_{};  // running sum of probabilities, row by row

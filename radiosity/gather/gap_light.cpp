@@ -1,6 +1,7 @@
 #include "radiosity/gather/gap_light.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -21,8 +22,6 @@ constexpr double facing = -0.5;
 constexpr int most_bounces = 256;
 // Number of the key of rays near a portal.
 constexpr std::uint64_t near_portal = 16;
-// Share of rays that a path draws among the exits of its gap.
-constexpr float to_exits = 0.2f;
 // Size of the largest gaps, in patches.
 constexpr double patches_wide = 8.0;
 // Narrower gaps are contacts: which of two surfaces in one plane a ray meets is a matter of
@@ -43,17 +42,22 @@ Ray scattered(const SurfacePoint& at, std::uint64_t key) {
           .origin_group = at.facet};
 }
 
-// Draws a fifth of the rays among the exits instead; returns the weight of the ray.
-double draw_among_exits(const GapExits& exits, const SurfacePoint& at, std::uint64_t key,
-                        Ray& ray) {
+// The share of rays from a surface that is drawn among exits. Light of surfaces that reflect much
+// goes on inside the gap for longer.
+float share_to_exits(float reflectance) {
+  return std::clamp(1.0f - reflectance, 0.2f, 0.5f);
+}
+
+// Draws a share of the rays among the exits instead; returns the weight of the ray.
+double draw_among_exits(const GapExits& exits, double share, const SurfacePoint& at,
+                        std::uint64_t key, Ray& ray) {
   const auto number = [&](std::uint64_t i) { return random_uniform(random_key(key, i)); };
-  if (number(4) < double{to_exits}) {
+  if (number(4) < share) {
     ray.direction = exits.draw(at.normal, number(5), number(6), number(7));
   }
   const double by_cosine = ray.direction.dot(at.normal) * std::numbers::inv_pi;
   if (!(by_cosine > 0.0)) return 0.0;
-  return by_cosine / ((1.0 - double{to_exits}) * by_cosine +
-                      double{to_exits} * exits.density(at.normal, ray.direction));
+  return by_cosine / ((1.0 - share) * by_cosine + share * exits.density(at.normal, ray.direction));
 }
 
 }  // namespace
@@ -105,6 +109,27 @@ bool GapLight::may_be_followed(const ElementHit& hit) const {
   const int patch = mesh.patch[hit.element];
   return paths_.is_mostly_diffuse(hit.facet) && !(mesh.emission.row(patch) > 0.0f).any() &&
          (mesh.reflectance.row(patch) > 0.0f).any() && mesh.patch_behind(patch) < 0;
+}
+
+// True if a ray ends on a surface between the two that the gap is between: both are near along the
+// normal `across` of the gap.
+bool GapLight::is_closed_end(const ElementCaster& caster, const Eigen::Vector3d& across,
+                             double width, const Ray& ray, const ElementHit& hit) const {
+  // Rays run above the end, where the surfaces stand on it, and gaps may widen towards it.
+  constexpr double upright = 0.5, height = 0.25, widest = 2.0;
+  if (hit.element < 0 || !may_be_followed(hit)) return false;
+  const Eigen::Vector3d normal = normal_towards(ray, hit);
+  if (std::abs(normal.dot(across)) > upright) return false;
+  const Eigen::Vector3d at = ray.origin + hit.t * ray.direction + height * width * normal;
+  std::array<Ray, 2> rays;
+  std::array<std::uint8_t, 2> near{};
+  for (const int side : {0, 1}) {
+    const Eigen::Vector3d direction = side == 0 ? across : Eigen::Vector3d(-across);
+    rays[static_cast<std::size_t>(side)] = {
+        .origin = at, .direction = direction, .t_max = widest * width};
+  }
+  caster.occluded(rays, near);
+  return near[0] && near[1];
 }
 
 bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const {
@@ -177,7 +202,8 @@ std::optional<GapExits> GapLight::exits(const ElementCaster& caster, const Surfa
   const double reach = patches_wide * std::sqrt(mesh.area[mesh.patch[hit.element]]);
   return GapExits(caster, at, {.width = hit.t, .reach = reach, .rays = count}, key,
                   [&](const Ray& ray, const ElementHit& end) {
-                    return end.facet >= 0 && !is_gap(at.normal, ray, end);
+                    return end.facet >= 0 && !is_gap(at.normal, ray, end) &&
+                           !is_closed_end(caster, at.normal, hit.t, ray, end);
                   });
 }
 
@@ -193,23 +219,23 @@ void GapLight::follow(const ElementCaster& caster, const Ray& ray, const Element
     stop.at = {.position = stop.ray.origin + stop.hit.t * stop.ray.direction,
                .normal = normal,
                .facet = stop.hit.facet};
-    // Paths end by chance (Arvo & Kirk 1990), at once or after as many bounces as light makes.
-    // Where some rays are drawn among exits, the others weigh more, and more paths go on instead.
+    // Paths end by chance (Arvo & Kirk 1990), at once or after as many bounces as light makes. The
+    // rays that are not drawn among exits weigh more, and more paths go on instead.
     const auto rho = mesh.reflectance.row(mesh.patch[stop.hit.element]);
-    const float survival =
-        exits ? std::min(1.0f, rho.maxCoeff() / (1.0f - to_exits)) : rho.maxCoeff();
+    const float to_exits = exits ? share_to_exits(rho.maxCoeff()) : 0.0f;
+    const float survival = std::min(1.0f, rho.maxCoeff() / (1.0f - to_exits));
     if (random_uniform(random_key(stop.key, 3)) >= static_cast<double>(survival)) return;
     stop.share *= rho.transpose() / survival;
     at_surface(stop);
     stop.ray = scattered(stop.at, stop.key);
     if (exits) {
-      const double weight = draw_among_exits(*exits, stop.at, stop.key, stop.ray);
+      const double weight = draw_among_exits(*exits, double{to_exits}, stop.at, stop.key, stop.ray);
       if (!(weight > 0.0)) return;
       stop.share *= static_cast<float>(weight);
     }
     caster.closest_hits({&stop.ray, 1}, {&stop.hit, 1});
     if (stop.hit.facet < 0) return;
-    if (bounce + 1 < most_bounces && is_gap(normal, stop.ray, stop.hit)) continue;
+    if (bounce + 1 < most_bounces && stays_in(caster, exits, normal, stop.ray, stop.hit)) continue;
     at_end(stop);
     return;
   }

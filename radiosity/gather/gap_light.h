@@ -51,6 +51,15 @@ class GapLight {
                                 std::span<const Ray> rays, std::span<const ElementHit> hits,
                                 int count, std::uint64_t key) const;
 
+  /// True if a ray from a point of unit normal `normal` ends in a gap. In the gap of `exits` (null:
+  /// not known) that is also where the gap is closed, such as on the floor between a cupboard and
+  /// the wall.
+  bool stays_in(const ElementCaster& caster, const GapExits* exits, const Eigen::Vector3d& normal,
+                const Ray& ray, const ElementHit& hit) const {
+    return is_gap(normal, ray, hit) ||
+           (exits && is_closed_end(caster, exits->across(), exits->width(), ray, hit));
+  }
+
   /// A place that a path in a gap comes to: a surface in the gap, or the end of its last ray.
   struct Stop {
     SurfacePoint at{};  // on a surface in the gap
@@ -61,8 +70,10 @@ class GapLight {
   };
   /// Follows a path from the end of a ray in a gap until a ray leaves the gap. `key` decides the
   /// path. Calls `at_surface` on each surface, with the share that its irradiance has, and `at_end`
-  /// at the end of the last ray, unless the path ends before or meets nothing. With `exits` a fifth
-  /// of the rays is drawn among these, weighed by the balance heuristic.
+  /// at the end of the last ray, unless the path ends before or meets nothing.
+  ///
+  /// With `exits`, those of the point that the ray begins at, some of the rays are drawn among
+  /// these, weighed by the balance heuristic.
   void follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
               const GapExits* exits, const std::function<void(const Stop&)>& at_surface,
               const std::function<void(const Stop&)>& at_end) const;
@@ -86,6 +97,8 @@ class GapLight {
                   Eigen::ArrayXd& sum) const;
   void add_end(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                std::uint64_t key, const Spectrum& share, Eigen::ArrayXd& sum) const;
+  bool is_closed_end(const ElementCaster& caster, const Eigen::Vector3d& across, double width,
+                     const Ray& ray, const ElementHit& hit) const;
   bool may_be_followed(const ElementHit& hit) const;
   Eigen::Vector3d normal_towards(const Ray& ray, const ElementHit& hit) const;
 

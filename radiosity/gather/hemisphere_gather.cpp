@@ -120,7 +120,7 @@ void HemisphereGather::aim_at_bright(const Place& place, Sums& sum) const {
     caster_.closest_hits({ray.data(), n}, {hit.data(), n});
     for (std::size_t r = 0; r < n; ++r) {
       if (!bright_.counts(aim[r], hit[r]) || !paths_.is_diffuse(hit[r].facet)) continue;
-      if (at.facet >= 0 && gaps_.is_gap(at.normal, ray[r], hit[r])) continue;
+      if (is_in_gap(place, ray[r], hit[r])) continue;
       if (is_near_portal(place, ray[r], hit[r])) continue;
       const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
       const double share = bright_.share(place.bright, at.normal.dot(ray[r].direction), place.rays,
@@ -183,8 +183,8 @@ void HemisphereGather::add(const Place& place, const Ray& ray, const ElementHit&
   const double by_cosine =
       place.rays * std::max(at.normal.dot(ray.direction), 0.0) * std::numbers::inv_pi;
   const double share = aimed > 0.0 ? by_cosine / (by_cosine + aimed) : 1.0;
-  const bool in_gap = (at.facet >= 0 && gaps_.is_gap(at.normal, ray, hit)) ||
-                      (aimed > 0.0 && gaps_.is_narrow(caster_, ray, hit));
+  const bool in_gap =
+      is_in_gap(place, ray, hit) || (aimed > 0.0 && gaps_.is_narrow(caster_, ray, hit));
   if (in_gap) {
     add_of_gap(place, ray, hit, random_key(place.key, RandomPurpose::gap_rays, index), share, sum);
     return;
@@ -218,6 +218,11 @@ void HemisphereGather::add_of_gap(const Place& place, const Ray& ray, const Elem
   Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
   gaps_.add(caster_, ray, hit, key, found, exits);
   sum += share * found;
+}
+
+bool HemisphereGather::is_in_gap(const Place& place, const Ray& ray, const ElementHit& hit) const {
+  return place.at.facet >= 0 &&
+         gaps_.stays_in(caster_, place.exits ? &*place.exits : nullptr, place.at.normal, ray, hit);
 }
 
 bool HemisphereGather::is_near_portal(const Place& place, const Ray& ray,

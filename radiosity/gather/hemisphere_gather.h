@@ -60,6 +60,8 @@ class HemisphereGather {
   void add_of_gap(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t key,
                   double share, Eigen::ArrayXd& sum) const;
 
+  bool is_in_gap(const Place& place, const Ray& ray, const ElementHit& hit) const;
+
   bool is_near_portal(const Place& place, const Ray& ray, const ElementHit& hit) const;
 
   void add_path(const Ray& ray, const ElementHit& hit, std::uint64_t key, double share,

@@ -1,6 +1,9 @@
 #include "raytrace/readings/read_error.h"
 
 #include <algorithm>
+#include <numbers>
+#include <optional>
+#include <vector>
 
 #include "mesh/patches/translucency.h"
 #include "radiosity/gather/gap_light.h"
@@ -33,40 +36,78 @@ class ReadErrors {
         directions_(ray_count) {}
 
   double at(const GatherPoint& point, std::uint64_t key) const {
+    const std::uint64_t ray_key = random_key(key, RandomPurpose::gather_rays, own_key);
+    std::vector<Ray> rays;
+    for (int i = 0; i < ray_count; ++i) {
+      const Eigen::Array4f u = directions_.point(i, ray_key);
+      rays.push_back(cosine_ray(point.position, point.normal, point.facet, u[0], u[1]));
+    }
+    std::vector<ElementHit> hits(rays.size());
+    caster_.closest_hits(rays, hits);
+    const SurfacePoint here{
+        .position = point.position, .normal = point.normal, .facet = point.facet};
+    std::optional<GapExits> exits;
+    if (point.facet >= 0) {
+      exits = gaps_.exits(caster_, here, rays, hits, ray_count,
+                          random_key(key, RandomPurpose::gap_rays, own_key));
+    }
     double sum = 0.0;
     for (int i = 0; i < ray_count; ++i) {
-      const Eigen::Array4f u =
-          directions_.point(i, random_key(key, RandomPurpose::gather_rays, own_key));
-      const auto number = static_cast<std::uint64_t>(i);
-      sum += along(point, u, random_key(key, RandomPurpose::gather_paths, number, own_key));
+      const auto number = static_cast<std::size_t>(i);
+      const std::uint64_t path = random_key(key, RandomPurpose::gather_paths, number, own_key);
+      sum +=
+          weight(here, exits, rays[number]) * along(here, exits, rays[number], hits[number], path);
     }
+    if (exits) sum += along_exits(here, exits, key);
     return sum / ray_count;
   }
 
  private:
-  // rho e at the end of the path that begins with a direction from `u`, and the light missed if the
-  // path begins in a gap.
-  double along(const GatherPoint& point, const Eigen::Array4f& u, std::uint64_t key) const {
-    Eigen::Vector3d normal = point.normal;
-    Ray ray = cosine_ray(point.position, normal, point.facet, u[0], u[1]);
-    double share = 1.0, missed = 0.0;
-    for (std::uint64_t bounce = 0; bounce < most_bounces; ++bounce) {
+  // Weight of a ray of either kind by the balance heuristic: cosine-distributed, or as many aimed
+  // at exits.
+  static double weight(const SurfacePoint& here, const std::optional<GapExits>& exits,
+                       const Ray& ray) {
+    if (!exits) return 1.0;
+    const double by_cosine = std::max(here.normal.dot(ray.direction), 0.0) * std::numbers::inv_pi;
+    const double aimed = exits->density(here.normal, ray.direction);
+    return by_cosine > 0.0 ? by_cosine / (by_cosine + aimed) : 0.0;
+  }
+
+  // Sum over rays aimed at exits.
+  double along_exits(const SurfacePoint& here, const std::optional<GapExits>& exits,
+                     std::uint64_t key) const {
+    const std::uint64_t aims = random_key(key, RandomPurpose::gap_rays, own_key, 1);
+    double sum = 0.0;
+    for (int i = 0; i < ray_count; ++i) {
+      const auto number = static_cast<std::uint64_t>(ray_count + i);
+      const std::uint64_t path = random_key(key, RandomPurpose::gather_paths, number, own_key);
+      const Eigen::Array4f u = directions_.point(i, aims);
+      const Ray ray{.origin = here.position,
+                    .direction = exits->draw(here.normal, u[0], u[1], u[2]),
+                    .origin_group = here.facet};
       ElementHit hit;
       caster_.closest_hits({&ray, 1}, {&hit, 1});
-      if (hit.facet < 0) return missed;
-      if (point.facet < 0 || !gaps_.is_gap(normal, ray, hit)) {
-        return missed + end(ray, hit, share, key);
-      }
-      if (bounce == 0) missed = missed_[mesh_.patch[hit.element]];
-      share *= reflectance(hit.element);
-      normal = element_center(mesh_, hit.element).normal;
-      if (normal.dot(ray.direction) > 0.0) normal = -normal;
-      const auto random = [&](std::uint64_t i) {
-        return static_cast<float>(random_uniform(random_key(key, bounce, i)));
-      };
-      ray = cosine_ray(ray.origin + hit.t * ray.direction, normal, hit.facet, random(1), random(2));
+      sum += weight(here, exits, ray) * along(here, exits, ray, hit, path);
     }
-    return missed;
+    return sum;
+  }
+
+  // rho e at the end of the path that begins with a ray, and the light missed if the path begins in
+  // a gap whose exits are not known.
+  double along(const SurfacePoint& here, const std::optional<GapExits>& exits, const Ray& ray,
+               const ElementHit& hit, std::uint64_t key) const {
+    if (hit.facet < 0) return 0.0;
+    const GapExits* const gap = exits ? &*exits : nullptr;
+    if (here.facet < 0 || !gaps_.stays_in(caster_, gap, here.normal, ray, hit)) {
+      return end(ray, hit, 1.0, key);
+    }
+    double sum = gap && !gap->is_closed() ? 0.0 : missed_[mesh_.patch[hit.element]];
+    gaps_.follow(
+        caster_, ray, hit, key, gap, [](const GapLight::Stop&) {},
+        [&](const GapLight::Stop& stop) {
+          sum += end(stop.ray, stop.hit, double{stop.share.mean()}, stop.key);
+        });
+    return sum;
   }
 
   double end(const Ray& ray, const ElementHit& hit, double share, std::uint64_t key) const {

@@ -214,5 +214,53 @@ TEST(DirectLight, OneLightStandsForAllInTheMean) {
   EXPECT_LT(variance, all * all);
 }
 
+// A lamp as long as 2 m, 2 m above an upright receiver at the origin, that begins at x = 0 above
+// it.
+struct UprightReceiver {
+  UprightReceiver(double lamp_width, bool is_covered) {
+    const int shines = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 100.0f));
+    const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+    const double w = lamp_width;
+    test::add_polygon(scene, "lamp", shines, {{0, -1, 2}, {0, 1, 2}, {w, 1, 2}, {w, -1, 2}});
+    if (is_covered) {
+      test::add_polygon(scene, "lid", black, {{0.02, -3, 1}, {3, -3, 1}, {3, 3, 1}, {0.02, 3, 1}});
+    }
+    test::add_polygon(scene, "far", black, {{-9, -9, -9}, {9, -9, -9}, {9, 9, -9}, {-9, 9, -9}});
+  }
+
+  Scene scene;
+  SurfacePoint at{
+      .position = Eigen::Vector3d::Zero(), .normal = Eigen::Vector3d::UnitX(), .facet = -1};
+};
+
+// Beneath the lid only the first 4 cm of the lamp are visible, which weigh little by their cosine.
+TEST(DirectLight, OneRayOfALampIsRightInTheMeanBehindASlit) {
+  const UprightReceiver narrow(0.04, false), wide(2.0, true);
+  const PatchMesh narrow_mesh = build_patches(narrow.scene, {.max_patch_size = 5.0}),
+                  wide_mesh = build_patches(wide.scene, {.max_patch_size = 5.0});
+  const ElementCaster narrow_caster(narrow_mesh), wide_caster(wide_mesh);
+  const double expected =
+      DirectLight(narrow.scene, narrow_mesh).irradiance(narrow_caster, {.at = narrow.at})[0];
+  ASSERT_GT(expected, 0.0);
+  const DirectLight light(wide.scene, wide_mesh);
+  ASSERT_EQ(light.light_count(), 1);
+
+  constexpr int count = 200000;
+  double sum = 0.0, squares = 0.0;
+  for (int key = 0; key < count; ++key) {
+    const double E = light.irradiance(wide_caster, {.at = wide.at,
+                                                    .key = static_cast<std::uint64_t>(key),
+                                                    .shadows = {.min_rays = 1, .max_rays = 1},
+                                                    .one_stands_for_all = true})[0];
+    sum += E;
+    squares += E * E;
+  }
+  const double mean = sum / count, error = std::sqrt((squares / count - mean * mean) / count);
+  // Four standard errors. Were the whole of the light given to each ray that gets through, the mean
+  // would be several times as great, since the visible part has small cosines.
+  EXPECT_NEAR(mean, expected, 4.0 * error);
+  EXPECT_LT(error, 0.05 * expected);
+}
+
 }  // namespace
 }  // namespace lightwell::direct_light_test
