@@ -10,6 +10,7 @@ bounds_bench. Printed per room: the mean ratio of both path tracers, and the RMS
 1 if both agree.
 """
 import argparse
+import os
 
 import mitsuba as mi
 import numpy as np
@@ -52,26 +53,20 @@ def mitsuba_scene(materials, faces):
 
 def irradiance(scene, places, size, samples):
     """Illuminance and its standard error at the places, by independent sets of samples."""
-    import drjit as dr
     height, sets = 2e-4 * size, 8
-    count = len(places)
-    lane = dr.arange(mi.UInt32, count * samples) // samples
-    start, down = places[:, :3] + height * places[:, 3:6], -places[:, 3:6]
-    gather = lambda columns: [dr.gather(mi.Float, mi.Float(column), lane) for column in columns.T]
-    ray = mi.RayDifferential3f(mi.Point3f(*gather(start)), mi.Vector3f(*gather(down)))
-    hit = scene.ray_intersect(mi.Ray3f(mi.Point3f(*[mi.Float(c) for c in start.T]), mi.Vector3f(*[mi.Float(c) for c in down.T])))
-    reflectance = np.array(hit.bsdf().eval_diffuse_reflectance(hit))[0]
     integrator = mi.load_dict({"type": "path", "max_depth": -1, "rr_depth": 5})
     found = []
-    for number in range(sets):
-        sampler = mi.load_dict({"type": "independent", "sample_count": samples})
-        sampler.set_samples_per_wavefront(samples)
-        sampler.seed(dr.opaque(mi.UInt32, number + 1), count * samples)
-        radiance, _, _ = integrator.sample(scene, sampler, ray)
-        means = dr.block_sum(radiance[1], samples)
-        found.append(LUMENS * np.pi * np.array(means) / samples / reflectance)
+    for place in places:
+        start, down = place[:3] + height * place[3:6], -place[3:6]
+        hit = scene.ray_intersect(mi.Ray3f(mi.Point3f(*start), mi.Vector3f(*down)))
+        reflectance = np.ravel(hit.bsdf().eval_diffuse_reflectance(hit))[0]
+        film = {"type": "hdrfilm", "width": 1, "height": 1, "pixel_format": "rgb", "component_format": "float32", "rfilter": {"type": "box"}}
+        meter = mi.load_dict({"type": "radiancemeter", "origin": list(start), "direction": list(down), "film": film,
+                              "sampler": {"type": "independent", "sample_count": samples}})
+        radiance = [np.ravel(mi.render(scene, sensor=meter, integrator=integrator, spp=samples, seed=number + 1))[1] for number in range(sets)]
+        found.append(LUMENS * np.pi * np.array(radiance) / reflectance)
     found = np.array(found)
-    return found.mean(0), found.std(0, ddof=1) / np.sqrt(sets)
+    return found.mean(1), found.std(1, ddof=1) / np.sqrt(sets)
 
 
 def main():
@@ -79,13 +74,17 @@ def main():
     parser.add_argument("rooms", nargs="+")
     parser.add_argument("--samples", type=int, default=32768)
     arguments = parser.parse_args()
-    mi.set_variant("llvm_ad_rgb")
+    mi.set_variant(os.environ.get("MITSUBA_VARIANT", "scalar_rgb"))
     for path in arguments.rooms:
         materials, faces, places = read_room(path)
         size = np.ptp(np.concatenate([corners for _, corners in faces]), axis=0).max()
+        # Mitsuba moves the origins of rays by about 0.1 mm: rooms of all sizes are computed as such of 4 m, with the same illuminance.
+        middle, scale = np.mean(np.concatenate([corners for _, corners in faces]), axis=0), 4.0 / size
+        faces = [(material, scale * (corners - middle)) for material, corners in faces]
+        places[:, :3] = scale * (places[:, :3] - middle)
         truth, is_open = places[:, 7:9].copy(), places[:, 6] == 0
         places = places[is_open]
-        lux, error = irradiance(mitsuba_scene(materials, faces), places, size, arguments.samples)
+        lux, error = irradiance(mitsuba_scene(materials, faces), places, scale * size, arguments.samples)
         truth[is_open, 0], truth[is_open, 1] = lux, error
         np.savetxt(path + ".truth", truth, fmt="%.9g", delimiter=",")
         both = np.maximum(np.hypot(error, places[:, 8]), 1e-12)

@@ -15,14 +15,13 @@ constexpr double least_log_reach = 1.5;
 
 }  // namespace
 
-GapExits::GapExits(const ElementCaster& caster, const SurfacePoint& at, const Size& size,
+GapExits::GapExits(const ElementCaster& caster, const SurfacePoint& at, double width, double reach,
                    std::uint64_t key, const IsOut& is_out)
     : across_(at.normal),
-      width_(size.width),
-      log_reach_(std::max(std::log(size.reach / size.width), least_log_reach)),
-      side_(size.rays < 256 ? 8 : 16) {
+      width_(width),
+      log_reach_(std::max(std::log(reach / width), least_log_reach)) {
   tangent_frame(at.normal, a_, b_);
-  const int cells = side_ * side_;
+  const int cells = side * side;
   std::vector<Ray> rays(static_cast<std::size_t>(cells));
   std::vector<ElementHit> hits(rays.size());
   for (int cell = 0; cell < cells; ++cell) {
@@ -31,8 +30,8 @@ GapExits::GapExits(const ElementCaster& caster, const SurfacePoint& at, const Si
     };
     rays[static_cast<std::size_t>(cell)] = {
         .origin = at.position,
-        .direction = direction_at(at.normal, (cell / side_ + number(1)) / side_,
-                                  (cell % side_ + number(2)) / side_),
+        .direction = direction_at(at.normal, (cell / side + number(1)) / side,
+                                  (cell % side + number(2)) / side),
         .origin_group = at.facet};
   }
   caster.closest_hits(rays, hits);
@@ -93,17 +92,17 @@ Eigen::Vector3d GapExits::draw(const Eigen::Vector3d& normal, double u, double v
                                double which) const {
   const auto found = std::upper_bound(cell_up_to_.begin(), cell_up_to_.end() - 1, which);
   const auto cell = static_cast<int>(found - cell_up_to_.begin());
-  return direction_at(normal, (cell / side_ + u) / side_, (cell % side_ + v) / side_);
+  return direction_at(normal, (cell / side + u) / side, (cell % side + v) / side);
 }
 
 double GapExits::density(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction) const {
   const Eigen::Array2d at = coordinates(normal, direction);
   if (!(at[0] >= 0.0)) return 0.0;
-  const int row = std::min(static_cast<int>(at[0] * side_), side_ - 1),
-            column = std::min(static_cast<int>(at[1] * side_), side_ - 1);
-  const auto cell = static_cast<std::size_t>(row * side_ + column);
+  const int row = std::min(static_cast<int>(at[0] * side), side - 1),
+            column = std::min(static_cast<int>(at[1] * side), side - 1);
+  const auto cell = static_cast<std::size_t>(row * side + column);
   const double chance = cell_up_to_[cell] - (cell > 0 ? cell_up_to_[cell - 1] : 0.0);
-  return chance * (side_ * side_) * even_density(direction.dot(normal));
+  return chance * (side * side) * even_density(direction.dot(normal));
 }
 
 }  // namespace lightwell

@@ -28,16 +28,10 @@ class GapExits {
   /// True if a ray is out of the gap.
   using IsOut = std::function<bool(const Ray& ray, const ElementHit& hit)>;
 
-  /// A gap of `width` metres that ends about `reach` metres away at most; pilot rays, of which
-  /// there are 64 or 256, suit a gather of `rays` rays.
-  struct Size {
-    double width = 0.0, reach = 0.0;
-    int rays = 0;
-  };
-
-  /// The exits seen from a point of a surface in the gap. `key` decides the pilot rays.
-  GapExits(const ElementCaster& caster, const SurfacePoint& at, const Size& size, std::uint64_t key,
-           const IsOut& is_out);
+  /// The exits seen from a point of a surface in a gap of `width` metres that ends about `reach`
+  /// metres away at most. `key` decides the pilot rays.
+  GapExits(const ElementCaster& caster, const SurfacePoint& at, double width, double reach,
+           std::uint64_t key, const IsOut& is_out);
 
   /// True if no pilot ray got out.
   bool is_closed() const { return !(out_ > 0.0); }
@@ -51,10 +45,16 @@ class GapExits {
   /// Probability density q of draw()'s directions, 1/sr.
   double density(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction) const;
 
+  /// Number of rays of a gather from which on pilot rays, of which there are as many, are worth
+  /// their time. Light of vertices, which fewer rays gather, is judged by that of the room.
+  static constexpr int fewest_rays = 256;
   /// Number of rays aimed at exits beside `rays` cosine-distributed ones.
-  static int aimed(int rays) { return rays; }
+  static int aimed(int rays) { return (rays + 1) / 2; }
 
  private:
+  static constexpr int side = 16;  // rows and columns of cells
+  static_assert(side * side == fewest_rays);
+
   // Axes beside a normal, nearest to those of the point.
   Eigen::Matrix<double, 3, 2> frame(const Eigen::Vector3d& normal) const;
   // Coordinates of a direction in [0,1)^2, of (log tan, phi); below 0: too steep.
@@ -67,7 +67,6 @@ class GapExits {
   double width_ = 0.0;
   double log_reach_ = 1.0;            // ln T
   double out_ = 0.0;                  // sum of the weights of pilot rays that got out
-  int side_ = 1;                      // rows and columns of cells
   std::vector<double> cell_up_to_{};  // running sum of probabilities, row by row
 };
 

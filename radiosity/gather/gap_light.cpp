@@ -187,6 +187,7 @@ void GapLight::add_end(const ElementCaster& caster, const Ray& ray, const Elemen
 std::optional<GapExits> GapLight::exits(const ElementCaster& caster, const SurfacePoint& at,
                                         std::span<const Ray> rays, std::span<const ElementHit> hits,
                                         int count, std::uint64_t key) const {
+  if (count < GapExits::fewest_rays) return std::nullopt;
   // The steepest ray tells most places from gaps without a further ray.
   const auto steepest = std::ranges::max_element(
       rays, {}, [&](const Ray& ray) { return ray.direction.dot(at.normal); });
@@ -194,17 +195,21 @@ std::optional<GapExits> GapLight::exits(const ElementCaster& caster, const Surfa
       !is_gap(at.normal, *steepest, hits[static_cast<std::size_t>(steepest - rays.begin())])) {
     return std::nullopt;
   }
+  // Near the brink of a gap many rays get out by themselves.
+  constexpr std::size_t many = 8;
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < rays.size(); ++i) out += is_gap(at.normal, rays[i], hits[i]) ? 0 : 1;
+  if (many * out > rays.size()) return std::nullopt;
   const Ray across{.origin = at.position, .direction = at.normal, .origin_group = at.facet};
   ElementHit hit;
   caster.closest_hits({&across, 1}, {&hit, 1});
   if (!is_gap(at.normal, across, hit)) return std::nullopt;
   const PatchMesh& mesh = lit_.mesh();
   const double reach = patches_wide * std::sqrt(mesh.area[mesh.patch[hit.element]]);
-  return GapExits(caster, at, {.width = hit.t, .reach = reach, .rays = count}, key,
-                  [&](const Ray& ray, const ElementHit& end) {
-                    return end.facet >= 0 && !is_gap(at.normal, ray, end) &&
-                           !is_closed_end(caster, at.normal, hit.t, ray, end);
-                  });
+  return GapExits(caster, at, hit.t, reach, key, [&](const Ray& ray, const ElementHit& end) {
+    return end.facet >= 0 && !is_gap(at.normal, ray, end) &&
+           !is_closed_end(caster, at.normal, hit.t, ray, end);
+  });
 }
 
 void GapLight::follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,

@@ -46,7 +46,8 @@ class GapLight {
   bool is_narrow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const;
 
   /// The directions out of the gap that a point lies in; empty if it lies in none. `rays` are the
-  /// first of a gather's rays from there, and `hits` their ends; `count` is the number of all.
+  /// first of a gather's rays from there, and `hits` their ends; `count` is the number of all, and
+  /// fewer than GapExits::fewest_rays are not worth the search.
   std::optional<GapExits> exits(const ElementCaster& caster, const SurfacePoint& at,
                                 std::span<const Ray> rays, std::span<const ElementHit> hits,
                                 int count, std::uint64_t key) const;

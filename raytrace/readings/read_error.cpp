@@ -10,6 +10,7 @@
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/refine/illuminance_bound.h"
+#include "raytrace/readings/sure_gather.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -25,14 +26,16 @@ constexpr std::uint64_t own_key = 0x4ead;
 class ReadErrors {
  public:
   // `missed` is the light that a path out of a gap at each patch, met by no ray, may bring, lx.
+  // `rays` are those of a set of the gather.
   ReadErrors(const LitScene& lit, const BandArray& radiosity, const Eigen::ArrayXf& error,
-             const Eigen::ArrayXd& missed)
+             const Eigen::ArrayXd& missed, int rays)
       : mesh_(lit.mesh()),
         caster_(lit.caster),
         paths_(lit.scene, lit.caster, most_bounces),
         gaps_(lit, radiosity, paths_),
         error_(error),
         missed_(missed),
+        rays_of_set_(rays),
         directions_(ray_count) {}
 
   double at(const GatherPoint& point, std::uint64_t key) const {
@@ -48,7 +51,7 @@ class ReadErrors {
         .position = point.position, .normal = point.normal, .facet = point.facet};
     std::optional<GapExits> exits;
     if (point.facet >= 0) {
-      exits = gaps_.exits(caster_, here, rays, hits, ray_count,
+      exits = gaps_.exits(caster_, here, rays, hits, rays_of_set_,
                           random_key(key, RandomPurpose::gap_rays, own_key));
     }
     double sum = 0.0;
@@ -147,6 +150,7 @@ class ReadErrors {
   GapLight gaps_;
   const Eigen::ArrayXf& error_;
   const Eigen::ArrayXd& missed_;
+  int rays_of_set_;
   SobolPoints directions_;
 };
 
@@ -183,7 +187,7 @@ Eigen::ArrayXd read_errors(const LitScene& lit, const RadiositySolution& solutio
   if (of_elements.size() != lit.mesh().element_count()) return errors;
   constexpr double unseen = 3.0;  // of n trials, at odds of 19 to 1
   const Eigen::ArrayXd missed = unseen / std::max(rays, 1) * mean_reflected(lit, solution);
-  const ReadErrors read(lit, radiosity, of_elements, missed);
+  const ReadErrors read(lit, radiosity, of_elements, missed, rays / rays_over_set);
   parallel_for(points.size(), 8, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const GatherPoint point = points[i];

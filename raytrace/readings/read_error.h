@@ -15,9 +15,10 @@ namespace lightwell {
 /// with N, but errors of a solution last over whole surfaces. Rays continue through mirrors and
 /// glass, and out of gaps, as a gather's rays do. 0 if the solution has no estimate of its errors.
 ///
-/// In a gap few paths lead out to the light, and a gather with `rays` rays may meet none of them,
-/// so that its own noise says nothing of them. What none of n trials meets has a probability below
-/// 3/n (odds of 19 to 1), so for the share g of rays that begin in a gap
+/// In a gap few paths lead out to the light. A sure_gather() of `rays` rays in whose sets the exits
+/// of the gap are looked for (GapExits) meets them, and so do the paths of e. Otherwise it may meet
+/// none of them, so that its own noise says nothing of them. What none of n trials meets has a
+/// probability below 3/n (odds of 19 to 1), so for the share g of rays that begin in a gap
 ///
 ///     e += g 3 / rays mean(rho E)     the mean over the lit surfaces of the part of the gap
 Eigen::ArrayXd read_errors(const LitScene& lit, const RadiositySolution& solution,

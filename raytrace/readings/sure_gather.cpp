@@ -44,8 +44,9 @@ class SureGather {
     }
     const int sky =
         options.shadows.sky_rays > 0 ? options.shadows.sky_rays : options.shadows.max_rays;
-    direct_.rays.assign(static_cast<std::size_t>(count), std::max(1, sky / of_a_set));
-    indirect_.rays.assign(static_cast<std::size_t>(count), std::max(1, options.rays / of_a_set));
+    direct_.rays.assign(static_cast<std::size_t>(count), std::max(1, sky / rays_over_set));
+    indirect_.rays.assign(static_cast<std::size_t>(count),
+                          std::max(1, options.rays / rays_over_set));
     if (radiosity.rows() > 0) {
       const Eigen::Array<double, 1, Eigen::Dynamic> mean =
           radiosity.cast<double>().colwise().mean();
@@ -84,8 +85,6 @@ class SureGather {
   }
 
  private:
-  static constexpr int of_a_set = 4;
-
   double lux(int i) const { return direct_.lux[i] + indirect_.lux[i]; }
   double noise_bound(int i) const {
     return std::hypot(student_t * std::sqrt(direct_.squared[i] + indirect_.squared[i]),

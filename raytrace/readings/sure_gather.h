@@ -6,9 +6,10 @@
 
 namespace lightwell {
 
-/// Limits of sure_gather(): rays of one set, of which there are `sure_sets`.
+/// Rays of sure_gather(): most of one set, and the number of sets.
 constexpr int most_sure_rays = 1 << 16;  ///< hemisphere, sky
 constexpr int sure_sets = 8;
+constexpr int rays_over_set = 4;  ///< rays of the options over those of a set
 
 /// Irradiance at points, with a bound of its noise.
 struct SureIrradiance {
