@@ -49,7 +49,7 @@ class GapExits {
   /// their time. Light of vertices, which fewer rays gather, is judged by that of the room.
   static constexpr int fewest_rays = 256;
   /// Number of rays aimed at exits beside `rays` cosine-distributed ones.
-  static int aimed(int rays) { return (rays + 1) / 2; }
+  static int aimed(int rays) { return rays; }
 
  private:
   static constexpr int side = 16;  // rows and columns of cells

@@ -121,15 +121,12 @@ bool GapLight::is_closed_end(const ElementCaster& caster, const Eigen::Vector3d&
   const Eigen::Vector3d normal = normal_towards(ray, hit);
   if (std::abs(normal.dot(across)) > upright) return false;
   const Eigen::Vector3d at = ray.origin + hit.t * ray.direction + height * width * normal;
-  std::array<Ray, 2> rays;
-  std::array<std::uint8_t, 2> near{};
-  for (const int side : {0, 1}) {
-    const Eigen::Vector3d direction = side == 0 ? across : Eigen::Vector3d(-across);
-    rays[static_cast<std::size_t>(side)] = {
-        .origin = at, .direction = direction, .t_max = widest * width};
-  }
-  caster.occluded(rays, near);
-  return near[0] && near[1];
+  return std::ranges::all_of(std::array{1.0, -1.0}, [&](double side) {
+    const Ray ray_across{.origin = at, .direction = side * across, .t_max = widest * width};
+    std::uint8_t is_near = 0;
+    caster.occluded({&ray_across, 1}, {&is_near, 1});
+    return is_near != 0;
+  });
 }
 
 bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const {
