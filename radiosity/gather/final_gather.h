@@ -60,7 +60,10 @@ struct GatherOptions {
   ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
   std::uint64_t replica = 0;                 ///< another number gives an independent estimate
   std::shared_ptr<const Portals> portals{};  ///< openings that rays are aimed at; null: none
-  RunControl run{};                          ///< the journal keeps the gathered light
+  /// Aims rays out of narrow gaps (see GapExits): for points that are read by themselves. Light of
+  /// vertices, of which a gap has few, gains too little for the time.
+  bool aims_out_of_gaps = false;
+  RunControl run{};  ///< the journal keeps the gathered light
 };
 
 /// Gathered irradiance, points x columns, W/m^2. The columns are the bands; if light is kept apart

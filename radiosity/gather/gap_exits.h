@@ -46,7 +46,7 @@ class GapExits {
   double density(const Eigen::Vector3d& normal, const Eigen::Vector3d& direction) const;
 
   /// Number of rays of a gather from which on pilot rays, of which there are as many, are worth
-  /// their time. Light of vertices, which fewer rays gather, is judged by that of the room.
+  /// their time.
   static constexpr int fewest_rays = 256;
   /// Number of rays aimed at exits beside `rays` cosine-distributed ones.
   static int aimed(int rays) { return rays; }

@@ -159,6 +159,7 @@ namespace {
 GatherOptions probe_options(const LitScene& lit, const BandArray& radiosity,
                             GatherOptions options) {
   constexpr int per_ray = 4, fewest = 64;
+  options.aims_out_of_gaps = true;
   if (options.shadows.sky_rays == 0) {
     options.shadows.sky_rays =
         std::clamp(per_ray * std::min(options.rays, most_sky_rays), fewest, most_sky_rays);

@@ -42,7 +42,7 @@ struct Plates {
 
   double gathered(double x, int rays, std::uint64_t replica = 0) const {
     const std::vector<GatherPoint> points = {{.position = {x, 0.0, 0.0}, .facet = desk}};
-    const GatherOptions options{.rays = rays, .replica = replica};
+    const GatherOptions options{.rays = rays, .replica = replica, .aims_out_of_gaps = true};
     return gather_irradiance({scene, caster, light}, radiosity, points, options).indirect(0, 0);
   }
 
