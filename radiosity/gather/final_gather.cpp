@@ -44,7 +44,7 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
     print.add(sky_noise.most_times);
   }
   // The run decides no bit of a result.
-  const auto& [rays, max_specular_depth, shadows, replica, portals, run] = options;
+  const auto& [rays, max_specular_depth, shadows, replica, portals, aims_out_of_gaps, run] = options;
   const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share, many_lights] = shadows;
   print.add(rays);
   print.add(max_specular_depth);
@@ -55,6 +55,7 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
   print.add(many_lights);
   print.add(replica);
   print.add(portals ? portals->size() : 0);  // portals follow from the scene and its light
+  print.add(aims_out_of_gaps);
 }
 
 // The values of rows begin to begin + size - 1.
