@@ -44,7 +44,8 @@ void add_gather_inputs(Fingerprint& print, const PatchMesh& mesh, const GatherPo
     print.add(sky_noise.most_times);
   }
   // The run decides no bit of a result.
-  const auto& [rays, max_specular_depth, shadows, replica, portals, aims_out_of_gaps, run] = options;
+  const auto& [rays, max_specular_depth, shadows, replica, portals, aims_out_of_gaps, run] =
+      options;
   const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share, many_lights] = shadows;
   print.add(rays);
   print.add(max_specular_depth);

@@ -98,7 +98,11 @@ PovToken PovText::next_token() {
   }
   constexpr std::string_view signs = "{}[]()<>,;=+-*/^.!?:&|";
   if (signs.find(c) == std::string_view::npos) {
-    fail(fmt::format("the character '{}' begins nothing that is known here", c));
+    const bool is_printable = c > ' ' && c <= '~';
+    fail(fmt::format("{} begins nothing that is known here",
+                     is_printable
+                         ? fmt::format("the character '{}'", c)
+                         : fmt::format("the byte {:#04x}", static_cast<unsigned char>(c))));
   }
   constexpr std::array<std::string_view, 3> pairs = {"<=", ">=", "!="};
   const bool is_pair = std::ranges::find(pairs, text.substr(at_, 2)) != pairs.end();
