@@ -36,9 +36,9 @@ struct SpecularRow {
 /// Every implementation keeps
 ///   - 0 <= F_ij;
 ///   - reciprocity, A_i F_ij = A_j F_ji;
-///   - closure: row(i), specular_row(i), escaped(i) and absorbed_by_specular(i) sum to 1 in every
-///     band. A surface that both mirrors and scatters counts in row(i) and passes its mirrored
-///     share on.
+///   - closure: sum_j (F_ij + F^s_ij) (1 - s_j) + escaped(i) + absorbed_by_specular(i) = 1 in every
+///     band. F^s_ij is specular_row(i), s_j the share of even light that patch j mirrors besides
+///     what it scatters: such a patch counts in row(i), and passes its mirrored share on.
 class FormFactors {
  public:
   virtual ~FormFactors() = default;
