@@ -108,6 +108,12 @@ CLI::Validator one_of(std::string what, std::vector<std::string> known) {
       std::string{});
 }
 
+void add_scene(CLI::App& command, std::string& scene) {
+  command.add_option("scene", scene, fmt::format("scene file: {}", scene_extensions))
+      ->required()
+      ->type_name("SCENE");
+}
+
 CLI::Validator with_extension(std::vector<std::string> extensions) {
   return CLI::Validator(
       [extensions](std::string& file) -> std::string {

@@ -118,6 +118,13 @@ CLI::Validator power_of_two();
 /// Accepts the `known` names; `what` ("solver") is their kind in the error message.
 CLI::Validator one_of(std::string what, std::vector<std::string> known);
 
+/// Names of scene files end in one of these.
+inline constexpr const char* scene_extensions =
+    ".toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, .mgf, .pov, .vs3";
+
+/// Adds the positional argument `scene`, which must be given, to a command.
+void add_scene(CLI::App& command, std::string& scene);
+
 /// Accepts file names that end in one of `extensions` (".png"), in upper or lower case.
 CLI::Validator with_extension(std::vector<std::string> extensions);
 

@@ -381,10 +381,7 @@ Action add_form_factors(CLI::App& command) {
   const auto arguments = std::make_shared<FormFactorArguments>();
   command.description(
       "View factors between the facets of a file, as a sparse matrix; materials do not matter.");
-  command
-      .add_option("scene", arguments->scene,
-                  "geometry: .obj, .stl, .ply, .toml, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
-                  ".mgf, .pov, .vs3")
+  command.add_option("scene", arguments->scene, fmt::format("geometry: {}", scene_extensions))
       ->required()
       ->type_name("SCENE");
   command

@@ -427,9 +427,9 @@ Action add_info(CLI::App& command) {
   };
   const auto arguments = std::make_shared<Arguments>();
   command.description(
-      "Describes a scene (.toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
-      ".mgf, .pov, .vs3), a "
-      "solution (.vtp), a picture (.exr) or a luminaire (.ies, .ldt).");
+      fmt::format("Describes a scene ({}), a solution (.vtp), a picture (.exr) or a luminaire "
+                  "(.ies, .ldt).",
+                  scene_extensions));
   command.add_option("file", arguments->file, "the file")->required()->type_name("FILE");
   command.add_flag("--ugr", arguments->ugr,
                    "UGR table of a luminaire in the 19 standard rooms (CIE 117, CIE 190)");

@@ -134,12 +134,7 @@ Action add_mesh(CLI::App& command) {
   const auto arguments = std::make_shared<MeshCommandArguments>();
   command.description(
       "Makes the patches and elements that 'solve' would use, and reports their quality.");
-  command
-      .add_option("scene", arguments->scene,
-                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
-                  ".mgf, .pov, .vs3")
-      ->required()
-      ->type_name("SCENE");
+  add_scene(command, arguments->scene);
   auto* const output = command
                            .add_option("-o,--output", arguments->output,
                                        "the mesh, .vtp for ParaView (default: only a report)")

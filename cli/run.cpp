@@ -149,12 +149,7 @@ Action add_run(CLI::App& command) {
   const auto arguments = std::make_shared<RunArguments>();
   command.description(
       "Solves a scene and renders its cameras: solution.vtp, .exr and .png files, report.json.");
-  command
-      .add_option("scene", arguments->scene,
-                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
-                  ".mgf, .pov, .vs3")
-      ->required()
-      ->type_name("SCENE");
+  add_scene(command, arguments->scene);
   command.add_option("-o,--output", arguments->output, "folder for the results (SCENE-output)")
       ->type_name("DIR");
   arguments->solve.add_to(command);

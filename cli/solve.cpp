@@ -49,12 +49,7 @@ int solve(const SolveCommandArguments& arguments, Console& console) {
 Action add_solve(CLI::App& command) {
   const auto arguments = std::make_shared<SolveCommandArguments>();
   command.description("Meshes a scene, solves for the light on its surfaces, saves the solution.");
-  command
-      .add_option("scene", arguments->scene,
-                  "scene file: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, "
-                  ".mgf, .pov, .vs3")
-      ->required()
-      ->type_name("SCENE");
+  add_scene(command, arguments->scene);
   command.add_option("-o,--output", arguments->output, "the solution, .vtp (opens in ParaView)")
       ->required()
       ->type_name("FILE")

@@ -14,10 +14,7 @@ using Words = std::vector<std::string>;
 
 // small_room() with two more lamps.
 std::string stage() {
-  std::string text = small_room();
-  const std::string cameras = text.substr(text.find("[[cameras]]"));
-  text.resize(text.find("[[cameras]]"));
-  return text + R"(
+  return small_room_with(R"(
 [materials.bulb]
 exitance = [300, 240, 150]
 [[surfaces]]
@@ -28,7 +25,7 @@ polygon = [[1, 0.5, 1.2], [1, 0.7, 1.2], [1.2, 0.7, 1.2], [1.2, 0.5, 1.2]]
 name = "spot right"
 material = "bulb"
 polygon = [[3, 0.5, 1.2], [3, 0.7, 1.2], [3.2, 0.7, 1.2], [3.2, 0.5, 1.2]]
-)" + cameras;
+)");
 }
 
 constexpr const char* cue_file = R"([[cues]]

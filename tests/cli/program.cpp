@@ -64,6 +64,12 @@ std::string small_room() {
   return content_of(LIGHTWELL_TEST_DATA "/small_room.toml");
 }
 
+std::string small_room_with(const std::string& tables) {
+  std::string text = small_room();
+  text.insert(text.find("[[cameras]]"), tables);
+  return text;
+}
+
 std::string unit_cube() {
   std::string obj;
   for (int i = 0; i < 8; ++i) {

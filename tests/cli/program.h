@@ -58,6 +58,8 @@ class CommandTest : public testing::Test {
 /// A room of 4 m x 3 m x 2.5 m with a luminous panel of 1 m^2 under its ceiling and the camera
 /// "door". With quick() a solve takes a moment.
 std::string small_room();
+/// small_room() with these tables of TOML before its camera.
+std::string small_room_with(const std::string& tables);
 /// An OBJ file of the unit cube, six squares that face inwards.
 std::string unit_cube();
 

@@ -15,17 +15,14 @@ namespace {
 using Words = std::vector<std::string>;
 
 std::string office() {
-  std::string text = small_room();
-  const std::string cameras = text.substr(text.find("[[cameras]]"));
-  text.resize(text.find("[[cameras]]"));
-  return text + R"(
+  return small_room_with(R"(
 [materials.bulb]
 exitance = [300, 240, 150]
 [[surfaces]]
 name = "desk lamp"
 material = "bulb"
 polygon = [[3, 0.5, 1.2], [3, 0.7, 1.2], [3.2, 0.7, 1.2], [3.2, 0.5, 1.2]]
-)" + cameras;
+)");
 }
 
 class RelightCommand : public CommandTest {
