@@ -17,7 +17,7 @@ Eigen::Vector2d offset(const PathGoal& goal, const Eigen::Vector3d& origin,
     const Eigen::Vector3d d = exit - goal.position;
     return {d.dot(axes.col(0)), d.dot(axes.col(1))};
   }
-  // Where the path crosses the plane through the goal across axes.col(2).
+  // The path crosses the plane through the goal, whose normal is axes.col(2), after t.
   const double along = exit.dot(axes.col(2));
   const double t = (goal.position - origin).dot(axes.col(2)) / along;
   const Eigen::Vector3d d = origin + t * exit - goal.position;

@@ -148,6 +148,7 @@ TEST(ManyLights, AskFewerThanAll) {
   for (const ManyLights method :
        {ManyLights::lightcuts, ManyLights::sorted, ManyLights::importance}) {
     std::printf("lights asked: %.0f of %d\n", asked(method), light.light_count());
+    // A choice among lights that asks half of them saves nothing, since choosing takes time too.
     EXPECT_LT(asked(method), 0.5 * light.light_count());
     EXPECT_GT(asked(method), 1.0);
   }

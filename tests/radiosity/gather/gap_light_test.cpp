@@ -110,6 +110,7 @@ TEST(GapLight, DeepInAGapIsKnownByAFewHundredRays) {
     const double deviation = std::sqrt((found - found.mean()).square().sum() / (replicas - 1));
     // Cosine-distributed rays alone bring B0 or nothing and deviate by 0.5 at least, as a share.
     ASSERT_GT(std::sqrt(B0 / (rays * expected)), 0.5);
+    // A fifth of a place's own light is what gathers at points promise in gaps.
     EXPECT_LT(deviation, 0.2 * expected) << "gap " << gap;
     // Four standard errors; 1 % for the plates' finite length.
     EXPECT_NEAR(found.mean(), expected, 4.0 * deviation / std::sqrt(replicas) + 0.01 * expected)

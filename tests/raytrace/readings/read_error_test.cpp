@@ -55,8 +55,8 @@ TEST(ReadErrors, InAGapHoldPathsThatNoRayMet) {
   EXPECT_NEAR(of_missed[0], expected, 0.02 * expected);
   // The share falls as one over the rays.
   EXPECT_NEAR((errors(200) - errors(400))[0], 0.25 * of_missed[0], 1e-3 * of_missed[0]);
-  // Where exits are known, nothing is missed. Half a metre inside a gap of 1 mm, which no wall
-  // darkens further, light is some 10^-5 of the room's, and its error no more.
+  // Nothing is missed in a gap whose exits are known. Half a metre inside a gap of 1 mm, which no
+  // wall darkens further, light is some 10^-5 of the room's, and its error no more.
   EXPECT_LT(errors(rays_over_set * GapExits::fewest_rays)[0], 1e-3 * expected);
   EXPECT_EQ(of_missed[1], 0.0) << "in the open nothing is added";
 }
