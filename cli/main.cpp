@@ -57,7 +57,7 @@ struct NamedCommand {
   Action (*add)(CLI::App&);
   bool reads_scene = true;
 };
-constexpr std::array<NamedCommand, 12> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 13> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight, false},
@@ -66,6 +66,7 @@ constexpr std::array<NamedCommand, 12> commands = {{{"run", add_run},
                                                     {"view", add_view},
                                                     {"export", add_export},
                                                     {"report", add_report},
+                                                    {"daylight", add_daylight},
                                                     {"compare", add_compare, false},
                                                     {"form-factors", add_form_factors},
                                                     {"info", add_info}}};

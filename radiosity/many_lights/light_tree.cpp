@@ -16,13 +16,13 @@ using Eigen::Vector3d;
 using std::numbers::pi;
 
 constexpr int steps = static_cast<int>(IntensityByAngle{}.size());
-constexpr double step = pi / steps;
+constexpr double angle_step = pi / steps;
 
 // The step of an angle, by its cosine: the number of steps whose ends are smaller angles.
 int step_of_cosine(double cosine) {
   static const std::array<double, steps - 1> ends = [] {
     std::array<double, steps - 1> cosines{};
-    for (int k = 1; k < steps; ++k) cosines[static_cast<std::size_t>(k) - 1] = std::cos(k * step);
+    for (int k = 1; k < steps; ++k) cosines[static_cast<std::size_t>(k) - 1] = std::cos(k * angle_step);
     return cosines;
   }();
   const auto end = std::ranges::lower_bound(ends, cosine, std::greater<>());
@@ -39,7 +39,7 @@ template <class Shape>
 IntensityByAngle falling(double scale, Shape shape) {
   IntensityByAngle result;
   for (int k = 0; k < steps; ++k) {
-    result[static_cast<std::size_t>(k)] = static_cast<float>(scale * shape(k * step));
+    result[static_cast<std::size_t>(k)] = static_cast<float>(scale * shape(k * angle_step));
   }
   return result;
 }
@@ -55,7 +55,7 @@ IntensityByAngle greatest_of_web(const PhotometricWeb& web) {
     greatest = std::max(greatest, static_cast<float>(value));
   };
   for (int k = 0; k < steps; ++k) {
-    const double first = k * step * degrees, last = (k + 1) * step * degrees;
+    const double first = k * angle_step * degrees, last = (k + 1) * angle_step * degrees;
     for (std::size_t g = 0; g < gammas.size(); ++g) {
       if (gammas[g] >= first && gammas[g] <= last) add(k, web.values().col(g).maxCoeff());
       if (g + 1 == gammas.size()) break;

@@ -114,9 +114,12 @@ void RowGather::row(int i, const LightVector& B, double* E) const {
   if (!has_specular_) return;
   const SpecularRow specular = form_factors_.specular_row(i);
   for (std::size_t s = 0; s < specular.patch.size(); ++s) {
-    const float* const F = specular.value.data() + s * static_cast<std::size_t>(bands_);
+    const auto in_row = static_cast<int>(specular.value.cols());
+    const float* const F = specular.value.data() + s * static_cast<std::size_t>(in_row);
     const double* const B_j = B.data() + static_cast<std::ptrdiff_t>(lanes()) * specular.patch[s];
-    for (int k = 0; k < bands_; ++k) E[k] += static_cast<double>(F[k]) * B_j[k];
+    for (int first = 0; first < bands_; first += in_row) {
+      for (int k = 0; k < in_row; ++k) E[first + k] += static_cast<double>(F[k]) * B_j[first + k];
+    }
   }
 }
 

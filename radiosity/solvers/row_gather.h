@@ -18,7 +18,8 @@ using LaneArray = Eigen::Array<double, 1, Eigen::Dynamic>;
 /// Products F B with the rows of F, extended form factors included. One pass serves all bands.
 class RowGather {
  public:
-  /// Keeps a reference. `pause` is called repeatedly during a pass and may throw to end the pass.
+  /// Keeps a reference. `bands` is a multiple of those of the rows, whose factors then serve each
+  /// set of bands (see solve_columns). `pause` is called repeatedly during a pass and may throw to end the pass.
   RowGather(const FormFactors& form_factors, int bands, std::function<void()> pause = {});
 
   int lanes() const { return lanes_; }

@@ -1,14 +1,12 @@
-// gendaylit's skies: Perez, Seals & Michalsky 1993 (distribution); Perez, Ineichen, Seals,
-// Michalsky & Stewart 1990 (efficacy).
+// gendaylit's skies by Perez' model (see perez_sky.h).
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "scene/degree.h"
 #include "scene/io/radiance/generators/radiance_sky_call.h"
 #include "scene/io/text_file.h"
-#include "scene/sky.h"
+#include "scene/perez_sky.h"
 #include "scene/sun_position.h"
 
 namespace lightwell {
@@ -63,36 +61,10 @@ struct Weather {
   SkyState state{};
 };
 
-struct EfficacyClass {
-  double clearness_below = 0.0;
-  std::array<double, 4> diffuse{}, direct{};
-};
+constexpr double water = 2.0;  // cm that all vapour above would fill, gendaylit's
 
-// Table 4 of Perez et al. 1990: lm/W from water in the air, zenith angle and brightness.
-constexpr std::array<EfficacyClass, 8> efficacy_classes = {
-    {{1.065, {97.24, -0.46, 12.00, -8.91}, {57.20, -4.55, -2.98, 117.12}},
-     {1.230, {107.22, 1.15, 0.59, -3.95}, {98.99, -3.46, -1.21, 12.38}},
-     {1.500, {104.97, 2.96, -5.53, -8.77}, {109.83, -4.90, -1.71, -8.81}},
-     {1.950, {102.39, 5.59, -13.95, -13.90}, {110.34, -5.84, -1.99, -4.56}},
-     {2.800, {100.71, 5.94, -22.75, -23.74}, {106.36, -3.97, -1.75, -6.16}},
-     {4.500, {106.42, 3.83, -36.15, -28.83}, {107.19, -1.25, -1.51, -26.73}},
-     {6.200, {141.88, 1.90, -53.24, -14.03}, {105.75, 0.77, -1.26, -34.44}},
-     {1e9, {152.23, 0.35, -45.27, -7.98}, {101.18, 1.58, -1.10, -8.29}}}};
-
-struct Efficacy {
-  double diffuse = 0.0, direct = 0.0;  // lm/W
-};
-
-Efficacy efficacy(const Weather& weather, double altitude) {
-  constexpr double water = 2.0;  // cm that all vapour above would fill, gendaylit's
-  const double Z = 0.5 * pi - altitude;
-  const auto at = std::ranges::find_if(efficacy_classes, [&](const EfficacyClass& c) {
-    return weather.state.clearness < c.clearness_below;
-  });
-  const auto &f = at->diffuse, &n = at->direct;
-  return {f[0] + f[1] * water + f[2] * std::cos(Z) + f[3] * std::log(weather.state.brightness),
-          std::max(0.0, n[0] + n[1] * water + n[2] * std::exp(5.73 * Z - 5.0) +
-                            n[3] * weather.state.brightness)};
+DaylightEfficacy efficacy(const Weather& weather, double altitude) {
+  return daylight_efficacy(weather.state, altitude / degree, water);
 }
 
 void describe(Weather& weather, double altitude, int day) {
@@ -117,7 +89,7 @@ Weather weather_of(const GendaylitGiven& given, double altitude, const SkyCall& 
   }
   if (given.input == 'L') {
     // Watts whose efficacies give these lux, by iteration from 110 lm/W.
-    Efficacy lm{110.0, 110.0};
+    DaylightEfficacy lm{110.0, 110.0};
     constexpr int rounds = 50;
     for (int i = 0; i < rounds; ++i) {
       weather.direct_normal = given.first / std::max(1.0, lm.direct);
@@ -139,7 +111,7 @@ SkyLux output_of(const GendaylitGiven& given, const Weather& weather, double alt
   if (given.output == 1) return {weather.diffuse_horizontal, weather.direct_normal};
   const double unit = given.output == 0 ? white_efficacy : 1.0;
   if (given.input == 'L') return {given.second / unit, given.first / unit};
-  const Efficacy lm = efficacy(weather, altitude);
+  const DaylightEfficacy lm = efficacy(weather, altitude);
   return {weather.diffuse_horizontal * lm.diffuse / unit, weather.direct_normal * lm.direct / unit};
 }
 

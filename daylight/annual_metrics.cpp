@@ -1,0 +1,162 @@
+#include "daylight/annual_metrics.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+namespace lightwell {
+namespace {
+
+// Columns of the counters.
+enum Counter {
+  reached,     // 300 lx
+  continuous,  // sum of min(E / 300, 1)
+  below_100,
+  from_100,
+  from_300,
+  above_3000,
+  sun,
+  lux,  // sum
+  en_100,
+  en_300,
+  en_500,
+  en_750,
+  counter_count
+};
+
+// Illuminances of the histogram's first and last bin, lx.
+constexpr float least_lux = 0.1f, most_lux = 1e6f;
+
+double bin_edge(int bin, int bins) {
+  return least_lux * std::pow(double{most_lux / least_lux}, static_cast<double>(bin) / bins);
+}
+
+// Adds 1 to each counter whose condition an illuminance meets.
+void count_occupied(float E, float sunlight, Eigen::ArrayXXf& count, Eigen::Index i) {
+  constexpr float target = 300.0f, useful = 100.0f, too_much = 3000.0f, direct = 1000.0f;
+  count(i, reached) += E >= target;
+  count(i, continuous) += std::min(E / target, 1.0f);
+  count(i, below_100) += E < useful;
+  count(i, from_100) += E >= useful && E < target;
+  count(i, from_300) += E >= target && E <= too_much;
+  count(i, above_3000) += E > too_much;
+  count(i, sun) += sunlight >= direct;
+}
+
+double share_at_least(const Eigen::ArrayXd& values, double least) {
+  return 100.0 * static_cast<double>((values >= least).count()) / static_cast<double>(values.size());
+}
+
+std::string level_of(const SensorMetrics& sensors) {
+  // EN 17037, table A.1: target on half of the area, minimum on 95 % of it, for half of the hours.
+  constexpr double half_of_area = 50.0, most_of_area = 95.0, half_of_hours = 50.0;
+  const auto meets = [&](const Eigen::ArrayXd& target, const Eigen::ArrayXd& minimum) {
+    return share_at_least(target, half_of_hours) >= half_of_area &&
+           share_at_least(minimum, half_of_hours) >= most_of_area;
+  };
+  if (meets(sensors.en_above_750, sensors.en_above_500)) return "high";
+  if (meets(sensors.en_above_500, sensors.en_above_300)) return "medium";
+  return meets(sensors.en_above_300, sensors.en_above_100) ? "minimum" : "none";
+}
+
+}  // namespace
+
+AnnualMetrics::AnnualMetrics(int sensors, std::span<const SkyHour> hours, int year_hours,
+                             const Occupancy& occupancy)
+    : occupancy_(occupancy),
+      year_hours_(year_hours),
+      occupied_hours_(year_hours / 24 * (occupancy.to - occupancy.from)),
+      bright_hours_(year_hours / 2),
+      is_bright_(static_cast<std::size_t>(year_hours), 0),
+      count_(Eigen::ArrayXXf::Zero(sensors, counter_count)) {
+  histogram_.setZero(sensors, bins);
+  std::vector<int> by_light(hours.size());
+  for (std::size_t i = 0; i < hours.size(); ++i) by_light[i] = static_cast<int>(i);
+  std::ranges::stable_sort(by_light, std::greater{}, [&](int i) {
+    return hours[static_cast<std::size_t>(i)].dome_lux;
+  });
+  const auto count = std::min(hours.size(), static_cast<std::size_t>(bright_hours_));
+  for (std::size_t i = 0; i < count; ++i) {
+    is_bright_[static_cast<std::size_t>(hours[static_cast<std::size_t>(by_light[i])].number)] = 1;
+  }
+}
+
+void AnnualMetrics::add(const HourBlock& block) {
+  for (std::size_t h = 0; h < block.hours.size(); ++h) {
+    const int number = block.hours[h].number, hour = number % 24;
+    const bool is_occupied = hour >= occupancy_.from && hour < occupancy_.to;
+    const bool is_bright = is_bright_[static_cast<std::size_t>(number)] != 0;
+    const auto column = static_cast<Eigen::Index>(h);
+    for (Eigen::Index i = 0; i < count_.rows(); ++i) {
+      const float E = block.total(i, column);
+      count_(i, lux) += E;
+      if (is_occupied) count_occupied(E, block.sunlight(i, column), count_, i);
+      if (!is_bright) continue;
+      count_(i, en_100) += E >= 100.0f;
+      count_(i, en_300) += E >= 300.0f;
+      count_(i, en_500) += E >= 500.0f;
+      count_(i, en_750) += E >= 750.0f;
+      const float place = std::log(std::max(E, least_lux) / least_lux) /
+                          std::log(most_lux / least_lux) * static_cast<float>(bins);
+      ++histogram_(i, std::min(static_cast<int>(place), bins - 1));
+    }
+  }
+}
+
+// The illuminance that half of the bright hours reach; hours without light are below all bins.
+double AnnualMetrics::median(Eigen::Index sensor) const {
+  double above = 0.0;
+  const double wanted = 0.5 * bright_hours_;
+  for (int bin = bins - 1; bin > 0; --bin) {
+    const double here = histogram_(sensor, bin);
+    if (above + here >= wanted) {
+      const double share = (above + here - wanted) / here;
+      return bin_edge(bin, bins) * std::pow(bin_edge(1, bins) / bin_edge(0, bins), share);
+    }
+    above += here;
+  }
+  return 0.0;
+}
+
+SensorMetrics AnnualMetrics::sensors() const {
+  const auto share = [&](Counter counter, int hours) -> Eigen::ArrayXd {
+    return count_.col(counter).cast<double>() * (100.0 / hours);
+  };
+  SensorMetrics metrics;
+  metrics.autonomy = share(reached, occupied_hours_);
+  metrics.continuous_autonomy = share(continuous, occupied_hours_);
+  metrics.from_100_to_300 = share(from_100, occupied_hours_);
+  metrics.from_300_to_3000 = share(from_300, occupied_hours_);
+  metrics.above_3000 = share(above_3000, occupied_hours_);
+  // Hours without light are no hours of `hours`, and are below 100 lx.
+  metrics.below_100 =
+      100.0 - metrics.from_100_to_300 - metrics.from_300_to_3000 - metrics.above_3000;
+  metrics.sun_hours = count_.col(sun).cast<double>();
+  metrics.mean_lux = count_.col(lux).cast<double>() / year_hours_;
+  metrics.en_above_100 = share(en_100, bright_hours_);
+  metrics.en_above_300 = share(en_300, bright_hours_);
+  metrics.en_above_500 = share(en_500, bright_hours_);
+  metrics.en_above_750 = share(en_750, bright_hours_);
+  metrics.en_median_lux.resize(count_.rows());
+  for (Eigen::Index i = 0; i < count_.rows(); ++i) metrics.en_median_lux[i] = median(i);
+  return metrics;
+}
+
+RoomMetrics room_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_factor) {
+  constexpr double half_of_hours = 50.0, sunny = 250.0;
+  std::vector<float> sorted(daylight_factor.begin(), daylight_factor.end());
+  std::ranges::sort(sorted);
+  const auto n = sorted.size();
+  const double median = n == 0 ? 0.0 : 0.5 * (double{sorted[(n - 1) / 2]} + double{sorted[n / 2]});
+  return {.spatial_autonomy = share_at_least(sensors.autonomy, half_of_hours),
+          .sun_exposure = 100.0 * static_cast<double>((sensors.sun_hours > sunny).count()) /
+                          static_cast<double>(sensors.sun_hours.size()),
+          .mean_autonomy = sensors.autonomy.mean(),
+          .mean_continuous_autonomy = sensors.continuous_autonomy.mean(),
+          .mean_lux = sensors.mean_lux.mean(),
+          .mean_daylight_factor = 100.0 * double{daylight_factor.mean()},
+          .median_daylight_factor = 100.0 * median,
+          .en_level = level_of(sensors)};
+}
+
+}  // namespace lightwell

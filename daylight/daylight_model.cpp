@@ -1,0 +1,170 @@
+#include "daylight/daylight_model.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "mesh/patches/patch_sampler.h"
+#include "radiosity/patch_light.h"
+#include "radiosity/solvers/solve_columns.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+// Keys of random numbers: patches from 0, sensors from here.
+constexpr std::uint64_t first_sensor_key = std::uint64_t{1} << 40;
+
+// The scene without light of its own: daylight is that of sun and sky alone.
+Scene without_light(Scene scene) {
+  scene.lamps.clear();
+  scene.sky.reset();
+  for (Material& material : scene.materials) {
+    material.emission = Spectrum::Zero(scene.bands.count());
+    material.emission_texture.reset();
+  }
+  return scene;
+}
+
+// Share of each band in the illuminance of white light.
+Eigen::ArrayXf luminous_weights(const Bands& bands) {
+  Eigen::ArrayXf weights(bands.count());
+  for (int k = 0; k < bands.count(); ++k) {
+    Spectrum one = Spectrum::Zero(bands.count());
+    one[k] = 1.0f;
+    weights[k] = static_cast<float>(luminous(bands, one));
+  }
+  return weights / weights.sum();
+}
+
+// Calls `body` for each index in parallel, in pieces between which progress is told.
+template <class Body>
+void for_each_index(int count, const char* phase, const Progress& progress, Body body) {
+  constexpr int pieces = 64, grain = 4;
+  const int step = std::max(1, (count + pieces - 1) / pieces);
+  for (int first = 0; first < count; first += step) {
+    report(progress, phase, static_cast<double>(first) / count);
+    const int n = std::min(step, count - first);
+    parallel_for(n, grain, [&](int begin, int end) {
+      for (int i = first + begin; i < first + end; ++i) body(i);
+    });
+  }
+}
+
+}  // namespace
+
+DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen::Vector3d& north,
+                             const DaylightOptions& options)
+    : scene_(without_light(std::move(scene))),
+      options_(options),
+      sky_(options.sky_subdivision, up, north),
+      mesh_(build_patches(scene_, options.mesh, options.progress)) {
+  caster_.emplace(mesh_);
+  direct_light_.emplace(scene_, mesh_);
+  panes_.emplace(scene_);
+  weights_ = luminous_weights(scene_.bands);
+  FormFactorOptions rows = options.form_factors;
+  rows.run.progress = options.progress;
+  form_factors_ = compute_form_factors({scene_, *caster_, *direct_light_}, rows, &report_);
+  view_patches();
+}
+
+Surroundings DaylightModel::around() const {
+  return {*caster_, *panes_, scene_.bands.count()};
+}
+
+Eigen::ArrayXf DaylightModel::luminous_sum(const Eigen::Ref<const Eigen::ArrayXXf>& bands) const {
+  return (bands.matrix() * weights_.matrix()).array();
+}
+
+std::vector<SurfacePoint> DaylightModel::points_of_patch(int patch) const {
+  const PatchSampler sampler(mesh_, patch);
+  const SobolPoints sobol(options_.points_of_patch);
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < options_.points_of_patch; ++i) {
+    const Eigen::Array4f u = sobol.point(i, static_cast<std::uint64_t>(patch));
+    const PatchPoint point = sampler.point(double{u[2]}, double{u[3]});
+    points.push_back({.position = point.position,
+                      .normal = point.normal,
+                      .facet = mesh_.facet[static_cast<std::size_t>(point.element)]});
+  }
+  return points;
+}
+
+void DaylightModel::view_patches() {
+  patch_views_.resize(static_cast<std::size_t>(mesh_.patch_count()));
+  for_each_index(mesh_.patch_count(), "sky at patches", options_.progress, [&](int p) {
+    patch_views_[static_cast<std::size_t>(p)] =
+        view_of_dome(around(), sky_, points_of_patch(p), options_.patches,
+                     static_cast<std::uint64_t>(p));
+  });
+}
+
+void DaylightModel::set_sensors(std::span<const GatherPoint> sensors) {
+  sensors_.assign(sensors.begin(), sensors.end());
+  sensor_views_.resize(sensors_.size());
+  for_each_index(sensor_count(), "sky at sensors", options_.progress, [&](int i) {
+    const GatherPoint& at = sensors_[static_cast<std::size_t>(i)];
+    const SurfacePoint point{.position = at.position, .normal = at.normal, .facet = at.facet};
+    sensor_views_[static_cast<std::size_t>(i)] =
+        view_of_dome(around(), sky_, {&point, 1}, options_.points,
+                     first_sensor_key + static_cast<std::uint64_t>(i));
+  });
+}
+
+// The light that surfaces reflect to the sensors, sensors x sources, for E0 of patches x columns.
+Eigen::ArrayXXf DaylightModel::reflected(const BandArray& arriving) const {
+  const Eigen::Index bands = scene_.bands.count(), sources = arriving.cols() / bands;
+  Eigen::ArrayXXf lux = Eigen::ArrayXXf::Zero(sensor_count(), sources);
+  if (sensors_.empty()) return lux;
+  const BandArray B =
+      solve_columns(mesh_, *form_factors_, arriving, options_.tolerance, options_.progress);
+  const LitScene lit{scene_, *caster_, *direct_light_};
+  GatherOptions gather{.rays = options_.gather_rays};
+  gather.run.progress = options_.progress;
+  const BandArray E = gather_indirect(lit, to_vertices(mesh_, B), sensors_, gather).indirect;
+  for (Eigen::Index s = 0; s < sources; ++s) {
+    lux.col(s) = (E.middleCols(s * bands, bands).matrix() * weights_.matrix()).array();
+  }
+  return lux;
+}
+
+SensorLight DaylightModel::sky_coefficients() const {
+  const Eigen::Index bands = scene_.bands.count(), columns = sky_.column_count();
+  BandArray arriving(mesh_.patch_count(), columns * bands);
+  for (int p = 0; p < mesh_.patch_count(); ++p) {
+    const Eigen::ArrayXXf& E0 = patch_views_[static_cast<std::size_t>(p)].coefficient;
+    for (Eigen::Index c = 0; c < columns; ++c) arriving.row(p).segment(c * bands, bands) = E0.row(c);
+  }
+  SensorLight light{.direct = Eigen::ArrayXXf(sensor_count(), columns)};
+  for (int i = 0; i < sensor_count(); ++i) {
+    light.direct.row(i) =
+        luminous_sum(sensor_views_[static_cast<std::size_t>(i)].coefficient).transpose();
+  }
+  light.reflected = reflected(arriving);
+  return light;
+}
+
+SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const {
+  const Eigen::Index bands = scene_.bands.count(), count = static_cast<Eigen::Index>(suns.size());
+  BandArray arriving(mesh_.patch_count(), count * bands);
+  for_each_index(mesh_.patch_count(), "sun at patches", options_.progress, [&](int p) {
+    const Eigen::ArrayXXf E0 =
+        sunlight(around(), sky_, points_of_patch(p), patch_views_[static_cast<std::size_t>(p)],
+                 suns, 1, static_cast<std::uint64_t>(p));
+    for (Eigen::Index s = 0; s < count; ++s) arriving.row(p).segment(s * bands, bands) = E0.row(s);
+  });
+  SensorLight light{.direct = Eigen::ArrayXXf(sensor_count(), count)};
+  for_each_index(sensor_count(), "sun at sensors", options_.progress, [&](int i) {
+    const GatherPoint& at = sensors_[static_cast<std::size_t>(i)];
+    const SurfacePoint point{.position = at.position, .normal = at.normal, .facet = at.facet};
+    light.direct.row(i) =
+        luminous_sum(sunlight(around(), sky_, {&point, 1}, sensor_views_[static_cast<std::size_t>(i)],
+                              suns, options_.sun_rays, first_sensor_key + static_cast<std::uint64_t>(i)))
+            .transpose();
+  });
+  light.reflected = reflected(arriving);
+  return light;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "daylight/dome_view.h"
+#include "mesh/build_patches.h"
+#include "radiosity/direct_light/lit_scene.h"
+#include "radiosity/form_factors/form_factors.h"
+#include "radiosity/gather/final_gather.h"
+
+namespace lightwell {
+
+/// Effort of a DaylightModel.
+struct DaylightOptions {
+  int sky_subdivision = 2;  ///< of SkyPatches
+  MeshOptions mesh{};
+  FormFactorOptions form_factors{};
+  double tolerance = 1e-4;  ///< of the equations (see solve_columns)
+  DomeEffort points{.search = 1024, .rays = 2048};
+  DomeEffort patches{.search = 256, .rays = 512};
+  int points_of_patch = 16;  ///< points of a patch whose view is averaged
+  int sun_rays = 16;         ///< of a sensor to the sun's disc
+  int gather_rays = 1024;    ///< of a sensor, for light that surfaces reflect
+  Progress progress{};
+};
+
+/// Reflected and direct light of sensors, each for a source of its own: sensors x sources.
+struct SensorLight {
+  Eigen::ArrayXXf direct{}, reflected{};
+};
+
+/// A room for daylight: its exchange of light between patches, computed once, and what each patch
+/// and each sensor sees of the dome.
+///
+/// Light is linear, so that the light of a source is a column of
+///
+///     B = rho (E0 + F B)      E0: irradiance of patches straight from the source
+///
+/// with the same form factors for every sky patch and every sun of the year (daylight coefficients:
+/// Tregenza & Waters 1983). Light at a sensor is the source's own, seen through windows, and that of
+/// all surfaces by a final gather.
+///
+/// Illuminance is per unit: of a sky patch lx over cd/m^2, of the sun lx over the lx across its rays.
+/// Daylight is white, with the same power in each band; materials tint the light.
+class DaylightModel {
+ public:
+  /// Lamps, emission and sky of the scene are left out. `up` and `north` are unit and
+  /// perpendicular. Throws InputError for a scene without surfaces, Interrupted when progress says
+  /// stop.
+  DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen::Vector3d& north,
+                const DaylightOptions& options = {});
+  DaylightModel(const DaylightModel&) = delete;
+  DaylightModel& operator=(const DaylightModel&) = delete;
+
+  const Scene& scene() const { return scene_; }
+  const PatchMesh& mesh() const { return mesh_; }
+  const SkyPatches& sky() const { return sky_; }
+  const FormFactorReport& form_factor_report() const { return report_; }
+
+  /// Sets the sensors; keeps a copy.
+  void set_sensors(std::span<const GatherPoint> sensors);
+  int sensor_count() const { return static_cast<int>(sensors_.size()); }
+
+  /// Coefficients of the columns of sky() at the sensors.
+  SensorLight sky_coefficients() const;
+  /// Illuminance of the sensors by each sun.
+  SensorLight sun_coefficients(std::span<const SunDisc> suns) const;
+
+ private:
+  Surroundings around() const;
+  Eigen::ArrayXf luminous_sum(const Eigen::Ref<const Eigen::ArrayXXf>& bands) const;
+  std::vector<SurfacePoint> points_of_patch(int patch) const;
+  void view_patches();
+  Eigen::ArrayXXf reflected(const BandArray& arriving) const;
+
+  Scene scene_;
+  DaylightOptions options_;
+  SkyPatches sky_;
+  PatchMesh mesh_;
+  std::optional<ElementCaster> caster_{};
+  std::optional<DirectLight> direct_light_{};
+  std::optional<ClearPanes> panes_{};
+  Eigen::ArrayXf weights_{};  // of bands in illuminance, of sum 1
+  FormFactorReport report_{};
+  std::unique_ptr<FormFactors> form_factors_{};
+  std::vector<DomeView> patch_views_{};
+  std::vector<GatherPoint> sensors_{};
+  std::vector<DomeView> sensor_views_{};
+};
+
+}  // namespace lightwell

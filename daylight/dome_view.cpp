@@ -1,0 +1,188 @@
+#include "daylight/dome_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/degree.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+// Rounds of random numbers of one receiver.
+constexpr std::uint64_t search_round = 1, cell_round = 2, sun_round = 3;
+
+double random_of(std::uint64_t key, std::uint64_t round, std::uint64_t number) {
+  return random_uniform(random_key(key, RandomPurpose::sky_point_rays, round, number));
+}
+
+// Rays to be cast together, and the share of light that each lets pass.
+class RayBatch {
+ public:
+  RayBatch(const Surroundings& around, ReceiverPoints points) : around_(around), points_(points) {}
+
+  // Adds a ray of the receiver's point `number`, modulo the number of points.
+  void add(std::size_t number, const Eigen::Vector3d& direction) {
+    const SurfacePoint& from = point(number);
+    rays_.push_back(
+        {.origin = from.position, .direction = direction, .origin_group = from.facet});
+    from_.push_back(&from);
+  }
+  const SurfacePoint& point(std::size_t number) const { return points_[number % points_.size()]; }
+  std::size_t size() const { return rays_.size(); }
+  const Eigen::Vector3d& direction(std::size_t ray) const { return rays_[ray].direction; }
+  const Eigen::Vector3d& normal(std::size_t ray) const { return from_[ray]->normal; }
+
+  void cast() {
+    blocked_.assign(rays_.size(), 0);
+    around_.caster.occluded(rays_, blocked_);
+  }
+  // The share that ray `number` lets pass, per band.
+  Spectrum passed(std::size_t ray) const {
+    if (blocked_[ray] == 0) return Spectrum::Ones(around_.bands);
+    if (around_.panes.empty()) return Spectrum::Zero(around_.bands);
+    return around_.panes.passed(around_.caster, rays_[ray]);
+  }
+
+ private:
+  const Surroundings& around_;
+  ReceiverPoints points_;
+  std::vector<Ray> rays_{};
+  std::vector<const SurfacePoint*> from_{};
+  std::vector<std::uint8_t> blocked_{};
+};
+
+// Marks the cells that rays find open, and those around them.
+std::vector<char> open_cells(const Surroundings& around, const SkyPatches& sky,
+                             ReceiverPoints points, int rays, std::uint64_t key) {
+  const std::uint64_t set = random_key(key, RandomPurpose::sky_point_rays, search_round);
+  const SobolPoints sobol(rays);
+  RayBatch batch(around, points);
+  for (int i = 0; i < rays; ++i) {
+    const Eigen::Array4f u = sobol.point(i, set);
+    const Eigen::Vector3d& normal = batch.point(static_cast<std::size_t>(i)).normal;
+    Eigen::Vector3d a, b;
+    tangent_frame(normal, a, b);
+    const Eigen::Vector3d local = cosine_direction(u[0], u[1]);
+    batch.add(static_cast<std::size_t>(i), local.x() * a + local.y() * b + local.z() * normal);
+  }
+  batch.cast();
+  std::vector<char> open(static_cast<std::size_t>(sky.cell_count()), 0);
+  for (std::size_t r = 0; r < batch.size(); ++r) {
+    if (!(batch.passed(r) > 0.0f).any()) continue;
+    const int cell = sky.cell_of(batch.direction(r));
+    open[static_cast<std::size_t>(cell)] = 1;
+    for (const int beside : sky.neighbours(cell)) open[static_cast<std::size_t>(beside)] = 1;
+  }
+  return open;
+}
+
+// The mean over the points of the irradiance that each cell of radiance 1 gives without obstacles.
+Eigen::ArrayXd unobstructed(const SkyPatches& sky, ReceiverPoints points) {
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(sky.cell_count());
+  std::size_t at = 0;
+  while (at < points.size()) {
+    std::size_t end = at + 1;
+    while (end < points.size() && points[end].normal == points[at].normal) ++end;
+    sum += static_cast<double>(end - at) * sky.irradiances(points[at].normal);
+    at = end;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
+// Adds `count` rays stratified over a cell to the batch.
+void add_rays(const SkyPatches& sky, int cell, int count, std::uint64_t key, RayBatch& batch) {
+  const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(count))));
+  for (int i = 0; i < count; ++i) {
+    // Rows of `across` strata; those of the last row are wider where it is not full.
+    const int row = i / across, rows = (count + across - 1) / across;
+    const int in_row = std::min(across, count - row * across);
+    const auto number = static_cast<std::uint64_t>(cell) << 32 | static_cast<std::uint64_t>(i) * 3;
+    const double u = (i % across + random_of(key, cell_round, number)) / in_row,
+                 v = (row + random_of(key, cell_round, number + 1)) / rows;
+    const auto point = static_cast<std::size_t>(1e6 * random_of(key, cell_round, number + 2));
+    batch.add(point + static_cast<std::size_t>(i), sky.direction(cell, u, v));
+  }
+}
+
+}  // namespace
+
+DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
+                      const DomeEffort& effort, std::uint64_t key) {
+  DomeView view{.coefficient = Eigen::ArrayXXf::Zero(sky.column_count(), around.bands),
+                .open = open_cells(around, sky, points, effort.search, key)};
+  const Eigen::ArrayXd E = unobstructed(sky, points);
+  double open_sum = 0.0;
+  for (int c = 0; c < sky.cell_count(); ++c) {
+    if (view.open[static_cast<std::size_t>(c)] != 0) open_sum += E[c];
+  }
+  struct Span {
+    int cell = 0;
+    std::size_t begin = 0, end = 0;
+  };
+  std::vector<Span> spans;
+  RayBatch batch(around, points);
+  constexpr int fewest_of_open = 4;
+  for (int c = 0; c < sky.cell_count(); ++c) {
+    if (!(E[c] > 0.0)) continue;
+    const bool is_open = view.open[static_cast<std::size_t>(c)] != 0;
+    const int count =
+        is_open ? std::max(fewest_of_open, static_cast<int>(effort.rays * E[c] / open_sum)) : 1;
+    const std::size_t begin = batch.size();
+    add_rays(sky, c, count, key, batch);
+    spans.push_back({c, begin, batch.size()});
+  }
+  batch.cast();
+  for (const Span& span : spans) {
+    double cosines = 0.0;
+    Eigen::ArrayXd arrived = Eigen::ArrayXd::Zero(around.bands);
+    for (std::size_t r = span.begin; r < span.end; ++r) {
+      const double cosine = batch.direction(r).dot(batch.normal(r));
+      if (!(cosine > 0.0)) continue;
+      cosines += cosine;
+      arrived += cosine * batch.passed(r).cast<double>();
+    }
+    if (!(cosines > 0.0)) continue;
+    view.coefficient.row(sky.column_of(span.cell)) +=
+        (E[span.cell] / cosines * arrived).cast<float>().transpose();
+  }
+  return view;
+}
+
+Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
+                         const DomeView& view, std::span<const SunDisc> suns, int rays,
+                         std::uint64_t key) {
+  Eigen::ArrayXXf E = Eigen::ArrayXXf::Zero(static_cast<Eigen::Index>(suns.size()), around.bands);
+  RayBatch batch(around, points);
+  std::vector<std::size_t> sun_of_ray;
+  for (std::size_t s = 0; s < suns.size(); ++s) {
+    const Eigen::Vector3d& towards = suns[s].direction;
+    if (view.open[static_cast<std::size_t>(sky.cell_of(towards))] == 0) continue;
+    const double radius = std::tan(0.5 * suns[s].angle_degrees * degree);
+    Eigen::Vector3d a, b;
+    tangent_frame(towards, a, b);
+    for (std::size_t p = 0; p < points.size(); ++p) {
+      if (!(points[p].normal.dot(towards) > 0.0)) continue;
+      for (int i = 0; i < rays; ++i) {
+        const std::uint64_t number = (s * points.size() + p) * static_cast<std::size_t>(rays) +
+                                     static_cast<std::size_t>(i);
+        const double r = std::sqrt((i + random_of(key, sun_round, 2 * number)) / rays) * radius,
+                     phi = 2.0 * std::numbers::pi * random_of(key, sun_round, 2 * number + 1);
+        batch.add(p, (towards + r * (std::cos(phi) * a + std::sin(phi) * b)).normalized());
+        sun_of_ray.push_back(s);
+      }
+    }
+  }
+  batch.cast();
+  const float share = 1.0f / (static_cast<float>(points.size()) * static_cast<float>(rays));
+  for (std::size_t r = 0; r < batch.size(); ++r) {
+    const auto cosine = static_cast<float>(std::max(0.0, batch.direction(r).dot(batch.normal(r))));
+    E.row(static_cast<Eigen::Index>(sun_of_ray[r])) +=
+        share * cosine * batch.passed(r).transpose();
+  }
+  return E;
+}
+
+}  // namespace lightwell

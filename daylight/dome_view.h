@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "daylight/sky_patches.h"
+#include "mesh/elements/element_caster.h"
+#include "radiosity/visibility/clear_panes.h"
+#include "scene/surface_point.h"
+
+namespace lightwell {
+
+/// The surfaces and panes between a receiver and the sky.
+struct Surroundings {
+  const ElementCaster& caster;
+  const ClearPanes& panes;
+  int bands = 3;
+};
+
+/// A receiver of light: a sensor is one point, a patch is points all over it.
+using ReceiverPoints = std::span<const SurfacePoint>;
+
+/// Rays of a receiver towards the dome and the ground.
+struct DomeEffort {
+  int search = 1024;  ///< rays that look for the cells through which the sky is seen
+  int rays = 2048;    ///< rays spread over these cells and those around them
+};
+
+/// What a receiver sees of dome and ground.
+struct DomeView {
+  /// Irradiance straight from each column's sky patch of radiance 1, columns x bands, sr.
+  Eigen::ArrayXXf coefficient{};
+  /// 1 for cells through which the sky may be seen: those that a ray found open, and those around.
+  std::vector<char> open{};
+};
+
+/// The view of a receiver, whose points' results are averaged.
+///
+/// 1. Cosine-distributed rays find the cells through which the sky is seen. They serve no other
+///    purpose, so that what follows has no bias.
+/// 2. Open cells and their neighbours get stratified rays in proportion to their irradiance; all
+///    other cells get one ray each, which finds what the search has missed.
+/// 3. A cell's coefficient is the irradiance of the unobstructed cell times the share of the rays'
+///    cosines that arrives: exact for an unobstructed receiver.
+///
+/// `key` decides the directions. Panes dim the light that passes through them.
+DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
+                      const DomeEffort& effort, std::uint64_t key);
+
+/// The sun as receivers see it.
+struct SunDisc {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, to the middle of the disc
+  double angle_degrees = 0.533;                          ///< across
+};
+
+/// Irradiance of a receiver straight from each sun of irradiance 1 across its rays: suns x bands.
+/// Each point sends `rays` rays to points of the disc. Suns in cells that the view holds closed give
+/// nothing.
+Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
+                         const DomeView& view, std::span<const SunDisc> suns, int rays,
+                         std::uint64_t key);
+
+}  // namespace lightwell

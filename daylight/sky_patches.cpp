@@ -1,0 +1,137 @@
+#include "daylight/sky_patches.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "scene/degree.h"
+
+namespace lightwell {
+namespace {
+
+using std::numbers::pi;
+
+// Patches in Tregenza's rows, from the horizon to the last below the zenith.
+constexpr std::array<int, 7> patches_of_rows = {30, 30, 24, 24, 18, 12, 6};
+constexpr int most_subdivision = 8;  // 9217 patches
+
+// Directions all over a cell, each way, for the irradiance of an unobstructed point.
+constexpr int fine_steps = 6;
+
+double wrapped_turn(double turns) {
+  return turns - std::floor(turns);
+}
+
+}  // namespace
+
+SkyPatches::SkyPatches(int subdivision, const Eigen::Vector3d& up, const Eigen::Vector3d& north)
+    : subdivision_(subdivision), up_(up), north_(north), east_(north.cross(up)) {
+  if (subdivision < 1 || subdivision > most_subdivision) {
+    throw std::invalid_argument(
+        fmt::format("the sky's patches are divided by {}; give 1 (145 patches) to {} ({} patches)",
+                    subdivision, most_subdivision, 144 * most_subdivision * most_subdivision + 1));
+  }
+  const int rows = static_cast<int>(patches_of_rows.size()) * subdivision;
+  // The cap about the zenith is as wide as a row is high.
+  const double height = 90.0 / (rows + 0.5) * degree;
+  for (int row = 0; row < rows; ++row) {
+    const int count = subdivision * patches_of_rows[static_cast<std::size_t>(row / subdivision)];
+    add_row(row, count, std::sin(row * height), std::sin((row + 1) * height));
+  }
+  add_row(rows, 1, std::sin(rows * height), 1.0);
+  first_of_row_.push_back(static_cast<int>(cells_.size()));
+  const std::size_t dome = cells_.size();
+  for (std::size_t i = 0; i < dome; ++i) {
+    Cell below = cells_[i];
+    below.row = -1 - below.row;
+    below.low = -cells_[i].high;
+    below.high = -cells_[i].low;
+    cells_.push_back(below);
+  }
+  find_neighbours();
+  fine_.resize(static_cast<Eigen::Index>(cells_.size()) * fine_steps * fine_steps, 3);
+  Eigen::Index at = 0;
+  for (const Cell& cell : cells_) {
+    for (int i = 0; i < fine_steps; ++i) {
+      for (int j = 0; j < fine_steps; ++j) {
+        fine_.row(at++) = direction(cell, (i + 0.5) / fine_steps, (j + 0.5) / fine_steps);
+      }
+    }
+  }
+}
+
+void SkyPatches::add_row(int row, int count, double low, double high) {
+  first_of_row_.push_back(static_cast<int>(cells_.size()));
+  for (int i = 0; i < count; ++i) {
+    cells_.push_back({.row = row,
+                      .low = low,
+                      .high = high,
+                      .begin = wrapped_turn((i - 0.5) / count),
+                      .width = 1.0 / count});
+  }
+}
+
+void SkyPatches::find_neighbours() {
+  constexpr double slack = 1e-9;
+  neighbours_.resize(cells_.size());
+  // Rows are numbered 0, 1 ... upwards and -1, -2 ... downwards from the horizon.
+  const auto touches = [&](const Cell& a, const Cell& b) {
+    if (std::abs(a.row - b.row) > 1) return false;
+    const double a_behind_b = wrapped_turn(a.begin - b.begin),
+                 b_behind_a = wrapped_turn(b.begin - a.begin);
+    return a_behind_b < b.width + slack || b_behind_a < a.width + slack;
+  };
+  for (std::size_t a = 0; a < cells_.size(); ++a) {
+    for (std::size_t b = 0; b < cells_.size(); ++b) {
+      if (a != b && touches(cells_[a], cells_[b])) neighbours_[a].push_back(static_cast<int>(b));
+    }
+  }
+}
+
+int SkyPatches::cell_of(const Eigen::Vector3d& direction) const {
+  const double sine = direction.dot(up_);
+  const double altitude = std::asin(std::clamp(std::abs(sine), 0.0, 1.0));
+  const int rows = static_cast<int>(first_of_row_.size()) - 2;  // less the cap
+  const double height = 90.0 / (rows + 0.5) * degree;
+  const int row = std::min(static_cast<int>(altitude / height), rows);
+  const auto first = first_of_row_[static_cast<std::size_t>(row)];
+  const int count = first_of_row_[static_cast<std::size_t>(row) + 1] - first;
+  const double turns =
+      wrapped_turn(std::atan2(direction.dot(east_), direction.dot(north_)) / (2.0 * pi));
+  const int column = static_cast<int>(std::floor(turns * count + 0.5)) % count;
+  return first + column + (sine < 0.0 ? dome_count() : 0);
+}
+
+Eigen::Vector3d SkyPatches::direction(const Cell& cell, double u, double v) const {
+  const double sine = cell.low + v * (cell.high - cell.low);
+  const double azimuth = 2.0 * pi * (cell.begin + u * cell.width);
+  return std::sqrt(std::max(0.0, 1.0 - sine * sine)) *
+             (std::cos(azimuth) * north_ + std::sin(azimuth) * east_) +
+         sine * up_;
+}
+
+Eigen::Vector3d SkyPatches::direction(int cell, double u, double v) const {
+  return direction(cells_[static_cast<std::size_t>(cell)], u, v);
+}
+
+double SkyPatches::solid_angle(int cell) const {
+  const Cell& at = cells_[static_cast<std::size_t>(cell)];
+  return 2.0 * pi * at.width * (at.high - at.low);
+}
+
+Eigen::ArrayXd SkyPatches::irradiances(const Eigen::Vector3d& normal) const {
+  constexpr int each = fine_steps * fine_steps;
+  const Eigen::ArrayXd cosine = (fine_ * normal).array().max(0.0);
+  Eigen::ArrayXd E(cell_count());
+  for (int cell = 0; cell < cell_count(); ++cell) {
+    E[cell] = solid_angle(cell) * cosine.segment(cell * each, each).mean();
+  }
+  return E;
+}
+
+}  // namespace lightwell

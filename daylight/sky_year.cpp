@@ -1,0 +1,99 @@
+#include "daylight/sky_year.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "scene/perez_sky.h"
+#include "scene/sun_position.h"
+
+namespace lightwell {
+namespace {
+
+using std::numbers::pi;
+
+constexpr int usual_year = 2017, leap_year = 2016;
+
+// Luminance of a sky's dome, up to a factor, as the mean over a patch, by the midpoint rule.
+Eigen::ArrayXd means_of_patches(const SkyPatches& patches, const Sky& sky) {
+  constexpr int steps = 3;
+  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(patches.dome_count());
+  for (int p = 0; p < patches.dome_count(); ++p) {
+    for (int i = 0; i < steps; ++i) {
+      for (int j = 0; j < steps; ++j) {
+        const Eigen::Vector3d towards =
+            patches.direction(p, (i + 0.5) / steps, (j + 0.5) / steps);
+        mean[p] += double{sky_radiance(sky, towards)[0]};
+      }
+    }
+  }
+  return mean / (steps * steps);
+}
+
+// Scales patches to `dome_lux` on open ground, and adds the ground, lit by `horizontal_lux`.
+Eigen::ArrayXf scaled(const SkyPatches& patches, const Eigen::ArrayXd& dome, double dome_lux,
+                      double horizontal_lux, double ground_reflectance) {
+  const double lux = (dome * patches.irradiances(patches.up()).head(dome.size())).sum();
+  Eigen::ArrayXf luminance(patches.column_count());
+  luminance.head(dome.size()) = (dome * (lux > 0.0 ? dome_lux / lux : 0.0)).cast<float>();
+  luminance[patches.ground_column()] =
+      static_cast<float>(ground_reflectance * horizontal_lux / pi);
+  return luminance;
+}
+
+Sky white_sky(const SkyPatches& patches) {
+  return {.up = patches.up(), .north = patches.north(), .scale = Spectrum::Ones(1)};
+}
+
+}  // namespace
+
+double SkyHour::horizontal_lux(const Eigen::Vector3d& up) const {
+  return dome_lux + sun_lux * std::max(0.0, sun.dot(up));
+}
+
+std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up,
+                               const Eigen::Vector3d& north) {
+  const int year = weather.is_leap_year ? leap_year : usual_year;
+  const Sky frame{.up = up, .north = north};
+  std::vector<SkyHour> hours;
+  for (int n = 0; n < static_cast<int>(weather.hours.size()); ++n) {
+    const WeatherHour& light = weather.hours[static_cast<std::size_t>(n)];
+    const auto [month, day, hour] = hour_of_year(n, weather.is_leap_year);
+    const SunPosition sun = sun_position(
+        {.year = year, .month = month, .day = day, .hour = hour + 0.5,
+         .hours_east = weather.hours_east},
+        weather.latitude, weather.longitude);
+    const double altitude = sun.altitude_degrees;
+    if (!(altitude > 0.0) || !(light.diffuse_horizontal > 0.0)) continue;
+    const SkyState state =
+        within_data(sky_state(light.direct_normal, light.diffuse_horizontal, altitude,
+                              day_of_year(year, month, day)));
+    const DaylightEfficacy efficacy =
+        daylight_efficacy(state, altitude, precipitable_water_cm(light.dew_point));
+    hours.push_back({.number = n,
+                     .sun = sky_direction(frame, sun.azimuth_degrees, altitude),
+                     .altitude_degrees = altitude,
+                     .azimuth_degrees = sun.azimuth_degrees,
+                     .sun_lux = light.direct_normal * efficacy.direct,
+                     .dome_lux = light.diffuse_horizontal * std::max(0.0, efficacy.diffuse),
+                     .gradation = perez_sky(state, altitude)});
+  }
+  return hours;
+}
+
+Eigen::ArrayXf column_luminances(const SkyPatches& patches, const SkyHour& hour,
+                                 double ground_reflectance) {
+  Sky sky = white_sky(patches);
+  sky.gradation = hour.gradation;
+  sky.bright = hour.sun;
+  return scaled(patches, means_of_patches(patches, sky), hour.dome_lux,
+                hour.horizontal_lux(patches.up()), ground_reflectance);
+}
+
+Eigen::ArrayXf overcast_luminances(const SkyPatches& patches, double ground_reflectance) {
+  Sky sky = white_sky(patches);
+  sky.kind = SkyKind::overcast;
+  return scaled(patches, means_of_patches(patches, sky), 1.0, 1.0, ground_reflectance);
+}
+
+}  // namespace lightwell

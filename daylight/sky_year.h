@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "daylight/sky_patches.h"
+#include "scene/io/weather/weather_file.h"
+#include "scene/sky.h"
+
+namespace lightwell {
+
+/// Sun and sky of one hour, even over the hour.
+struct SkyHour {
+  int number = 0;                                  ///< of the year, from 0; 24 a day
+  Eigen::Vector3d sun = Eigen::Vector3d::UnitZ();  ///< unit, to the middle of the sun
+  double altitude_degrees = 0.0, azimuth_degrees = 0.0;
+  double sun_lux = 0.0;   ///< across the sun's rays
+  double dome_lux = 0.0;  ///< on open level ground, from the dome
+  SkyGradation gradation{};
+
+  /// On open level ground, from sun and dome.
+  double horizontal_lux(const Eigen::Vector3d& up) const;
+};
+
+/// The hours of a year in which there is light, in order.
+///
+/// - The sun stands where it is in the middle of the hour. Hours with the middle of the sun below
+///   the horizon then, or without light of the dome, are dark.
+/// - Positions are those of the year 2017, or of the leap year 2016: a typical year is put together
+///   from months of several years.
+/// - The dome is Perez' all-weather sky (perez_sky()) of the hour's irradiances, its state within
+///   the model's data.
+/// - Lux follow from watts by the efficacies of the same model, with the water in the air by the
+///   hour's dew point.
+std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up,
+                               const Eigen::Vector3d& north);
+
+/// Mean luminance of each column, cd/m^2: the dome's patches, scaled so that they light open level
+/// ground with the hour's dome_lux, and the ground, which sun and dome light.
+Eigen::ArrayXf column_luminances(const SkyPatches& sky, const SkyHour& hour,
+                                 double ground_reflectance);
+
+/// The same for CIE's standard overcast sky (Moon & Spencer 1942) of 1 lx on open level ground.
+Eigen::ArrayXf overcast_luminances(const SkyPatches& sky, double ground_reflectance);
+
+}  // namespace lightwell

@@ -1,0 +1,61 @@
+#include "daylight/year.h"
+
+#include <algorithm>
+#include <vector>
+
+#include "scene/parallel.h"
+
+namespace lightwell {
+namespace {
+
+// Hours whose suns are solved together.
+constexpr std::size_t block_hours = 512;
+
+// The light of the dome and the ground, sensors x hours.
+Eigen::ArrayXXf dome_light(const DaylightModel& model, const SkyCoefficients& sky,
+                           std::span<const SkyHour> hours, double ground_reflectance) {
+  Eigen::ArrayXXf luminance(model.sky().column_count(), static_cast<Eigen::Index>(hours.size()));
+  constexpr int grain = 8;
+  parallel_for(static_cast<int>(hours.size()), grain, [&](int begin, int end) {
+    for (int h = begin; h < end; ++h) {
+      luminance.col(h) =
+          column_luminances(model.sky(), hours[static_cast<std::size_t>(h)], ground_reflectance);
+    }
+  });
+  return (sky.matrix() * luminance.matrix()).array();
+}
+
+}  // namespace
+
+void simulate_year(const DaylightModel& model, const SkyCoefficients& sky,
+                   std::span<const SkyHour> hours, double ground_reflectance,
+                   const std::function<void(const HourBlock&)>& visit) {
+  for (std::size_t first = 0; first < hours.size(); first += block_hours) {
+    HourBlock block{.hours = hours.subspan(first, std::min(block_hours, hours.size() - first))};
+    block.total = dome_light(model, sky, block.hours, ground_reflectance);
+    block.sunlight = Eigen::ArrayXXf::Zero(block.total.rows(), block.total.cols());
+    std::vector<SunDisc> suns;
+    std::vector<Eigen::Index> hour_of_sun;
+    for (std::size_t h = 0; h < block.hours.size(); ++h) {
+      if (!(block.hours[h].sun_lux > 0.0)) continue;
+      suns.push_back({.direction = block.hours[h].sun});
+      hour_of_sun.push_back(static_cast<Eigen::Index>(h));
+    }
+    const SensorLight sun = model.sun_coefficients(suns);
+    for (std::size_t s = 0; s < suns.size(); ++s) {
+      const Eigen::Index h = hour_of_sun[s];
+      const auto column = static_cast<Eigen::Index>(s);
+      const auto lux = static_cast<float>(block.hours[static_cast<std::size_t>(h)].sun_lux);
+      block.sunlight.col(h) = lux * sun.direct.col(column);
+      block.total.col(h) += block.sunlight.col(h) + lux * sun.reflected.col(column);
+    }
+    visit(block);
+  }
+}
+
+Eigen::ArrayXf daylight_factors(const DaylightModel& model, const SkyCoefficients& sky,
+                                double ground_reflectance) {
+  return (sky.matrix() * overcast_luminances(model.sky(), ground_reflectance).matrix()).array();
+}
+
+}  // namespace lightwell

@@ -1,0 +1,91 @@
+#include "daylight/year_files.h"
+
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
+#include <bit>
+#include <string>
+
+namespace lightwell {
+namespace {
+
+// The header is as long for any number of rows, so that it can be written again.
+constexpr std::size_t header_bytes = 128;
+
+static_assert(std::endian::native == std::endian::little, "'<f4' in NumPy's header");
+
+}  // namespace
+
+NumpyRows::NumpyRows(const std::filesystem::path& file, int columns)
+    : file_(file), columns_(columns) {
+  write_header();
+}
+
+void NumpyRows::write_header() {
+  std::string header = "\x93NUMPY";
+  header += '\x01';
+  header += '\x00';
+  constexpr std::size_t preamble = 10;
+  constexpr auto rest = static_cast<char>(header_bytes - preamble);
+  header += rest;
+  header += '\x00';
+  header += fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': ({}, {}), }}", rows_,
+                        columns_);
+  header.resize(header_bytes - 1, ' ');
+  header += '\n';
+  file_.stream().write(header.data(), static_cast<std::streamsize>(header.size()));
+}
+
+void NumpyRows::append(const Eigen::ArrayXXf& values) {
+  // Columns of an Eigen array are contiguous.
+  file_.stream().write(reinterpret_cast<const char*>(values.data()),
+                       static_cast<std::streamsize>(values.size() * sizeof(float)));
+  rows_ += values.cols();
+}
+
+void NumpyRows::commit() {
+  file_.stream().seekp(0);
+  write_header();
+  file_.commit();
+}
+
+void write_sensors(const std::filesystem::path& csv, std::span<const Probe> sensors,
+                   const SensorMetrics& metrics, const Eigen::ArrayXf& daylight_factor,
+                   double metres_per_unit) {
+  AtomicStream file(csv);
+  std::ostream& out = file.stream();
+  fmt::print(out,
+             "x,y,z,nx,ny,nz,DA300,cDA300,UDI_below_100,UDI_100_300,UDI_300_3000,UDI_above_3000,"
+             "sun_hours_1000,mean_lux,EN_above_100,EN_above_300,EN_above_500,EN_above_750,"
+             "EN_median_lux,DF\n");
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    const Eigen::Vector3d p = sensors[s].position / metres_per_unit, &n = sensors[s].normal;
+    const auto i = static_cast<Eigen::Index>(s);
+    fmt::print(out, "{},{},{},{},{},{}", p.x(), p.y(), p.z(), n.x(), n.y(), n.z());
+    for (const Eigen::ArrayXd* values :
+         {&metrics.autonomy, &metrics.continuous_autonomy, &metrics.below_100,
+          &metrics.from_100_to_300, &metrics.from_300_to_3000, &metrics.above_3000,
+          &metrics.sun_hours, &metrics.mean_lux, &metrics.en_above_100, &metrics.en_above_300,
+          &metrics.en_above_500, &metrics.en_above_750, &metrics.en_median_lux}) {
+      fmt::print(out, ",{:.6g}", (*values)[i]);
+    }
+    fmt::print(out, ",{:.6g}\n", 100.0 * double{daylight_factor[i]});
+  }
+  file.commit();
+}
+
+void write_hours(const std::filesystem::path& csv, std::span<const SkyHour> hours,
+                 bool is_leap_year) {
+  AtomicStream file(csv);
+  std::ostream& out = file.stream();
+  fmt::print(out, "hour,month,day,standard_time,sun_altitude,sun_azimuth,sun_lux,dome_lux\n");
+  for (const SkyHour& hour : hours) {
+    const auto [month, day, of_day] = hour_of_year(hour.number, is_leap_year);
+    fmt::print(out, "{},{},{},{:.1f},{:.4f},{:.4f},{:.6g},{:.6g}\n", hour.number, month, day,
+               of_day + 0.5, hour.altitude_degrees, hour.azimuth_degrees, hour.sun_lux,
+               hour.dome_lux);
+  }
+  file.commit();
+}
+
+}  // namespace lightwell

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include "daylight/annual_metrics.h"
+#include "raytrace/readings/probe.h"
+#include "scene/atomic_file.h"
+
+namespace lightwell {
+
+/// Writes a NumPy file (.npy, format 1.0) of 32-bit floats, rows x columns, as rows become known:
+/// `numpy.load(file, mmap_mode="r")` reads single rows of files that are larger than memory.
+class NumpyRows {
+ public:
+  /// Throws std::runtime_error with the file and the reason if the file cannot be made.
+  NumpyRows(const std::filesystem::path& file, int columns);
+
+  /// Appends a row for each column of `values`, whose rows are the file's columns.
+  void append(const Eigen::ArrayXXf& values);
+  /// Completes the file; throws std::runtime_error with the file and the reason.
+  void commit();
+
+ private:
+  void write_header();
+
+  AtomicStream file_;
+  int columns_ = 0;
+  std::int64_t rows_ = 0;
+};
+
+/// Writes a line for each sensor: x,y,z,nx,ny,nz in file units, the measures of SensorMetrics and
+/// the daylight factor DF, %. Throws std::runtime_error with the file and the reason.
+void write_sensors(const std::filesystem::path& csv, std::span<const Probe> sensors,
+                   const SensorMetrics& metrics, const Eigen::ArrayXf& daylight_factor,
+                   double metres_per_unit);
+
+/// Writes a line for each hour with light: its number, month, day, standard time of its middle, the
+/// sun's altitude and azimuth in degrees, lux across the sun's rays and of the dome on open ground.
+void write_hours(const std::filesystem::path& csv, std::span<const SkyHour> hours,
+                 bool is_leap_year);
+
+}  // namespace lightwell

@@ -1,0 +1,52 @@
+#include "radiosity/solvers/solve_columns.h"
+
+#include <algorithm>
+
+namespace lightwell {
+namespace {
+
+// Patches whose reflectances repeat for every column of a block.
+PatchMesh repeated(const PatchMesh& mesh, Eigen::Index columns) {
+  PatchMesh patches;
+  patches.area = mesh.area;
+  patches.reflectance = mesh.reflectance.replicate(1, columns);
+  if (mesh.transmittance.size() > 0) {
+    patches.transmittance = mesh.transmittance.replicate(1, columns);
+  }
+  patches.behind = mesh.behind;
+  patches.material = mesh.material;
+  patches.emission = BandArray::Zero(mesh.patch_count(), columns * mesh.reflectance.cols());
+  return patches;
+}
+
+}  // namespace
+
+BandArray solve_columns(const PatchMesh& mesh, const FormFactors& form_factors,
+                        const BandArray& arriving, double tolerance, const Progress& progress) {
+  const Eigen::Index bands = mesh.reflectance.cols(), count = arriving.cols() / bands;
+  const Eigen::Index most = std::max<Eigen::Index>(1, max_bands / bands);
+  BandArray B = BandArray::Zero(arriving.rows(), arriving.cols());
+  PatchMesh patches;
+  for (Eigen::Index first = 0; first < count; first += most) {
+    const double done = static_cast<double>(first) / static_cast<double>(count);
+    report(progress, "solve", done);
+    const Eigen::Index n = std::min(most, count - first);
+    if (patches.reflectance.cols() != n * bands) patches = repeated(mesh, n);
+    SolverOptions options{.tolerance = tolerance};
+    options.run.progress = [&](std::string_view phase, double) {
+      return !progress || progress(phase, done);
+    };
+    options.arriving = arriving.middleCols(first * bands, n * bands);
+    // Solvers compare errors with the brightest patch of all columns, so all are made as bright.
+    Eigen::Array<float, 1, Eigen::Dynamic> brightest = options.arriving.colwise().maxCoeff();
+    brightest = (brightest > 0.0f).select(brightest, 1.0f);
+    options.arriving.rowwise() /= brightest;
+    BandArray solved =
+        solve_radiosity(SolverMethod::automatic, patches, form_factors, options).patch_radiosity;
+    solved.rowwise() *= brightest;
+    B.middleCols(first * bands, n * bands) = solved;
+  }
+  return B;
+}
+
+}  // namespace lightwell
