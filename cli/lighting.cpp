@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <limits>
 #include <memory>
@@ -10,6 +9,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/grid_arguments.h"
 #include "cli/interrupt.h"
 #include "cli/lighting/figures.h"
 #include "cli/lighting/measure.h"
@@ -32,18 +32,11 @@
 namespace lightwell {
 namespace {
 
-/// NAME@NUMBER or NAME=NUMBER.
-struct Named {
-  std::string name{};
-  double value = 0.0;
-};
-
 struct LightingArguments {
   std::string scene, solution;
-  std::vector<std::string> outputs, surfaces, observers;
-  std::vector<Named> planes, watts;
-  std::optional<double> margin;  // in the scene file's unit; unset: 0.5 m
-  double spacing = 0.0;          // in the scene file's unit; 0: that of EN 12464-1
+  std::vector<std::string> outputs, observers;
+  GridArguments grids;
+  std::vector<NamedNumber> watts;
   double maintenance_factor = 1.0;
   int rays = 1024;
   std::optional<LuxRange> range;
@@ -51,31 +44,6 @@ struct LightingArguments {
 };
 
 constexpr const char* no_picture = "none";
-
-// `least`: the least value that is allowed.
-Named named_number(const std::string& text, char mark, const char* option, double least) {
-  const std::size_t at = text.rfind(mark);
-  Named named{.name = text.substr(0, at)};
-  if (at != std::string::npos && at > 0) {
-    const char* const last = text.data() + text.size();
-    const auto [end, bad] = std::from_chars(text.data() + at + 1, last, named.value);
-    if (bad == std::errc() && end == last && named.value >= least && named.value < 1e9)
-      return named;
-  }
-  throw CLI::ValidationError(option, fmt::format("'{}' is not NAME{}NUMBER with a number {} 0",
-                                                 text, mark, least > 0.0 ? "above" : "from"));
-}
-
-int find_surface(const Scene& scene, const std::string& name) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    if (scene.surfaces[i].name == name) return static_cast<int>(i);
-    names.push_back(scene.surfaces[i].name);
-  }
-  throw InputError(
-      fmt::format("{}: there is no surface '{}'.{} 'lightwell info {} --surfaces' lists all.",
-                  scene.file.string(), name, did_you_mean(name, names), scene.file.string()));
-}
 
 // One row per name of emitters and lamps. Installed power is that of the scene and its photometric
 // files (`design`); 0 if the power of one emitter of the name is unknown.
@@ -121,9 +89,9 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
 }
 
 // Replaces the installed power of the luminaires named by --watts.
-void set_watts(std::vector<LuminaireRow>& rows, const std::vector<Named>& watts,
+void set_watts(std::vector<LuminaireRow>& rows, const std::vector<NamedNumber>& watts,
                const Scene& scene) {
-  for (const Named& known : watts) {
+  for (const NamedNumber& known : watts) {
     const auto at = std::ranges::find(rows, known.name, &LuminaireRow::name);
     if (at == rows.end()) {
       throw InputError(fmt::format("{}: there is no luminaire '{}', which '--watts' names",
@@ -131,34 +99,6 @@ void set_watts(std::vector<LuminaireRow>& rows, const std::vector<Named>& watts,
     }
     at->watts = at->count * known.value;
   }
-}
-
-/// Points of the grids: those of the scene file, of --surface and of --plane, in this order.
-std::vector<LuxGrid> grids(const LightingArguments& arguments, const Scene& scene,
-                           const LightingDesign& design, const Eigen::Vector3d& up) {
-  std::vector<LuxGrid> grids;
-  const double metres = scene.metres_per_unit;
-  const double spacing = arguments.spacing * metres;
-  constexpr double strip = 0.5;  // m; strip along walls that EN 12464-1 leaves out
-  const double margin = arguments.margin ? *arguments.margin * metres : strip;
-  for (const CalculationGrid& grid : design.grids) {
-    const double usual = grid.height > 0.0 ? margin : 0.0;
-    grids.push_back(lux_grid(scene, grid.surface, up,
-                             {.height = grid.height,
-                              .margin = grid.margin.value_or(usual),
-                              .spacing = grid.spacing > 0.0 ? grid.spacing : spacing}));
-    grids.back().name = grid.name;
-  }
-  for (const std::string& name : arguments.surfaces) {
-    grids.push_back(lux_grid(scene, find_surface(scene, name), up, {.spacing = spacing}));
-  }
-  for (const Named& plane : arguments.planes) {
-    grids.push_back(
-        lux_grid(scene, find_surface(scene, plane.name), up,
-                 {.height = plane.value * metres, .margin = margin, .spacing = spacing}));
-    grids.back().name = fmt::format("{} + {:g} {}", plane.name, plane.value, scene.unit_name);
-  }
-  return grids;
 }
 
 // The picture of the named camera, of the first one by default, with light from the solution alone.
@@ -209,8 +149,7 @@ int report_lighting(const LightingArguments& arguments, Console& console) {
   }
   for (const std::string& file : arguments.outputs) require_writable(file);
   const LightingDesign design = read_lighting_design(scene);
-  if (design.grids.empty() && arguments.surfaces.empty() && arguments.planes.empty() &&
-      arguments.observers.empty()) {
+  if (design.grids.empty() && arguments.grids.is_empty() && arguments.observers.empty()) {
     throw InputError(
         "there is nothing to report; name surfaces with '--surface floor', planes above surfaces "
         "with '--plane floor@0.75' or as [[grids]] in the scene file, or observers with "
@@ -238,17 +177,19 @@ int report_lighting(const LightingArguments& arguments, Console& console) {
   const Stopwatch watch;
   made.luminaires = luminaires(scene, solved.mesh, DirectLight(scene, solved.mesh), design);
   set_watts(made.luminaires, arguments.watts, scene);
-  Measurements what{.eyes = std::move(eyes),
-                    .maintenance_factor = arguments.maintenance_factor,
-                    .gathering = {.rays = arguments.rays},
-                    .luminous_heights = design.luminous_height,
-                    .between = stop_if_interrupted};
+  Measurements what;
+  what.eyes = std::move(eyes);
+  what.maintenance_factor = arguments.maintenance_factor;
+  what.gathering.rays = arguments.rays;
+  what.luminous_heights = design.luminous_height;
+  what.between = stop_if_interrupted;
   what.gathering.run.progress = console.progress();
   // --surface and --plane name surfaces of the file, which merge_planar_regions() may have joined
   // with others: names->apart() separates them again.
   const ElementCaster caster(solved.mesh);
-  for (LuxGrid& grid : grids(arguments, clean_up.names ? clean_up.names->apart(scene) : scene,
-                             design, guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)))) {
+  for (LuxGrid& grid :
+       arguments.grids.grids(clean_up.names ? clean_up.names->apart(scene) : scene, design,
+                             guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)))) {
     what.grids.push_back(without_buried_points(caster, std::move(grid)));
   }
   measure(scene, solved, what, made);
@@ -284,32 +225,7 @@ Action add_report(CLI::App& command) {
       ->type_size(1)
       ->allow_extra_args(false)
       ->check(with_extension({".html", ".json", ".csv"}));
-  command.add_option("--surface", arguments->surfaces, "measure on this surface; may be repeated")
-      ->type_name("NAME")
-      ->type_size(1)
-      ->allow_extra_args(false);
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--plane",
-          [arguments](const std::vector<std::string>& texts) {
-            for (const auto& text : texts) {
-              arguments->planes.push_back(named_number(text, '@', "--plane", 0.0));
-            }
-          },
-          "measure on a plane at this height above a surface: floor@0.75; may be repeated")
-      ->type_name("NAME@HEIGHT")
-      ->type_size(1)
-      ->allow_extra_args(false);
-  command
-      .add_option("--margin", arguments->margin,
-                  "strip along the outline of planes that is left out (default 0.5 m)")
-      ->type_name("LENGTH")
-      ->check(CLI::NonNegativeNumber.description(""));  // no ":NONNEGATIVE" in --help
-  command
-      .add_option("--spacing", arguments->spacing,
-                  "largest distance between points (default: by EN 12464-1)")
-      ->type_name("LENGTH")
-      ->check(positive());
+  arguments->grids.add_to(command);
   command
       .add_option("--maintenance", arguments->maintenance_factor,
                   "maintenance factor of electric light, above 0 up to 1 (default 1)")

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <functional>
 
+#include "scene/parallel.h"
+
 namespace lightwell {
 namespace {
 
@@ -43,27 +45,42 @@ void count_occupied(float E, float sunlight, Eigen::ArrayXXf& count, Eigen::Inde
   count(i, sun) += sunlight >= direct;
 }
 
-double share_at_least(const Eigen::ArrayXd& values, double least) {
-  return 100.0 * static_cast<double>((values >= least).count()) / static_cast<double>(values.size());
-}
+// A room's part of the sensors.
+struct RoomSensors {
+  Eigen::Index first = 0, count = 0;
 
-std::string level_of(const SensorMetrics& sensors) {
+  auto of(const Eigen::ArrayXd& values) const { return values.segment(first, count); }
+  double mean(const Eigen::ArrayXd& values) const { return of(values).mean(); }
+  // Share of the sensors, %, whose value is at least `least`.
+  double share(const Eigen::ArrayXd& values, double least) const {
+    return 100.0 * static_cast<double>((of(values) >= least).count()) / static_cast<double>(count);
+  }
+};
+
+std::string level_of(const SensorMetrics& sensors, const RoomSensors& room) {
   // EN 17037, table A.1: target on half of the area, minimum on 95 % of it, for half of the hours.
   constexpr double half_of_area = 50.0, most_of_area = 95.0, half_of_hours = 50.0;
   const auto meets = [&](const Eigen::ArrayXd& target, const Eigen::ArrayXd& minimum) {
-    return share_at_least(target, half_of_hours) >= half_of_area &&
-           share_at_least(minimum, half_of_hours) >= most_of_area;
+    return room.share(target, half_of_hours) >= half_of_area &&
+           room.share(minimum, half_of_hours) >= most_of_area;
   };
   if (meets(sensors.en_above_750, sensors.en_above_500)) return "high";
   if (meets(sensors.en_above_500, sensors.en_above_300)) return "medium";
   return meets(sensors.en_above_300, sensors.en_above_100) ? "minimum" : "none";
 }
 
+double median_of(std::vector<float> values) {
+  std::ranges::sort(values);
+  const auto n = values.size();
+  return n == 0 ? 0.0 : 0.5 * (double{values[(n - 1) / 2]} + double{values[n / 2]});
+}
+
 }  // namespace
 
 AnnualMetrics::AnnualMetrics(int sensors, std::span<const SkyHour> hours, int year_hours,
-                             const Occupancy& occupancy)
+                             const Occupancy& occupancy, double factor)
     : occupancy_(occupancy),
+      factor_(static_cast<float>(factor)),
       year_hours_(year_hours),
       occupied_hours_(year_hours / 24 * (occupancy.to - occupancy.from)),
       bright_hours_(year_hours / 2),
@@ -72,9 +89,8 @@ AnnualMetrics::AnnualMetrics(int sensors, std::span<const SkyHour> hours, int ye
   histogram_.setZero(sensors, bins);
   std::vector<int> by_light(hours.size());
   for (std::size_t i = 0; i < hours.size(); ++i) by_light[i] = static_cast<int>(i);
-  std::ranges::stable_sort(by_light, std::greater{}, [&](int i) {
-    return hours[static_cast<std::size_t>(i)].dome_lux;
-  });
+  std::ranges::stable_sort(by_light, std::greater{},
+                           [&](int i) { return hours[static_cast<std::size_t>(i)].dome_lux; });
   const auto count = std::min(hours.size(), static_cast<std::size_t>(bright_hours_));
   for (std::size_t i = 0; i < count; ++i) {
     is_bright_[static_cast<std::size_t>(hours[static_cast<std::size_t>(by_light[i])].number)] = 1;
@@ -82,24 +98,28 @@ AnnualMetrics::AnnualMetrics(int sensors, std::span<const SkyHour> hours, int ye
 }
 
 void AnnualMetrics::add(const HourBlock& block) {
+  constexpr int grain = 16;
+  parallel_for(static_cast<int>(count_.rows()), grain, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) add(block, i);
+  });
+}
+
+void AnnualMetrics::add(const HourBlock& block, Eigen::Index i) {
+  const float bins_of_logarithm = static_cast<float>(bins) / std::log(most_lux / least_lux);
   for (std::size_t h = 0; h < block.hours.size(); ++h) {
     const int number = block.hours[h].number, hour = number % 24;
-    const bool is_occupied = hour >= occupancy_.from && hour < occupancy_.to;
-    const bool is_bright = is_bright_[static_cast<std::size_t>(number)] != 0;
     const auto column = static_cast<Eigen::Index>(h);
-    for (Eigen::Index i = 0; i < count_.rows(); ++i) {
-      const float E = block.total(i, column);
-      count_(i, lux) += E;
-      if (is_occupied) count_occupied(E, block.sunlight(i, column), count_, i);
-      if (!is_bright) continue;
-      count_(i, en_100) += E >= 100.0f;
-      count_(i, en_300) += E >= 300.0f;
-      count_(i, en_500) += E >= 500.0f;
-      count_(i, en_750) += E >= 750.0f;
-      const float place = std::log(std::max(E, least_lux) / least_lux) /
-                          std::log(most_lux / least_lux) * static_cast<float>(bins);
-      ++histogram_(i, std::min(static_cast<int>(place), bins - 1));
-    }
+    const float sunlight = block.sunlight(i, column);
+    const float E = sunlight + factor_ * (block.total(i, column) - sunlight);
+    count_(i, lux) += E;
+    if (hour >= occupancy_.from && hour < occupancy_.to) count_occupied(E, sunlight, count_, i);
+    if (is_bright_[static_cast<std::size_t>(number)] == 0) continue;
+    count_(i, en_100) += E >= 100.0f;
+    count_(i, en_300) += E >= 300.0f;
+    count_(i, en_500) += E >= 500.0f;
+    count_(i, en_750) += E >= 750.0f;
+    const float place = std::log(std::max(E, least_lux) / least_lux) * bins_of_logarithm;
+    ++histogram_(i, std::min(static_cast<int>(place), bins - 1));
   }
 }
 
@@ -142,21 +162,20 @@ SensorMetrics AnnualMetrics::sensors() const {
   return metrics;
 }
 
-RoomMetrics room_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_factor) {
+RoomMetrics room_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_factor,
+                         Eigen::Index first, Eigen::Index count) {
   constexpr double half_of_hours = 50.0, sunny = 250.0;
-  std::vector<float> sorted(daylight_factor.begin(), daylight_factor.end());
-  std::ranges::sort(sorted);
-  const auto n = sorted.size();
-  const double median = n == 0 ? 0.0 : 0.5 * (double{sorted[(n - 1) / 2]} + double{sorted[n / 2]});
-  return {.spatial_autonomy = share_at_least(sensors.autonomy, half_of_hours),
-          .sun_exposure = 100.0 * static_cast<double>((sensors.sun_hours > sunny).count()) /
-                          static_cast<double>(sensors.sun_hours.size()),
-          .mean_autonomy = sensors.autonomy.mean(),
-          .mean_continuous_autonomy = sensors.continuous_autonomy.mean(),
-          .mean_lux = sensors.mean_lux.mean(),
-          .mean_daylight_factor = 100.0 * double{daylight_factor.mean()},
-          .median_daylight_factor = 100.0 * median,
-          .en_level = level_of(sensors)};
+  const RoomSensors room{first, count};
+  const auto factor = daylight_factor.segment(first, count);
+  // More than 250 hours, whose number is whole.
+  return {.spatial_autonomy = room.share(sensors.autonomy, half_of_hours),
+          .sun_exposure = room.share(sensors.sun_hours, sunny + 1.0),
+          .mean_autonomy = room.mean(sensors.autonomy),
+          .mean_continuous_autonomy = room.mean(sensors.continuous_autonomy),
+          .mean_lux = room.mean(sensors.mean_lux),
+          .mean_daylight_factor = 100.0 * double{factor.mean()},
+          .median_daylight_factor = 100.0 * median_of({factor.begin(), factor.end()}),
+          .en_level = level_of(sensors, room)};
 }
 
 }  // namespace lightwell

@@ -43,9 +43,11 @@ struct RoomMetrics {
 /// Counts hours of a year at sensors.
 class AnnualMetrics {
  public:
-  /// `hours` are all hours with light, `year_hours` all hours of the year.
+  /// `hours` are all hours with light, `year_hours` all hours of the year. Light is taken times
+  /// `factor`, to see what an error of light does to the measures; direct sunlight is taken as it
+  /// is.
   AnnualMetrics(int sensors, std::span<const SkyHour> hours, int year_hours,
-                const Occupancy& occupancy);
+                const Occupancy& occupancy, double factor = 1.0);
 
   void add(const HourBlock& block);
   SensorMetrics sensors() const;
@@ -56,14 +58,18 @@ class AnnualMetrics {
   static constexpr int bins = 1024;  // of illuminance, for medians
   double median(Eigen::Index sensor) const;
 
+  void add(const HourBlock& block, Eigen::Index sensor);
+
   Occupancy occupancy_;
+  float factor_ = 1.0f;
   int year_hours_ = 0, occupied_hours_ = 0, bright_hours_ = 0;
   std::vector<char> is_bright_{};  // per hour of the year
   Eigen::ArrayXXf count_;          // sensors x counters
   Eigen::Array<std::uint16_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> histogram_;
 };
 
-/// Measures of the sensors of a room. `daylight_factor` is [0, 1] per sensor.
-RoomMetrics room_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_factor);
+/// Measures of the sensors from `first` on, of one room. `daylight_factor` is [0, 1] per sensor.
+RoomMetrics room_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_factor,
+                         Eigen::Index first, Eigen::Index count);
 
 }  // namespace lightwell

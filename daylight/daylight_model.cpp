@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "daylight/grey_scene.h"
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/patch_light.h"
 #include "radiosity/solvers/solve_columns.h"
@@ -12,8 +13,8 @@
 namespace lightwell {
 namespace {
 
-// Keys of random numbers: patches from 0, sensors from here.
-constexpr std::uint64_t first_sensor_key = std::uint64_t{1} << 40;
+// What a key of random numbers belongs to.
+constexpr std::uint64_t of_patch = 0, of_sensor = 1;
 
 // The scene without light of its own: daylight is that of sun and sky alone.
 Scene without_light(Scene scene) {
@@ -55,7 +56,7 @@ void for_each_index(int count, const char* phase, const Progress& progress, Body
 
 DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen::Vector3d& north,
                              const DaylightOptions& options)
-    : scene_(without_light(std::move(scene))),
+    : scene_(with_one_band_if_grey(without_light(std::move(scene)))),
       options_(options),
       sky_(options.sky_subdivision, up, north),
       mesh_(build_patches(scene_, options.mesh, options.progress)) {
@@ -73,6 +74,14 @@ Surroundings DaylightModel::around() const {
   return {*caster_, *panes_, scene_.bands.count()};
 }
 
+std::uint64_t DaylightModel::patch_key(int patch) const {
+  return random_key(of_patch, static_cast<std::uint64_t>(patch), options_.replica);
+}
+
+std::uint64_t DaylightModel::sensor_key(int sensor) const {
+  return random_key(of_sensor, static_cast<std::uint64_t>(sensor), options_.replica);
+}
+
 Eigen::ArrayXf DaylightModel::luminous_sum(const Eigen::Ref<const Eigen::ArrayXXf>& bands) const {
   return (bands.matrix() * weights_.matrix()).array();
 }
@@ -82,7 +91,7 @@ std::vector<SurfacePoint> DaylightModel::points_of_patch(int patch) const {
   const SobolPoints sobol(options_.points_of_patch);
   std::vector<SurfacePoint> points;
   for (int i = 0; i < options_.points_of_patch; ++i) {
-    const Eigen::Array4f u = sobol.point(i, static_cast<std::uint64_t>(patch));
+    const Eigen::Array4f u = sobol.point(i, patch_key(patch));
     const PatchPoint point = sampler.point(double{u[2]}, double{u[3]});
     points.push_back({.position = point.position,
                       .normal = point.normal,
@@ -95,8 +104,7 @@ void DaylightModel::view_patches() {
   patch_views_.resize(static_cast<std::size_t>(mesh_.patch_count()));
   for_each_index(mesh_.patch_count(), "sky at patches", options_.progress, [&](int p) {
     patch_views_[static_cast<std::size_t>(p)] =
-        view_of_dome(around(), sky_, points_of_patch(p), options_.patches,
-                     static_cast<std::uint64_t>(p));
+        view_of_dome(around(), sky_, points_of_patch(p), options_.patches, patch_key(p));
   });
 }
 
@@ -107,8 +115,7 @@ void DaylightModel::set_sensors(std::span<const GatherPoint> sensors) {
     const GatherPoint& at = sensors_[static_cast<std::size_t>(i)];
     const SurfacePoint point{.position = at.position, .normal = at.normal, .facet = at.facet};
     sensor_views_[static_cast<std::size_t>(i)] =
-        view_of_dome(around(), sky_, {&point, 1}, options_.points,
-                     first_sensor_key + static_cast<std::uint64_t>(i));
+        view_of_dome(around(), sky_, {&point, 1}, options_.points, sensor_key(i));
   });
 }
 
@@ -120,7 +127,7 @@ Eigen::ArrayXXf DaylightModel::reflected(const BandArray& arriving) const {
   const BandArray B =
       solve_columns(mesh_, *form_factors_, arriving, options_.tolerance, options_.progress);
   const LitScene lit{scene_, *caster_, *direct_light_};
-  GatherOptions gather{.rays = options_.gather_rays};
+  GatherOptions gather{.rays = options_.gather_rays, .replica = options_.replica};
   gather.run.progress = options_.progress;
   const BandArray E = gather_indirect(lit, to_vertices(mesh_, B), sensors_, gather).indirect;
   for (Eigen::Index s = 0; s < sources; ++s) {
@@ -134,7 +141,8 @@ SensorLight DaylightModel::sky_coefficients() const {
   BandArray arriving(mesh_.patch_count(), columns * bands);
   for (int p = 0; p < mesh_.patch_count(); ++p) {
     const Eigen::ArrayXXf& E0 = patch_views_[static_cast<std::size_t>(p)].coefficient;
-    for (Eigen::Index c = 0; c < columns; ++c) arriving.row(p).segment(c * bands, bands) = E0.row(c);
+    for (Eigen::Index c = 0; c < columns; ++c)
+      arriving.row(p).segment(c * bands, bands) = E0.row(c);
   }
   SensorLight light{.direct = Eigen::ArrayXXf(sensor_count(), columns)};
   for (int i = 0; i < sensor_count(); ++i) {
@@ -151,17 +159,17 @@ SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const
   for_each_index(mesh_.patch_count(), "sun at patches", options_.progress, [&](int p) {
     const Eigen::ArrayXXf E0 =
         sunlight(around(), sky_, points_of_patch(p), patch_views_[static_cast<std::size_t>(p)],
-                 suns, 1, static_cast<std::uint64_t>(p));
+                 suns, 1, patch_key(p));
     for (Eigen::Index s = 0; s < count; ++s) arriving.row(p).segment(s * bands, bands) = E0.row(s);
   });
   SensorLight light{.direct = Eigen::ArrayXXf(sensor_count(), count)};
   for_each_index(sensor_count(), "sun at sensors", options_.progress, [&](int i) {
     const GatherPoint& at = sensors_[static_cast<std::size_t>(i)];
     const SurfacePoint point{.position = at.position, .normal = at.normal, .facet = at.facet};
-    light.direct.row(i) =
-        luminous_sum(sunlight(around(), sky_, {&point, 1}, sensor_views_[static_cast<std::size_t>(i)],
-                              suns, options_.sun_rays, first_sensor_key + static_cast<std::uint64_t>(i)))
-            .transpose();
+    light.direct.row(i) = luminous_sum(sunlight(around(), sky_, {&point, 1},
+                                                sensor_views_[static_cast<std::size_t>(i)], suns,
+                                                options_.sun_rays, sensor_key(i)))
+                              .transpose();
   });
   light.reflected = reflected(arriving);
   return light;

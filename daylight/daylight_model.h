@@ -17,20 +17,23 @@ namespace lightwell {
 /// Effort of a DaylightModel.
 struct DaylightOptions {
   int sky_subdivision = 2;  ///< of SkyPatches
-  MeshOptions mesh{};
+  MeshOptions mesh{.auto_patch_count = 3200};
   FormFactorOptions form_factors{};
   double tolerance = 1e-4;  ///< of the equations (see solve_columns)
-  DomeEffort points{.search = 1024, .rays = 2048};
-  DomeEffort patches{.search = 256, .rays = 512};
-  int points_of_patch = 16;  ///< points of a patch whose view is averaged
-  int sun_rays = 16;         ///< of a sensor to the sun's disc
-  int gather_rays = 1024;    ///< of a sensor, for light that surfaces reflect
+  DomeEffort points{.search = 4, .rays = 4096};
+  DomeEffort patches{.search = 1, .rays = 1024};
+  int points_of_patch = 16;   ///< points of a patch whose view is averaged
+  int sun_rays = 16;          ///< of a sensor to the sun's disc
+  int gather_rays = 1024;     ///< of a sensor, for light that surfaces reflect
+  std::uint64_t replica = 0;  ///< another number gives independent rays
   Progress progress{};
 };
 
 /// Reflected and direct light of sensors, each for a source of its own: sensors x sources.
 struct SensorLight {
   Eigen::ArrayXXf direct{}, reflected{};
+
+  Eigen::ArrayXXf sum() const { return direct + reflected; }
 };
 
 /// A room for daylight: its exchange of light between patches, computed once, and what each patch
@@ -41,11 +44,11 @@ struct SensorLight {
 ///     B = rho (E0 + F B)      E0: irradiance of patches straight from the source
 ///
 /// with the same form factors for every sky patch and every sun of the year (daylight coefficients:
-/// Tregenza & Waters 1983). Light at a sensor is the source's own, seen through windows, and that of
-/// all surfaces by a final gather.
+/// Tregenza & Waters 1983). Light at a sensor is the source's own, seen through windows, and that
+/// of all surfaces by a final gather.
 ///
-/// Illuminance is per unit: of a sky patch lx over cd/m^2, of the sun lx over the lx across its rays.
-/// Daylight is white, with the same power in each band; materials tint the light.
+/// Illuminance is per unit: of a sky patch lx over cd/m^2, of the sun lx over the lx across its
+/// rays. Daylight is white, with the same power in each band; materials tint the light.
 class DaylightModel {
  public:
   /// Lamps, emission and sky of the scene are left out. `up` and `north` are unit and
@@ -58,11 +61,14 @@ class DaylightModel {
 
   const Scene& scene() const { return scene_; }
   const PatchMesh& mesh() const { return mesh_; }
+  const ElementCaster& caster() const { return *caster_; }
   const SkyPatches& sky() const { return sky_; }
+  const DaylightOptions& options() const { return options_; }
   const FormFactorReport& form_factor_report() const { return report_; }
 
   /// Sets the sensors; keeps a copy.
   void set_sensors(std::span<const GatherPoint> sensors);
+  const std::vector<GatherPoint>& sensors() const { return sensors_; }
   int sensor_count() const { return static_cast<int>(sensors_.size()); }
 
   /// Coefficients of the columns of sky() at the sensors.
@@ -72,6 +78,8 @@ class DaylightModel {
 
  private:
   Surroundings around() const;
+  std::uint64_t patch_key(int patch) const;
+  std::uint64_t sensor_key(int sensor) const;
   Eigen::ArrayXf luminous_sum(const Eigen::Ref<const Eigen::ArrayXXf>& bands) const;
   std::vector<SurfacePoint> points_of_patch(int patch) const;
   void view_patches();

@@ -14,8 +14,12 @@ namespace {
 // Rounds of random numbers of one receiver.
 constexpr std::uint64_t search_round = 1, cell_round = 2, sun_round = 3;
 
-double random_of(std::uint64_t key, std::uint64_t round, std::uint64_t number) {
-  return random_uniform(random_key(key, RandomPurpose::sky_point_rays, round, number));
+std::uint64_t round_key(std::uint64_t key, std::uint64_t round) {
+  return random_key(key, RandomPurpose::sky_point_rays, round);
+}
+
+double random_of(std::uint64_t key, std::uint64_t number) {
+  return random_uniform(random_key(key, number));
 }
 
 // Rays to be cast together, and the share of light that each lets pass.
@@ -26,8 +30,7 @@ class RayBatch {
   // Adds a ray of the receiver's point `number`, modulo the number of points.
   void add(std::size_t number, const Eigen::Vector3d& direction) {
     const SurfacePoint& from = point(number);
-    rays_.push_back(
-        {.origin = from.position, .direction = direction, .origin_group = from.facet});
+    rays_.push_back({.origin = from.position, .direction = direction, .origin_group = from.facet});
     from_.push_back(&from);
   }
   const SurfacePoint& point(std::size_t number) const { return points_[number % points_.size()]; }
@@ -54,20 +57,26 @@ class RayBatch {
   std::vector<std::uint8_t> blocked_{};
 };
 
+// Adds `count` rays stratified over a cell to the batch.
+void add_rays(const SkyPatches& sky, int cell, int count, std::uint64_t key, RayBatch& batch) {
+  const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(count))));
+  const int rows = (count + across - 1) / across;
+  for (int i = 0; i < count; ++i) {
+    // Strata of the last row are wider where the row is not full.
+    const int row = i / across, in_row = std::min(across, count - row * across);
+    const auto number = static_cast<std::uint64_t>(cell) << 32 | static_cast<std::uint64_t>(i) * 3;
+    const double u = (i % across + random_of(key, number)) / in_row,
+                 v = (row + random_of(key, number + 1)) / rows;
+    const auto point = static_cast<std::size_t>(1e6 * random_of(key, number + 2));
+    batch.add(point + static_cast<std::size_t>(i), sky.direction(cell, u, v));
+  }
+}
+
 // Marks the cells that rays find open, and those around them.
 std::vector<char> open_cells(const Surroundings& around, const SkyPatches& sky,
-                             ReceiverPoints points, int rays, std::uint64_t key) {
-  const std::uint64_t set = random_key(key, RandomPurpose::sky_point_rays, search_round);
-  const SobolPoints sobol(rays);
+                             ReceiverPoints points, int rays_of_cell, std::uint64_t key) {
   RayBatch batch(around, points);
-  for (int i = 0; i < rays; ++i) {
-    const Eigen::Array4f u = sobol.point(i, set);
-    const Eigen::Vector3d& normal = batch.point(static_cast<std::size_t>(i)).normal;
-    Eigen::Vector3d a, b;
-    tangent_frame(normal, a, b);
-    const Eigen::Vector3d local = cosine_direction(u[0], u[1]);
-    batch.add(static_cast<std::size_t>(i), local.x() * a + local.y() * b + local.z() * normal);
-  }
+  for (int c = 0; c < sky.cell_count(); ++c) add_rays(sky, c, rays_of_cell, key, batch);
   batch.cast();
   std::vector<char> open(static_cast<std::size_t>(sky.cell_count()), 0);
   for (std::size_t r = 0; r < batch.size(); ++r) {
@@ -92,32 +101,19 @@ Eigen::ArrayXd unobstructed(const SkyPatches& sky, ReceiverPoints points) {
   return sum / static_cast<double>(points.size());
 }
 
-// Adds `count` rays stratified over a cell to the batch.
-void add_rays(const SkyPatches& sky, int cell, int count, std::uint64_t key, RayBatch& batch) {
-  const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(count))));
-  for (int i = 0; i < count; ++i) {
-    // Rows of `across` strata; those of the last row are wider where it is not full.
-    const int row = i / across, rows = (count + across - 1) / across;
-    const int in_row = std::min(across, count - row * across);
-    const auto number = static_cast<std::uint64_t>(cell) << 32 | static_cast<std::uint64_t>(i) * 3;
-    const double u = (i % across + random_of(key, cell_round, number)) / in_row,
-                 v = (row + random_of(key, cell_round, number + 1)) / rows;
-    const auto point = static_cast<std::size_t>(1e6 * random_of(key, cell_round, number + 2));
-    batch.add(point + static_cast<std::size_t>(i), sky.direction(cell, u, v));
-  }
-}
-
 }  // namespace
 
 DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
                       const DomeEffort& effort, std::uint64_t key) {
-  DomeView view{.coefficient = Eigen::ArrayXXf::Zero(sky.column_count(), around.bands),
-                .open = open_cells(around, sky, points, effort.search, key)};
+  DomeView view{
+      .coefficient = Eigen::ArrayXXf::Zero(sky.column_count(), around.bands),
+      .open = open_cells(around, sky, points, effort.search, round_key(key, search_round))};
   const Eigen::ArrayXd E = unobstructed(sky, points);
   double open_sum = 0.0;
   for (int c = 0; c < sky.cell_count(); ++c) {
     if (view.open[static_cast<std::size_t>(c)] != 0) open_sum += E[c];
   }
+  const std::uint64_t rays_key = round_key(key, cell_round);
   struct Span {
     int cell = 0;
     std::size_t begin = 0, end = 0;
@@ -131,7 +127,7 @@ DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, Receive
     const int count =
         is_open ? std::max(fewest_of_open, static_cast<int>(effort.rays * E[c] / open_sum)) : 1;
     const std::size_t begin = batch.size();
-    add_rays(sky, c, count, key, batch);
+    add_rays(sky, c, count, rays_key, batch);
     spans.push_back({c, begin, batch.size()});
   }
   batch.cast();
@@ -156,6 +152,7 @@ Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, Rece
                          std::uint64_t key) {
   Eigen::ArrayXXf E = Eigen::ArrayXXf::Zero(static_cast<Eigen::Index>(suns.size()), around.bands);
   RayBatch batch(around, points);
+  const std::uint64_t sun_key = round_key(key, sun_round);
   std::vector<std::size_t> sun_of_ray;
   for (std::size_t s = 0; s < suns.size(); ++s) {
     const Eigen::Vector3d& towards = suns[s].direction;
@@ -166,10 +163,10 @@ Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, Rece
     for (std::size_t p = 0; p < points.size(); ++p) {
       if (!(points[p].normal.dot(towards) > 0.0)) continue;
       for (int i = 0; i < rays; ++i) {
-        const std::uint64_t number = (s * points.size() + p) * static_cast<std::size_t>(rays) +
-                                     static_cast<std::size_t>(i);
-        const double r = std::sqrt((i + random_of(key, sun_round, 2 * number)) / rays) * radius,
-                     phi = 2.0 * std::numbers::pi * random_of(key, sun_round, 2 * number + 1);
+        const std::uint64_t number =
+            (s * points.size() + p) * static_cast<std::size_t>(rays) + static_cast<std::size_t>(i);
+        const double r = std::sqrt((i + random_of(sun_key, 2 * number)) / rays) * radius,
+                     phi = 2.0 * std::numbers::pi * random_of(sun_key, 2 * number + 1);
         batch.add(p, (towards + r * (std::cos(phi) * a + std::sin(phi) * b)).normalized());
         sun_of_ray.push_back(s);
       }
@@ -179,8 +176,7 @@ Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, Rece
   const float share = 1.0f / (static_cast<float>(points.size()) * static_cast<float>(rays));
   for (std::size_t r = 0; r < batch.size(); ++r) {
     const auto cosine = static_cast<float>(std::max(0.0, batch.direction(r).dot(batch.normal(r))));
-    E.row(static_cast<Eigen::Index>(sun_of_ray[r])) +=
-        share * cosine * batch.passed(r).transpose();
+    E.row(static_cast<Eigen::Index>(sun_of_ray[r])) += share * cosine * batch.passed(r).transpose();
   }
   return E;
 }

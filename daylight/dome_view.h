@@ -24,8 +24,8 @@ using ReceiverPoints = std::span<const SurfacePoint>;
 
 /// Rays of a receiver towards the dome and the ground.
 struct DomeEffort {
-  int search = 1024;  ///< rays that look for the cells through which the sky is seen
-  int rays = 2048;    ///< rays spread over these cells and those around them
+  int search = 4;   ///< rays through each cell that look for those through which sky is seen
+  int rays = 2048;  ///< rays spread over these cells and those around them
 };
 
 /// What a receiver sees of dome and ground.
@@ -38,8 +38,8 @@ struct DomeView {
 
 /// The view of a receiver, whose points' results are averaged.
 ///
-/// 1. Cosine-distributed rays find the cells through which the sky is seen. They serve no other
-///    purpose, so that what follows has no bias.
+/// 1. Rays through all cells find those through which the sky is seen. They serve no other purpose,
+///    so that what follows has no bias.
 /// 2. Open cells and their neighbours get stratified rays in proportion to their irradiance; all
 ///    other cells get one ray each, which finds what the search has missed.
 /// 3. A cell's coefficient is the irradiance of the unobstructed cell times the share of the rays'
@@ -56,8 +56,8 @@ struct SunDisc {
 };
 
 /// Irradiance of a receiver straight from each sun of irradiance 1 across its rays: suns x bands.
-/// Each point sends `rays` rays to points of the disc. Suns in cells that the view holds closed give
-/// nothing.
+/// Each point sends `rays` rays to points of the disc. Suns in cells that the view holds closed
+/// give nothing.
 Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
                          const DomeView& view, std::span<const SunDisc> suns, int rays,
                          std::uint64_t key);

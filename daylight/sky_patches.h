@@ -9,9 +9,9 @@ namespace lightwell {
 /// the dome (Tregenza 1987, "Subdivision of the sky hemisphere for luminance measurements"), or
 /// Reinhart's finer ones (144 m^2 + 1). The ground below the horizon is a source of its own.
 ///
-/// Rays are spread over *cells*: the patches of the dome, and as many below the horizon. Light has a
-/// *column* for each patch of the dome, and a last one for the ground, to which all cells below the
-/// horizon belong.
+/// Rays are spread over *cells*: the patches of the dome, and as many below the horizon. Light has
+/// a *column* for each patch of the dome, and a last one for the ground, to which all cells below
+/// the horizon belong.
 ///
 /// Patches lie in rows of equal height, from the horizon upwards. The first patch of a row is
 /// centred on north, and the others follow clockwise as seen from above. The last patch is the cap
@@ -59,7 +59,7 @@ class SkyPatches {
 
   int subdivision_;
   Eigen::Vector3d up_, north_, east_;
-  std::vector<Cell> cells_{};      // the dome's, then those below the horizon in the same order
+  std::vector<Cell> cells_{};        // the dome's, then those below the horizon in the same order
   std::vector<int> first_of_row_{};  // of the dome, and the number of its cells
   std::vector<std::vector<int>> neighbours_{};
   Eigen::MatrixX3d fine_{};  // directions all over each cell, cell after cell

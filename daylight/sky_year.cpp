@@ -21,8 +21,7 @@ Eigen::ArrayXd means_of_patches(const SkyPatches& patches, const Sky& sky) {
   for (int p = 0; p < patches.dome_count(); ++p) {
     for (int i = 0; i < steps; ++i) {
       for (int j = 0; j < steps; ++j) {
-        const Eigen::Vector3d towards =
-            patches.direction(p, (i + 0.5) / steps, (j + 0.5) / steps);
+        const Eigen::Vector3d towards = patches.direction(p, (i + 0.5) / steps, (j + 0.5) / steps);
         mean[p] += double{sky_radiance(sky, towards)[0]};
       }
     }
@@ -36,8 +35,7 @@ Eigen::ArrayXf scaled(const SkyPatches& patches, const Eigen::ArrayXd& dome, dou
   const double lux = (dome * patches.irradiances(patches.up()).head(dome.size())).sum();
   Eigen::ArrayXf luminance(patches.column_count());
   luminance.head(dome.size()) = (dome * (lux > 0.0 ? dome_lux / lux : 0.0)).cast<float>();
-  luminance[patches.ground_column()] =
-      static_cast<float>(ground_reflectance * horizontal_lux / pi);
+  luminance[patches.ground_column()] = static_cast<float>(ground_reflectance * horizontal_lux / pi);
   return luminance;
 }
 
@@ -59,15 +57,16 @@ std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up
   for (int n = 0; n < static_cast<int>(weather.hours.size()); ++n) {
     const WeatherHour& light = weather.hours[static_cast<std::size_t>(n)];
     const auto [month, day, hour] = hour_of_year(n, weather.is_leap_year);
-    const SunPosition sun = sun_position(
-        {.year = year, .month = month, .day = day, .hour = hour + 0.5,
-         .hours_east = weather.hours_east},
-        weather.latitude, weather.longitude);
+    const SunPosition sun = sun_position({.year = year,
+                                          .month = month,
+                                          .day = day,
+                                          .hour = hour + 0.5,
+                                          .hours_east = weather.hours_east},
+                                         weather.latitude, weather.longitude);
     const double altitude = sun.altitude_degrees;
     if (!(altitude > 0.0) || !(light.diffuse_horizontal > 0.0)) continue;
-    const SkyState state =
-        within_data(sky_state(light.direct_normal, light.diffuse_horizontal, altitude,
-                              day_of_year(year, month, day)));
+    const SkyState state = within_data(sky_state(light.direct_normal, light.diffuse_horizontal,
+                                                 altitude, day_of_year(year, month, day)));
     const DaylightEfficacy efficacy =
         daylight_efficacy(state, altitude, precipitable_water_cm(light.dew_point));
     hours.push_back({.number = n,

@@ -125,7 +125,7 @@ SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double s
   if (!(sun_altitude_degrees > 0.0 && sun_altitude_degrees <= 90.0)) {
     throw std::invalid_argument(
         fmt::format("a sky by Perez needs the sun above the horizon, not at {:.2f} degrees",
-                           sun_altitude_degrees));
+                    sun_altitude_degrees));
   }
   return perez_sky(sky_state(direct_normal, diffuse_horizontal, sun_altitude_degrees, day_of_year),
                    sun_altitude_degrees);

@@ -8,8 +8,8 @@ namespace lightwell {
 /// above the horizon.
 SkyGradation perez_sky(const SkyState& state, double sun_altitude_degrees);
 
-/// The nearest state within the range of the data that Perez' formulas were fitted to, as RADIANCE's
-/// gendaymtx has the range: clearness from 1 to 11.9, brightness from 0.01 to 0.6.
+/// The nearest state within the range of the data that Perez' formulas were fitted to, as
+/// RADIANCE's gendaymtx has the range: clearness from 1 to 11.9, brightness from 0.01 to 0.6.
 SkyState within_data(SkyState state);
 
 /// Luminous efficacy of daylight, lm/W over its whole spectrum, >= 0.

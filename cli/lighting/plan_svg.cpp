@@ -9,6 +9,7 @@
 #include <iterator>
 #include <numbers>
 
+#include "cli/lighting/colour_scale.h"
 #include "raytrace/pictures/encode_png.h"
 #include "raytrace/readings/isolux_lines.h"
 #include "raytrace/readings/round_step.h"
@@ -31,13 +32,6 @@ struct Paper {
     return {mm * (p.x() - lines.low.x()), mm * (lines.high.y() - p.y())};
   }
 };
-
-std::string hex_colour(double place) {
-  const Eigen::Array3f c =
-      255.0f * false_color(std::clamp(static_cast<float>(place), 0.0f, 1.0f)) + 0.5f;
-  return fmt::format("#{:02x}{:02x}{:02x}", static_cast<int>(c[0]), static_cast<int>(c[1]),
-                     static_cast<int>(c[2]));
-}
 
 // Cells as one picture with a pixel each, for grids of so many points that a page of rectangles
 // would be too large to open.
@@ -76,9 +70,9 @@ void add_cells(const PlanContents& plan, const Paper& paper, std::string& svg) {
     const Vector2d corner = paper.at({grid.step_u * column, grid.step_v * (row + 1)});
     fmt::format_to(out,
                    "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
-                   "fill=\"{}\"><title>{} lx{}</title></rect>\n",
+                   "fill=\"{}\"><title>{} {}{}</title></rect>\n",
                    corner.x(), corner.y(), w + overlap, h + overlap,
-                   hex_colour(place_on_scale(lux, plan.range)), lux_text(lux),
+                   hex_colour(place_on_scale(lux, plan.range)), lux_text(lux), plan.unit,
                    std::isfinite(within) ? " ± " + lux_text(within) : "");
   }
 }
@@ -254,27 +248,6 @@ void add_north(const Vector2d& north, double x, std::string& svg) {
                  x, turn);
 }
 
-// Steps of colour with their values.
-void add_colour_scale(const LuxRange& range, const Paper& paper, double left, double top,
-                      std::string& svg) {
-  const auto out = std::back_inserter(svg);
-  constexpr int steps = 64;
-  constexpr double bar = 4.0;  // mm
-  const double height = std::max(paper.height() - top, 30.0);
-  for (int i = 0; i < steps; ++i) {
-    fmt::format_to(out,
-                   "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{}\" height=\"{:.2f}\" "
-                   "fill=\"{}\"/>\n",
-                   left, top + height * (steps - 1 - i) / steps, bar, height / steps + 0.05,
-                   hex_colour((i + 0.5) / steps));
-  }
-  for (const double value : scale_steps(range)) {
-    fmt::format_to(out, "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"axis right\">{:.6g} lx</text>\n",
-                   left + bar + 1.2, top + height * (1.0 - place_on_scale(value, range)) + 0.8,
-                   value);
-  }
-}
-
 }  // namespace
 
 std::string lux_text(double lux) {
@@ -338,7 +311,10 @@ std::string plan_svg(const PlanContents& plan) {
   const double right = paper.width() + 5.0;
   constexpr double below_north = 17.0;
   if (plan.north) add_north(*plan.north, right + 2.0, svg);
-  add_colour_scale(plan.range, paper, right, plan.north ? below_north : 0.0, svg);
+  const double scale_top = plan.north ? below_north : 0.0;
+  constexpr double least_height = 30.0;
+  svg += colour_scale_svg(plan.range, plan.unit, {right, scale_top},
+                          std::max(paper.height() - scale_top, least_height));
   return svg + "</svg>\n";
 }
 

@@ -18,6 +18,7 @@ struct PlanContents {
   std::optional<Eigen::Vector2d> north{};
   double metres_per_unit = 1.0;
   std::string unit_name = "m";
+  std::string unit = "lx";  ///< of the field's values
 };
 
 /// Scale of a plan's false colours, fitted to its values: round ends, linear if the greatest

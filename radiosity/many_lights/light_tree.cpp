@@ -22,7 +22,8 @@ constexpr double angle_step = pi / steps;
 int step_of_cosine(double cosine) {
   static const std::array<double, steps - 1> ends = [] {
     std::array<double, steps - 1> cosines{};
-    for (int k = 1; k < steps; ++k) cosines[static_cast<std::size_t>(k) - 1] = std::cos(k * angle_step);
+    for (int k = 1; k < steps; ++k)
+      cosines[static_cast<std::size_t>(k) - 1] = std::cos(k * angle_step);
     return cosines;
   }();
   const auto end = std::ranges::lower_bound(ends, cosine, std::greater<>());

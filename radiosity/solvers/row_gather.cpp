@@ -52,39 +52,57 @@ template <class Values, int Sums>
   std::memcpy(E, sum.data(), sizeof(Values));
 }
 
-using GatherPacket = void (*)(std::span<const FormFactor>, const double*, double*);
+// `Packets` packets of lanes, one register each, from `lane` on.
+template <int Packets>
+[[gnu::always_inline]] inline void gather_packets(std::span<const FormFactor> row, const double* B,
+                                                  int lanes, int lane, double* E) {
+  std::array<Packet, Packets> sum{};
+  for (const auto [j, F] : row) {
+    const double* const B_j = B + static_cast<std::ptrdiff_t>(lanes) * j + lane;
+    for (int p = 0; p < Packets; ++p) {
+      Packet values;
+      load(B_j + p * packet, values);
+      sum[static_cast<std::size_t>(p)] += static_cast<double>(F) * values;
+    }
+  }
+  std::memcpy(E + lane, sum.data(), sizeof sum);
+}
 
-void gather_packet(std::span<const FormFactor> row, const double* B, double* E) {
-  gather_straight<Packet, 2>(row, B, E);
+[[gnu::always_inline]] inline void gather_lanes(std::span<const FormFactor> row, const double* B,
+                                                int lanes, double* E) {
+  if (lanes == packet) {
+    gather_straight<Packet, 2>(row, B, E);
+    return;
+  }
+  constexpr int together = 8;  // of 16 registers
+  int lane = 0;
+  for (; lane + together * packet <= lanes; lane += together * packet) {
+    gather_packets<together>(row, B, lanes, lane, E);
+  }
+  for (; lane < lanes; lane += packet) gather_packets<1>(row, B, lanes, lane, E);
+}
+
+using GatherLanes = void (*)(std::span<const FormFactor>, const double*, int, double*);
+
+void gather_lanes_anywhere(std::span<const FormFactor> row, const double* B, int lanes, double* E) {
+  gather_lanes(row, B, lanes, E);
 }
 
 #if defined(__x86_64__)
 // No fused multiply-add: all machines compute the same bits.
-[[gnu::target("avx2")]] void gather_packet_avx2(std::span<const FormFactor> row, const double* B,
-                                                double* E) {
-  gather_straight<Packet, 2>(row, B, E);
+[[gnu::target("avx2")]] void gather_lanes_avx2(std::span<const FormFactor> row, const double* B,
+                                               int lanes, double* E) {
+  gather_lanes(row, B, lanes, E);
 }
 
-GatherPacket best_gather_packet() {
-  return __builtin_cpu_supports("avx2") ? gather_packet_avx2 : gather_packet;
+GatherLanes best_gather_lanes() {
+  return __builtin_cpu_supports("avx2") ? gather_lanes_avx2 : gather_lanes_anywhere;
 }
 #else
-GatherPacket best_gather_packet() {
-  return gather_packet;
+GatherLanes best_gather_lanes() {
+  return gather_lanes_anywhere;
 }
 #endif
-
-void gather_straight(std::span<const FormFactor> row, const double* B, int lanes, double* E) {
-  using Map = Eigen::Map<const Eigen::Array<double, packet, 1>>;
-  std::fill_n(E, lanes, 0.0);
-  for (const auto [j, F] : row) {
-    const double* const B_j = B + static_cast<std::ptrdiff_t>(lanes) * j;
-    for (int lane = 0; lane < lanes; lane += packet) {
-      Eigen::Map<Eigen::Array<double, packet, 1>>{E + lane} +=
-          static_cast<double>(F) * Map(B_j + lane);
-    }
-  }
-}
 
 }  // namespace
 
@@ -93,7 +111,7 @@ RowGather::RowGather(const FormFactors& form_factors, int bands, std::function<v
       pause_(std::move(pause)),
       bands_(bands),
       lanes_(bands == 1 ? 1 : (bands + packet - 1) / packet * packet),
-      gather_packet_(best_gather_packet()) {
+      gather_lanes_(best_gather_lanes()) {
   for (int i = 0; i < form_factors.patch_count() && !has_specular_; ++i) {
     has_specular_ = !form_factors.specular_row(i).patch.empty();
   }
@@ -101,15 +119,10 @@ RowGather::RowGather(const FormFactors& form_factors, int bands, std::function<v
 
 void RowGather::row(int i, const LightVector& B, double* E) const {
   const std::span<const FormFactor> straight = form_factors_.row(i);
-  switch (lanes()) {
-    case 1:
-      gather_straight<double, packet>(straight, B.data(), E);
-      break;
-    case packet:
-      gather_packet_(straight, B.data(), E);
-      break;
-    default:
-      gather_straight(straight, B.data(), lanes(), E);
+  if (lanes() == 1) {
+    gather_straight<double, packet>(straight, B.data(), E);
+  } else {
+    gather_lanes_(straight, B.data(), lanes(), E);
   }
   if (!has_specular_) return;
   const SpecularRow specular = form_factors_.specular_row(i);

@@ -19,7 +19,8 @@ using LaneArray = Eigen::Array<double, 1, Eigen::Dynamic>;
 class RowGather {
  public:
   /// Keeps a reference. `bands` is a multiple of those of the rows, whose factors then serve each
-  /// set of bands (see solve_columns). `pause` is called repeatedly during a pass and may throw to end the pass.
+  /// set of bands (see solve_columns). `pause` is called repeatedly during a pass and may throw to
+  /// end the pass.
   RowGather(const FormFactors& form_factors, int bands, std::function<void()> pause = {});
 
   int lanes() const { return lanes_; }
@@ -43,7 +44,7 @@ class RowGather {
   const FormFactors& form_factors_;
   std::function<void()> pause_;
   int bands_ = 0, lanes_ = 0;
-  void (*gather_packet_)(std::span<const FormFactor>, const double*, double*);
+  void (*gather_lanes_)(std::span<const FormFactor>, const double* B, int lanes, double* E);
   bool has_specular_ = false;
 };
 

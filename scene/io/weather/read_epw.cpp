@@ -25,8 +25,9 @@ void read_location(const TextFile& file, int line, std::string_view text, Weathe
   const auto fields = fields_of(text);
   constexpr std::size_t latitude = 6, longitude = 7, zone = 8;
   if (fields.size() <= zone) {
-    file.fail(line, "LOCATION has too few fields; it names city, state, country, source, station, "
-                    "latitude, longitude and time zone");
+    file.fail(line,
+              "LOCATION has too few fields; it names city, state, country, source, station, "
+              "latitude, longitude and time zone");
   }
   weather.place = fields[1];
   if (!fields[3].empty()) weather.place += fmt::format(", {}", fields[3]);
@@ -60,7 +61,8 @@ Rows rows_of(const TextFile& file, Weather& weather) {
       return;
     }
     if (text.empty() || text.front() < '0' || text.front() > '9') return;
-    if (!has_location) file.fail(line, "comes before the LOCATION line that an EPW file begins with");
+    if (!has_location)
+      file.fail(line, "comes before the LOCATION line that an EPW file begins with");
     auto fields = fields_of(text);
     if (fields.size() < fields_needed) {
       file.fail(line, fmt::format("has {} fields; a row of an EPW file has 35, and the file may be "

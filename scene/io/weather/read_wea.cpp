@@ -31,9 +31,10 @@ void read_heading(const TextFile& file, int line, std::string_view text, Weather
   if (word == "site_elevation") return;
   if (word == "weather_data_file_units") {
     if (*value != 1.0) {
-      file.fail(line, fmt::format("the units are {:g}; only 1, direct normal and diffuse horizontal "
-                                  "irradiance in W/m2, is read",
-                                  *value));
+      file.fail(line,
+                fmt::format("the units are {:g}; only 1, direct normal and diffuse horizontal "
+                            "irradiance in W/m2, is read",
+                            *value));
     }
     heading.has_units = true;
     return;
@@ -86,13 +87,15 @@ Weather read_wea(const std::filesystem::path& path) {
                                   "diffuse irradiance",
                                   words.size()));
     }
-    const auto month = parse_finite(words[0]), day = parse_finite(words[1]), hour = parse_finite(words[2]);
+    const auto month = parse_finite(words[0]), day = parse_finite(words[1]),
+               hour = parse_finite(words[2]);
     if (!month || !day || !hour || std::abs(*month) > 12 || std::abs(*day) > 31 ||
         std::abs(*hour) > 24) {
       file.fail(line, "has no month, day and hour");
     }
     rows.set(line,
-             {.month = static_cast<int>(*month), .day = static_cast<int>(*day),
+             {.month = static_cast<int>(*month),
+              .day = static_cast<int>(*day),
               .hour = static_cast<int>(std::floor(*hour))},
              words[3], words[4]);
   });

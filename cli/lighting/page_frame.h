@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+
+#include "raytrace/readings/lux_grid.h"
+
+namespace lightwell {
+
+/// The beginning of a page for screens and A4 paper, up to <body>, with the style of tables, plans
+/// and curves.
+std::string page_begin(const std::string& title);
+inline constexpr const char* page_end = "</body></html>\n";
+
+/// North along u and v of a grid that lies level; empty: `north` is not known, or the grid
+/// inclines.
+std::optional<Eigen::Vector2d> north_in(const std::optional<Eigen::Vector3d>& north,
+                                        const LuxGrid& grid);
+
+}  // namespace lightwell

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/lighting/plan_lines.h"
+#include "cli/report.h"
+#include "daylight/annual_metrics.h"
+#include "raytrace/readings/lux_grid.h"
+#include "scene/io/weather/weather_file.h"
+
+namespace lightwell {
+
+/// Sensors that are judged together: those of a grid, or of a file of points.
+struct YearRoom {
+  std::string name{};
+  std::optional<LuxGrid> grid{};
+  PlanLines lines{};                  ///< for the plan of a grid
+  Eigen::Index first = 0, count = 0;  ///< of all sensors
+  /// The measures, and those of less and of more light by the bound of its error.
+  RoomMetrics metrics{}, least{}, most{};
+  std::vector<float> mean_of_hours{};  ///< lx, for every hour of the year
+};
+
+/// A year of daylight.
+struct YearReport {
+  std::string title{}, version{};
+  Weather weather{};
+  double error = 0.0;                      ///< see year_error()
+  std::vector<std::string> conventions{};  ///< what is assumed, a sentence each
+  std::vector<std::string> notes{};
+  Occupancy occupancy{};
+  std::optional<Eigen::Vector3d> north{};
+  double metres_per_unit = 1.0;
+  std::string unit_name = "m";
+  SensorMetrics sensors{};
+  Eigen::ArrayXf daylight_factor{};  ///< [0, 1]
+  std::vector<YearRoom> rooms{};
+};
+
+/// Measures, bounds and conventions.
+Json year_json(const YearReport& report);
+
+/// The figures that people look for first, a line each.
+std::string year_text(const YearReport& report);
+
+/// The report as one HTML page without external files, for screens and for A4 paper.
+std::string year_page(const YearReport& report);
+
+}  // namespace lightwell

@@ -1,0 +1,57 @@
+#include "daylight/year_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace lightwell {
+namespace {
+
+std::vector<SkyHour> spread_over(std::span<const SkyHour> hours, int samples) {
+  std::vector<SkyHour> some;
+  const auto count = std::min(hours.size(), static_cast<std::size_t>(samples));
+  for (std::size_t i = 0; i < count; ++i) {
+    some.push_back(hours[(2 * i + 1) * hours.size() / (2 * count)]);
+  }
+  return some;
+}
+
+// The sum over hours of each sensor's light but direct sunlight, lx.
+Eigen::ArrayXd diffuse_sum(const DaylightModel& model, const SkyCoefficients& sky,
+                           std::span<const SkyHour> hours, double ground_reflectance) {
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(model.sensor_count());
+  simulate_year(model, sky, hours, ground_reflectance, [&](const HourBlock& block) {
+    sum += (block.total - block.sunlight).cast<double>().rowwise().sum();
+  });
+  return sum;
+}
+
+// A quarter of the patches and half of the rays.
+DaylightOptions coarse_options(DaylightOptions options) {
+  MeshOptions& mesh = options.mesh;
+  mesh.auto_patch_count = std::max(1, mesh.auto_patch_count / 4);
+  mesh.max_patch_size *= 2.0;
+  options.form_factors.rays_per_patch = std::max(1, options.form_factors.rays_per_patch / 2);
+  options.points.rays /= 2;
+  options.patches.rays /= 2;
+  options.gather_rays = std::max(1, options.gather_rays / 2);
+  ++options.replica;
+  return options;
+}
+
+}  // namespace
+
+double year_error(const DaylightModel& model, const SkyCoefficients& sky,
+                  std::span<const SkyHour> hours, double ground_reflectance, int samples) {
+  const std::vector<SkyHour> some = spread_over(hours, samples);
+  DaylightModel coarse(model.scene(), model.sky().up(), model.sky().north(),
+                       coarse_options(model.options()));
+  coarse.set_sensors(model.sensors());
+  const Eigen::ArrayXd fine_sum = diffuse_sum(model, sky, some, ground_reflectance),
+                       coarse_sum = diffuse_sum(coarse, coarse.sky_coefficients().sum(), some,
+                                                ground_reflectance);
+  const Eigen::ArrayXd difference = (fine_sum > 0.0).select(coarse_sum / fine_sum - 1.0, 0.0);
+  return difference.size() > 0 ? std::sqrt(difference.square().mean()) : 0.0;
+}
+
+}  // namespace lightwell

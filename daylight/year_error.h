@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+
+#include "daylight/year.h"
+
+namespace lightwell {
+
+/// Bound of the error of the sensors' light without direct sunlight, relative, with odds of about
+/// 19 to 1: for the light of a year, one figure for all sensors of the model.
+///
+/// A second computation, with a quarter of the patches, half of the rays and other random numbers,
+/// differs from the first at each sensor, in the mean over `samples` hours all over the year. Its
+/// error is at least twice as large: that of patches falls with their area, noise with about the
+/// 3/4th power of the rays. So the root mean square d of the differences is at least twice the
+/// error of the first, and d bounds that error.
+///
+/// Throws Interrupted when the model's progress says stop.
+double year_error(const DaylightModel& model, const SkyCoefficients& sky,
+                  std::span<const SkyHour> hours, double ground_reflectance, int samples = 64);
+
+}  // namespace lightwell
