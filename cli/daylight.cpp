@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <charconv>
 #include <memory>
 #include <numeric>
@@ -35,6 +36,9 @@ struct DaylightArguments {
   bool hourly = false;
   Occupancy occupancy{};
 };
+
+constexpr std::array<const char*, 4> result_files = {"sensors.csv", "hours.csv", "year.html",
+                                                     "year.json"};
 
 // Reads "8-18".
 Occupancy parse_occupancy(const std::string& text) {
@@ -126,8 +130,8 @@ std::vector<std::string> conventions_of(const DaylightArguments& arguments, cons
           : "Lux follow from watts by Perez' efficacies (1990) for the dew point of each hour.",
       fmt::format("The ground reflects {:g} of the light of sun and dome, evenly.",
                   arguments.ground),
-      "Panes pass light by its angle, with all reflections inside. Light of sun and dome by way of "
-      "mirrors, gloss and solid glass is left out. There are no blinds.",
+      "Panes pass light by its angle, with all reflections inside. The sun in mirrors, and through "
+      "glass that bends or scatters its light, is left out. There are no blinds.",
       "Lamps and emitting surfaces of the scene are off."};
 }
 
@@ -179,6 +183,7 @@ int daylight(const DaylightArguments& arguments, Console& console) {
   const auto [up, north] = compass_of(scene, arguments.north_degrees);
   const std::vector<SkyHour> hours = sky_hours(weather, up, north);
   const OutputFolder folder(arguments.output);
+  for (const char* file : result_files) require_writable(folder / file);
 
   Stopwatch watch;
   DaylightModel model(scene, up, north, options_of(arguments, scene, console));
@@ -205,6 +210,11 @@ int daylight(const DaylightArguments& arguments, Console& console) {
   made.error = year_error(model, sky, hours, arguments.ground);
   report.add_phase("error", watch.lap());
   made.daylight_factor = daylight_factors(model, sky, arguments.ground);
+  if (!(made.daylight_factor > 0.0f).any()) {
+    made.notes.emplace_back(
+        "No daylight reaches any sensor: the scene has no opening, or its windows are opaque.");
+    console.say("warning: " + made.notes.back());
+  }
   const auto year_hours = static_cast<int>(weather.hours.size());
   for (YearRoom& room : made.rooms) room.mean_of_hours.assign(weather.hours.size(), 0.0f);
   const auto counted = [&](double factor) {
@@ -234,9 +244,7 @@ int daylight(const DaylightArguments& arguments, Console& console) {
   write_hours(folder / "hours.csv", hours, weather.is_leap_year);
   write_whole(folder / "year.html", {year_page(made)});
   write_json(folder / "year.json", year_json(made));
-  for (const char* file : {"sensors.csv", "hours.csv", "year.html", "year.json"}) {
-    report.add_file(folder / file);
-  }
+  for (const char* file : result_files) report.add_file(folder / file);
   if (files) {
     files->commit();
     report.add_file(folder / "illuminance.npy");

@@ -43,6 +43,8 @@ constexpr const char* recipes =
                                                          irradiance and lux at points
   lightwell report room.toml room.vtp --plane floor@0.75 -o room.html
                                                          lux, uniformity and glare as a page
+  lightwell daylight office.toml --weather city.epw --plane floor@0.8 -o year
+                                                         every hour of a year: DA, sDA, EN 17037
   lightwell compare mine.exr reference.exr               how far two pictures are apart
   lightwell form-factors room.stl -o room.mtx            view factors between facets
   lightwell info room.toml                               what is in a scene, solution or picture

@@ -27,6 +27,13 @@ Scene without_light(Scene scene) {
   return scene;
 }
 
+// True for mirrors and for glass other than clear panes, behind which light goes on by paths.
+bool goes_on(const Material& material) {
+  const bool is_clear_pane =
+      material.dielectric && material.dielectric->thin && material.dielectric->roughness == 0.0f;
+  return material.is_specular() && !material.is_diffuse() && !is_clear_pane;
+}
+
 // Share of each band in the illuminance of white light.
 Eigen::ArrayXf luminous_weights(const Bands& bands) {
   Eigen::ArrayXf weights(bands.count());
@@ -63,6 +70,9 @@ DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen
   caster_.emplace(mesh_);
   direct_light_.emplace(scene_, mesh_);
   panes_.emplace(scene_);
+  if (std::ranges::any_of(scene_.materials, goes_on)) {
+    paths_.emplace(scene_, *caster_, options.form_factors.max_specular_depth, PathDetail::points);
+  }
   weights_ = luminous_weights(scene_.bands);
   FormFactorOptions rows = options.form_factors;
   rows.run.progress = options.progress;
@@ -71,7 +81,7 @@ DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen
 }
 
 Surroundings DaylightModel::around() const {
-  return {*caster_, *panes_, scene_.bands.count()};
+  return {*caster_, *panes_, paths_ ? &*paths_ : nullptr, scene_.bands.count()};
 }
 
 std::uint64_t DaylightModel::patch_key(int patch) const {

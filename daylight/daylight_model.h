@@ -92,7 +92,8 @@ class DaylightModel {
   std::optional<ElementCaster> caster_{};
   std::optional<DirectLight> direct_light_{};
   std::optional<ClearPanes> panes_{};
-  Eigen::ArrayXf weights_{};  // of bands in illuminance, of sum 1
+  std::optional<LightPaths> paths_{};  // empty where all that mirrors and refracts is clear panes
+  Eigen::ArrayXf weights_{};           // of bands in illuminance, of sum 1
   FormFactorReport report_{};
   std::unique_ptr<FormFactors> form_factors_{};
   std::vector<DomeView> patch_views_{};

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <optional>
 
 #include "scene/degree.h"
 #include "scene/random_purpose.h"
@@ -36,12 +38,37 @@ class RayBatch {
   const SurfacePoint& point(std::size_t number) const { return points_[number % points_.size()]; }
   std::size_t size() const { return rays_.size(); }
   const Eigen::Vector3d& direction(std::size_t ray) const { return rays_[ray].direction; }
-  const Eigen::Vector3d& normal(std::size_t ray) const { return from_[ray]->normal; }
+  // Cosine to the normal of the ray's point; 0 below the horizon.
+  double cosine(std::size_t ray) const {
+    return std::max(0.0, rays_[ray].direction.dot(from_[ray]->normal));
+  }
 
   void cast() {
     blocked_.assign(rays_.size(), 0);
     around_.caster.occluded(rays_, blocked_);
   }
+  // Where the light of a ray goes that something other than clear panes stops: the direction in
+  // which the light leaves the scene, and its share per band.
+  struct Exit {
+    Eigen::Vector3d direction;
+    Spectrum share;
+  };
+  std::optional<Exit> exit(std::size_t ray, std::uint64_t key) const {
+    if (!around_.paths || blocked_[ray] == 0) return std::nullopt;
+    ElementHit hit;
+    around_.caster.closest_hits({&rays_[ray], 1}, {&hit, 1});
+    // What a diffuse surface mirrors besides is light of that surface.
+    if (hit.facet < 0 || !around_.paths->is_specular(hit.facet) ||
+        around_.paths->is_diffuse(hit.facet)) {
+      return std::nullopt;
+    }
+    const PathLosses losses =
+        around_.paths->follow(rays_[ray], hit, random_key(key, static_cast<std::uint64_t>(ray)),
+                              std::function<void(const LightArrival&)>([](const LightArrival&) {}));
+    if (losses.exit.isZero()) return std::nullopt;
+    return Exit{losses.exit, losses.escaped};
+  }
+
   // The share that ray `number` lets pass, per band.
   Spectrum passed(std::size_t ray) const {
     if (blocked_[ray] == 0) return Spectrum::Ones(around_.bands);
@@ -72,6 +99,11 @@ void add_rays(const SkyPatches& sky, int cell, int count, std::uint64_t key, Ray
   }
 }
 
+void open_with_neighbours(const SkyPatches& sky, int cell, std::vector<char>& open) {
+  open[static_cast<std::size_t>(cell)] = 1;
+  for (const int beside : sky.neighbours(cell)) open[static_cast<std::size_t>(beside)] = 1;
+}
+
 // Marks the cells that rays find open, and those around them.
 std::vector<char> open_cells(const Surroundings& around, const SkyPatches& sky,
                              ReceiverPoints points, int rays_of_cell, std::uint64_t key) {
@@ -80,10 +112,13 @@ std::vector<char> open_cells(const Surroundings& around, const SkyPatches& sky,
   batch.cast();
   std::vector<char> open(static_cast<std::size_t>(sky.cell_count()), 0);
   for (std::size_t r = 0; r < batch.size(); ++r) {
-    if (!(batch.passed(r) > 0.0f).any()) continue;
-    const int cell = sky.cell_of(batch.direction(r));
-    open[static_cast<std::size_t>(cell)] = 1;
-    for (const int beside : sky.neighbours(cell)) open[static_cast<std::size_t>(beside)] = 1;
+    // Cells of the rays, and of where they leave.
+    if ((batch.passed(r) > 0.0f).any()) {
+      open_with_neighbours(sky, sky.cell_of(batch.direction(r)), open);
+    } else if (const auto exit = batch.exit(r, key)) {
+      open_with_neighbours(sky, sky.cell_of(batch.direction(r)), open);
+      open_with_neighbours(sky, sky.cell_of(exit->direction), open);
+    }
   }
   return open;
 }
@@ -101,6 +136,30 @@ Eigen::ArrayXd unobstructed(const SkyPatches& sky, ReceiverPoints points) {
   return sum / static_cast<double>(points.size());
 }
 
+// The rays through a cell.
+struct Span {
+  int cell = 0;
+  std::size_t begin = 0, end = 0;
+};
+
+// Adds the light that rays through a cell of irradiance `E` find to the view.
+void add_cell(const SkyPatches& sky, const RayBatch& batch, const Span& span, double E,
+              std::uint64_t key, DomeView& view) {
+  double cosines = 0.0;
+  for (std::size_t r = span.begin; r < span.end; ++r) cosines += batch.cosine(r);
+  if (!(cosines > 0.0)) return;
+  const auto add = [&](int cell, double share, const Spectrum& passed) {
+    view.coefficient.row(sky.column_of(cell)) +=
+        (share * passed.cast<double>()).cast<float>().transpose();
+  };
+  for (std::size_t r = span.begin; r < span.end; ++r) {
+    const double share = E * batch.cosine(r) / cosines;
+    if (!(share > 0.0)) continue;
+    add(span.cell, share, batch.passed(r));
+    if (const auto exit = batch.exit(r, key)) add(sky.cell_of(exit->direction), share, exit->share);
+  }
+}
+
 }  // namespace
 
 DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
@@ -114,10 +173,6 @@ DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, Receive
     if (view.open[static_cast<std::size_t>(c)] != 0) open_sum += E[c];
   }
   const std::uint64_t rays_key = round_key(key, cell_round);
-  struct Span {
-    int cell = 0;
-    std::size_t begin = 0, end = 0;
-  };
   std::vector<Span> spans;
   RayBatch batch(around, points);
   constexpr int fewest_of_open = 4;
@@ -131,19 +186,7 @@ DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, Receive
     spans.push_back({c, begin, batch.size()});
   }
   batch.cast();
-  for (const Span& span : spans) {
-    double cosines = 0.0;
-    Eigen::ArrayXd arrived = Eigen::ArrayXd::Zero(around.bands);
-    for (std::size_t r = span.begin; r < span.end; ++r) {
-      const double cosine = batch.direction(r).dot(batch.normal(r));
-      if (!(cosine > 0.0)) continue;
-      cosines += cosine;
-      arrived += cosine * batch.passed(r).cast<double>();
-    }
-    if (!(cosines > 0.0)) continue;
-    view.coefficient.row(sky.column_of(span.cell)) +=
-        (E[span.cell] / cosines * arrived).cast<float>().transpose();
-  }
+  for (const Span& span : spans) add_cell(sky, batch, span, E[span.cell], rays_key, view);
   return view;
 }
 
@@ -175,8 +218,14 @@ Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, Rece
   batch.cast();
   const float share = 1.0f / (static_cast<float>(points.size()) * static_cast<float>(rays));
   for (std::size_t r = 0; r < batch.size(); ++r) {
-    const auto cosine = static_cast<float>(std::max(0.0, batch.direction(r).dot(batch.normal(r))));
-    E.row(static_cast<Eigen::Index>(sun_of_ray[r])) += share * cosine * batch.passed(r).transpose();
+    const SunDisc& sun = suns[sun_of_ray[r]];
+    Spectrum passed = batch.passed(r);
+    if (const auto exit = batch.exit(r, sun_key)) {
+      const double edge = std::cos(0.5 * sun.angle_degrees * degree);
+      if (exit->direction.dot(sun.direction) >= edge) passed += exit->share;
+    }
+    E.row(static_cast<Eigen::Index>(sun_of_ray[r])) +=
+        share * static_cast<float>(batch.cosine(r)) * passed.transpose();
   }
   return E;
 }

@@ -7,6 +7,7 @@
 
 #include "daylight/sky_patches.h"
 #include "mesh/elements/element_caster.h"
+#include "radiosity/paths/light_path.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/surface_point.h"
 
@@ -16,6 +17,8 @@ namespace lightwell {
 struct Surroundings {
   const ElementCaster& caster;
   const ClearPanes& panes;
+  /// Paths by way of mirrors and glass that are no clear panes; null: there are none.
+  const LightPaths* paths = nullptr;
   int bands = 3;
 };
 
@@ -44,6 +47,8 @@ struct DomeView {
 ///    other cells get one ray each, which finds what the search has missed.
 /// 3. A cell's coefficient is the irradiance of the unobstructed cell times the share of the rays'
 ///    cosines that arrives: exact for an unobstructed receiver.
+/// 4. Rays that meet mirrors, solid or frosted glass go on, and count for the patch in whose
+///    direction they leave.
 ///
 /// `key` decides the directions. Panes dim the light that passes through them.
 DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
@@ -57,7 +62,8 @@ struct SunDisc {
 
 /// Irradiance of a receiver straight from each sun of irradiance 1 across its rays: suns x bands.
 /// Each point sends `rays` rays to points of the disc. Suns in cells that the view holds closed
-/// give nothing.
+/// give nothing. Solid glass counts where light leaves it towards the disc, as it leaves slabs; the
+/// sun in mirrors, and through glass that bends or scatters its light, is left out.
 Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
                          const DomeView& view, std::span<const SunDisc> suns, int rays,
                          std::uint64_t key);

@@ -196,8 +196,9 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
     const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));
     if (leaves) {
       losses.escaped += throughput;
-      if (hit.facet < 0 && scene_.sky && !light.through_panes_only) {
-        losses.sky = throughput * sky_radiance(*scene_.sky, ray.direction.normalized());
+      if (hit.facet < 0 && !light.through_panes_only) {
+        losses.exit = ray.direction.normalized();
+        if (scene_.sky) losses.sky = throughput * sky_radiance(*scene_.sky, losses.exit);
       }
       return losses;
     }

@@ -23,6 +23,8 @@ struct PathLosses {
   /// W/(m^2 sr). Empty if no light escaped, if it escaped through clear panes alone (direct light),
   /// or if there is no sky.
   Spectrum sky{};
+  /// Unit direction in which light left the scene; zero if none did, or through clear panes alone.
+  Eigen::Vector3d exit = Eigen::Vector3d::Zero();
 };
 
 /// An arrival of light at a diffuse surface behind mirrors and clear surfaces.

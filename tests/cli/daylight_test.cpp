@@ -1,0 +1,149 @@
+// Files and errors of 'lightwell daylight'.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "tests/cli/program.h"
+
+namespace lightwell::daylight_command_test {
+namespace {
+using Words = std::vector<std::string>;
+using Json = nlohmann::json;
+
+// A court of 4 m x 4 m x 2 m without a roof, z up, walls and floor of reflectance 0.5; `roof`
+// closes it.
+std::string court(bool roof = false) {
+  std::string text =
+      "unit = \"m\"\n[materials.grey]\nreflectance = 0.5\ntwo_sided = true\n"
+      "[sky]\nkind = \"cie-overcast\"\nilluminance = 1\nup = [0, 0, 1]\n";
+  const auto add = [&](const std::string& name, const std::string& polygon) {
+    text +=
+        "[[surfaces]]\nname = \"" + name + "\"\nmaterial = \"grey\"\npolygon = " + polygon + "\n";
+  };
+  add("floor", "[[0, 0, 0], [4, 0, 0], [4, 4, 0], [0, 4, 0]]");
+  add("south", "[[0, 0, 0], [0, 0, 2], [4, 0, 2], [4, 0, 0]]");
+  add("north", "[[0, 4, 0], [4, 4, 0], [4, 4, 2], [0, 4, 2]]");
+  add("west", "[[0, 0, 0], [0, 4, 0], [0, 4, 2], [0, 0, 2]]");
+  add("east", "[[4, 0, 0], [4, 0, 2], [4, 4, 2], [4, 4, 0]]");
+  if (roof) add("roof", "[[0, 0, 2], [0, 4, 2], [4, 4, 2], [4, 0, 2]]");
+  return text;
+}
+
+const std::string weather =
+    "place Testville\nlatitude 50\nlongitude 0\ntime_zone 0\nsite_elevation 0\n"
+    "weather_data_file_units 1\n6 21 9.5 500 150\n6 21 12.5 700 150\n12 21 12.5 0 50\n";
+
+class DaylightCommand : public CommandTest {
+ protected:
+  void SetUp() override {
+    folder.write("court.toml", court());
+    folder.write("year.wea", weather);
+  }
+  Words command(const Words& more) {
+    return Words{"daylight", "court.toml",       "--weather", "year.wea", "-o",
+                 "year",     "--max-patch-size", "1",         "--rays",   "64"} +
+           more;
+  }
+  std::string text_of(const std::string& file) {
+    std::ifstream in(folder / ("year/" + file), std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+};
+
+int lines_of(const std::string& text) {
+  return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+}
+
+}  // namespace
+
+TEST_F(DaylightCommand, WritesSensorsHoursAndAPage) {
+  folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,0.8,0,0,1\n2,2,5,0,0,1\n");
+  const Json json = run_json(
+      command({"--plane", "floor@0.8", "--spacing", "1", "--points", "p.csv", "--hourly"}));
+  ASSERT_EQ(json["rooms"].size(), 2u);
+  const Json &grid = json["rooms"][0], &points = json["rooms"][1];
+  EXPECT_EQ(grid["name"], "floor + 0.8 m");
+  EXPECT_EQ(points["sensors"], 2);
+  EXPECT_EQ(json["hours_with_light"], 3);
+  const int sensors = grid["sensors"].get<int>() + 2;
+  EXPECT_EQ(lines_of(text_of("sensors.csv")), sensors + 1);
+  EXPECT_EQ(lines_of(text_of("hours.csv")), 4);
+  EXPECT_EQ(text_of("illuminance.npy").size(), 128u + sizeof(float) * 3 * sensors);
+  // In the air above the court the whole dome is seen, and a little of the walls' tops.
+  const std::string csv = text_of("sensors.csv");
+  const std::string last = csv.substr(csv.rfind(',') + 1);
+  EXPECT_NEAR(std::stod(last), 100.0, 0.1);
+  EXPECT_GT(grid["mean_daylight_factor"], 20.0);
+  EXPECT_LT(grid["mean_daylight_factor"], 100.0);
+  EXPECT_LE(grid["mean_lux"]["least"], grid["mean_lux"]["value"]);
+  const std::string page = text_of("year.html");
+  for (const char* part : {"<svg", "Daylight autonomy", "Perez", "Testville"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(Json::parse(text_of("year.json"))["rooms"], json["rooms"]);
+}
+
+// Level ground 5 m above the court has the sun and the dome of the hour.
+TEST_F(DaylightCommand, HoursAreThoseOfTheWeather) {
+  folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,5,0,0,1\n");
+  ASSERT_EQ(run(command({"--points", "p.csv", "--hourly"})).code, 0);
+  const std::string hours = text_of("hours.csv"), light = text_of("illuminance.npy");
+  std::istringstream lines(hours);
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "hour,month,day,standard_time,sun_altitude,sun_azimuth,sun_lux,dome_lux");
+  for (int row = 0; row < 3; ++row) {
+    std::getline(lines, line);
+    std::vector<double> values;
+    std::istringstream words(line);
+    for (std::string word; std::getline(words, word, ',');) values.push_back(std::stod(word));
+    float lux = 0.0f;
+    light.copy(reinterpret_cast<char*>(&lux), sizeof lux, 128 + sizeof lux * row);
+    const double expected = values[7] + values[6] * std::sin(values[4] * 3.14159265358979 / 180.0);
+    // The disc has 16 rays: cosines differ by up to 0.0047 of the sun's light over four.
+    EXPECT_NEAR(double{lux}, expected, 1e-3 * expected + 0.0047 * values[6] / 4.0) << line;
+  }
+}
+
+TEST_F(DaylightCommand, WrongInputIsASentence) {
+  const auto expect = [&](const Words& more, int code, const std::string& sentence) {
+    const Ended ended = run(command(more));
+    EXPECT_EQ(ended.code, code) << ended.err;
+    EXPECT_NE(ended.err.find(sentence), std::string::npos) << ended.err;
+  };
+  expect({}, 3, "there are no sensors");
+  expect({"--plane", "flour@0.8"}, 3, "Did you mean 'floor'?");
+  expect({"--plane", "floor@0.8", "--occupied", "18-8"}, 2, "'18-8' is no span of hours");
+  expect({"--plane", "floor@0.8", "--ground", "2"}, 2, "--ground");
+  expect({"--plane", "floor@0.8", "--sky", "9"}, 2, "--sky");
+  folder.write("year.wea", "nonsense");
+  expect({"--plane", "floor@0.8"}, 3, "year.wea:1: ");
+  folder.write("year.csv", weather);
+  const Ended ended = run(
+      {"daylight", "court.toml", "--weather", "year.csv", "-o", "year", "--plane", "floor@0.8"});
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_NE(ended.err.find("weather is read from .epw"), std::string::npos) << ended.err;
+}
+
+TEST_F(DaylightCommand, SaysThatAClosedRoomGetsNoDaylight) {
+  folder.write("court.toml", court(true));
+  const Ended ended = run(command({"--plane", "floor@0.8"}));
+  EXPECT_EQ(ended.code, 0) << ended.err;
+  EXPECT_NE(ended.err.find("No daylight reaches any sensor"), std::string::npos) << ended.err;
+}
+
+// Results never replace what they were made from.
+TEST_F(DaylightCommand, RefusesToWriteOverItsPoints) {
+  std::filesystem::create_directory(folder / "year");
+  folder.write("year/sensors.csv", "x,y,z,nx,ny,nz\n2,2,0.8,0,0,1\n");
+  const Ended ended = run(command({"--points", "year/sensors.csv"}));
+  EXPECT_NE(ended.code, 0);
+  EXPECT_EQ(lines_of(text_of("sensors.csv")), 2);
+}
+
+}  // namespace lightwell::daylight_command_test
