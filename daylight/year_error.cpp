@@ -50,8 +50,10 @@ double year_error(const DaylightModel& model, const SkyCoefficients& sky,
   const Eigen::ArrayXd fine_sum = diffuse_sum(model, sky, some, ground_reflectance),
                        coarse_sum = diffuse_sum(coarse, coarse.sky_coefficients().sum(), some,
                                                 ground_reflectance);
-  const Eigen::ArrayXd difference = (fine_sum > 0.0).select(coarse_sum / fine_sum - 1.0, 0.0);
-  return difference.size() > 0 ? std::sqrt(difference.square().mean()) : 0.0;
+  if (fine_sum.size() == 0 || !(fine_sum.mean() > 0.0)) return 0.0;
+  constexpr double least_share = 0.25;
+  const Eigen::ArrayXd reference = fine_sum.max(least_share * fine_sum.mean());
+  return std::sqrt(((coarse_sum - fine_sum) / reference).square().mean());
 }
 
 }  // namespace lightwell

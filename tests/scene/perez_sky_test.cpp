@@ -9,16 +9,17 @@ namespace lightwell::perez_sky_test {
 // Hour 9 of the reference in Oakland: 573 and 81 W/m^2, the sun 18.3068 degrees high on 1 January.
 TEST(PerezSky, StateOfAWinterMorning) {
   const SkyState state = within_data(sky_state(573.0, 81.0, 18.3068, 1));
-  // gendaymtx has 3.32741 and 0.18048; its air mass is Kasten's of 1966, which is 0.1 % more here.
+  // gendaymtx has 3.32741 and 0.18048, by Kasten's air mass of 1966 and another series for the
+  // sun's distance, which differ by 0.3 % here.
   EXPECT_NEAR(state.clearness, 3.32741, 5e-6);
-  EXPECT_NEAR(state.brightness, 0.18048, 2e-3 * 0.18048);
+  EXPECT_NEAR(state.brightness, 0.18048, 4e-3 * 0.18048);
 }
 
 TEST(PerezSky, EfficaciesOfTheSameMorning) {
   const SkyState state{.clearness = 3.32741, .brightness = 0.18048};
-  const DaylightEfficacy lm = daylight_efficacy(state, 18.3068, 2.0);
-  // 49643.64 lx of the sun and 12320.08 lx of the dome, by an independent program whose table is
-  // rounded like ours; its last digit is 0.01 lx.
+  const DaylightEfficacy lm = daylight_efficacy(state, 18.3068, precipitable_water_cm(11.0));
+  // 49643.64 lx of the sun and 12320.08 lx of the dome by an independent program. The brightness is
+  // rounded to 5e-6, times slopes of 26.7 and 13 / 0.18 lm/W.
   EXPECT_NEAR(573.0 * lm.direct, 49643.64, 0.2);
   EXPECT_NEAR(81.0 * lm.diffuse, 12320.08, 0.2);
 }
