@@ -6,8 +6,10 @@
 
 namespace lightwell {
 
-/// Bound of the error of the sensors' light without direct sunlight, relative, with odds of about
-/// 19 to 1: for the light of a year, one figure for all sensors of the model.
+/// Bound of the error of the sensors' light without direct sunlight, with odds of about 19 to 1:
+/// for the light of a year, one figure for all sensors of the model. Relative to the sensor's own
+/// light, or to a quarter of the mean of all sensors where that is more, since a sensor within
+/// furniture may have next to no light.
 ///
 /// A second computation, with a quarter of the patches, half of the rays and other random numbers,
 /// differs from the first at each sensor, in the mean over `samples` hours all over the year. Its
