@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -13,6 +12,7 @@
 #include "cli/refinement.h"
 #include "radiosity/effective_options.h"
 #include "radiosity/paths/caustic_photons.h"
+#include "radiosity/solve_words.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
@@ -47,9 +47,6 @@ std::pair<int, int> parse_size(const std::string& text) {
                             "640x480, each from 1 to {}",
                             text, max_picture_edge));
 }
-
-// Progressive refinement stores no form factors and is not among solver_methods.
-constexpr std::string_view progressive = "progressive";
 
 }  // namespace
 
@@ -124,24 +121,6 @@ CLI::Validator with_extension(std::vector<std::string> extensions) {
       std::string{});
 }
 
-const Camera& choose_camera(const Scene& scene, const std::string& name) {
-  if (scene.cameras.empty()) {
-    throw InputError(fmt::format(
-        "{}: the scene has no camera, so there is nothing to look from; add one "
-        "([[cameras]] in a .toml scene, see docs/scene-format.md), or use 'lightwell solve'",
-        scene.file.string()));
-  }
-  if (name.empty()) return scene.cameras.front();
-  std::vector<std::string> names;
-  for (const Camera& camera : scene.cameras) {
-    if (camera.name == name) return camera;
-    names.push_back(camera.name);
-  }
-  throw InputError(fmt::format("{}: there is no camera '{}'; the scene has: {}.{}",
-                               scene.file.string(), name, fmt::join(names, ", "),
-                               did_you_mean(name, names)));
-}
-
 void add_solved_scene(CLI::App& command, std::string& scene, std::string& solution) {
   command.add_option("scene", scene, "the scene file the solution was made from")
       ->required()
@@ -168,13 +147,6 @@ void add_exposure(CLI::App& command, double& exposure_ev) {
 std::vector<std::string> form_factor_method_names() {
   std::vector<std::string> names;
   for (const NamedFormFactorMethod& known : form_factor_methods) names.emplace_back(known.name);
-  return names;
-}
-
-std::vector<std::string> solver_names() {
-  std::vector<std::string> names;
-  for (const NamedSolverMethod& known : solver_methods) names.emplace_back(known.name);
-  names.emplace_back(progressive);
   return names;
 }
 
@@ -309,12 +281,7 @@ SolveOptions SolveArguments::options(const Scene& scene) const {
   SolveOptions options = solve;
   options.mesh = mesh.options(scene);
   options.form_factors.method = form_factor_method(form_factors);
-  if (solver == progressive) {
-    options.progressive = {.tolerance = options.solver.tolerance,
-                           .overshooting = Overshooting::ambient};
-  } else {
-    options.solver_method = solver_method(solver);
-  }
+  choose_solver(solver, options);
   options.channels = channels.channels(scene);
   options.view_rays = look_from.rays(scene);
   return options;
@@ -343,17 +310,8 @@ std::string SolveArguments::text(const Scene& scene) const {
       many_lights_text(solve), channels.text(), look_from.text());
 }
 
-// Half the noise takes four times the samples; `good` are the defaults of RenderOptions.
-constexpr std::array<PictureQuality, 3> picture_qualities{{
-    {.name = "draft", .shadow_rays = 16, .photons = 1 << 16, .noise = 0.1},
-    {.name = "good", .shadow_rays = 64, .photons = 1 << 19, .noise = 0.02},
-    {.name = "final", .shadow_rays = most_shadow_rays, .photons = 1 << 21, .noise = 0.01},
-}};
-
 PictureQuality RenderArguments::effective_quality() const {
-  const auto named = std::ranges::find_if(
-      picture_qualities, [&](const PictureQuality& each) { return quality == each.name; });
-  PictureQuality result = *named;
+  PictureQuality result = picture_quality(quality);
   result.shadow_rays = shadow_rays.value_or(result.shadow_rays);
   result.photons = photons.value_or(result.photons);
   result.noise = noise.value_or(result.noise);
@@ -371,7 +329,7 @@ void RenderArguments::add_to(CLI::App& command) {
                   "draft, good (default) or final: shadow rays, photons and noise together; "
                   "options of their own come before it")
       ->type_name("QUALITY")
-      ->check(one_of("quality", {"draft", "good", "final"}))
+      ->check(one_of("quality", picture_quality_names()))
       ->group(group);
   command
       .add_option(
@@ -381,7 +339,7 @@ void RenderArguments::add_to(CLI::App& command) {
           "light anew too; interpolate: all light from the solution; virtual-lights: no solution "
           "needed")
       ->type_name("PASS")
-      ->check(one_of("pass", {"auto", "interpolate", "direct", "gather", "virtual-lights"}))
+      ->check(one_of("pass", pass_names()))
       ->group(group);
   command
       .add_option("--shadow-rays", shadow_rays,
@@ -442,28 +400,11 @@ void RenderArguments::add_to(CLI::App& command) {
 }
 
 RenderOptions RenderArguments::options() const {
-  RenderOptions options;
-  // A draft takes all light of virtual lights from the mesh.
-  const bool is_draft = pass == "virtual-lights" && quality == "draft";
-  options.pass = pass == "interpolate" || is_draft ? Pass::interpolate
-                 : pass == "direct"                ? Pass::direct
-                 : pass == "gather"                ? Pass::gather
-                 : pass == "virtual-lights"        ? Pass::virtual_lights
-                                                   : Pass::automatic;
+  RenderOptions options = picture_options(pass, quality, effective_quality());
   options.gather_rays = gather_samples;
   options.virtual_lights = virtual_lights;
-  if (is_draft) {
-    options.max_subdivision = 1;
-    options.glossy_rays = 1;
-    options.sampling.least = 4;
-  }
-  const PictureQuality chosen = effective_quality();
-  options.photons = chosen.photons;
   options.max_depth = depth;
   options.sampling.most = samples;
-  options.sampling.noise = static_cast<float>(chosen.noise);
-  options.shadows.max_rays = chosen.shadow_rays;
-  options.shadows.min_rays = std::min(options.shadows.min_rays, chosen.shadow_rays);
   return options;
 }
 

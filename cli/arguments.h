@@ -13,7 +13,9 @@
 #include "cli/projection.h"
 #include "mesh/build_patches.h"
 #include "radiosity/solve.h"
+#include "raytrace/cameras/choose_camera.h"
 #include "raytrace/render.h"
+#include "raytrace/shading/picture_quality.h"
 
 namespace lightwell {
 
@@ -48,13 +50,6 @@ struct SolveArguments {
   std::string text(const Scene& scene) const;
 };
 
-/// Options that a picture's quality stands for.
-struct PictureQuality {
-  const char* name;
-  int shadow_rays, photons;
-  double noise;
-};
-
 /// Options of the second pass.
 struct RenderArguments {
   ProjectionArguments projection{};
@@ -83,7 +78,6 @@ struct RenderArguments {
 void add_solved_scene(CLI::App& command, std::string& scene, std::string& solution);
 
 std::vector<std::string> form_factor_method_names();
-std::vector<std::string> solver_names();
 
 /// " --hemicube-resolution N" for the hemicube method, "" for every other method.
 std::string hemicube_text(const std::string& method, int resolution);
@@ -127,9 +121,5 @@ void add_scene(CLI::App& command, std::string& scene);
 
 /// Accepts file names that end in one of `extensions` (".png"), in upper or lower case.
 CLI::Validator with_extension(std::vector<std::string> extensions);
-
-/// The scene's camera called `name`; the first camera if `name` is empty. Throws InputError that
-/// lists the scene's cameras if none is called `name`, or if the scene has no camera.
-const Camera& choose_camera(const Scene& scene, const std::string& name);
 
 }  // namespace lightwell

@@ -9,8 +9,8 @@
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/outputs.h"
-#include "cli/refinement.h"
 #include "cli/report.h"
+#include "radiosity/solve_words.h"
 
 namespace lightwell {
 namespace {

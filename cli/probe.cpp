@@ -8,10 +8,10 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
-#include "cli/refinement.h"
 #include "cli/report.h"
 #include "cli/steps.h"
 #include "mesh/elements/element_caster.h"
+#include "radiosity/solve_words.h"
 #include "raytrace/readings/sure_gather.h"
 #include "scene/errors.h"
 

@@ -2,45 +2,14 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <optional>
+#include <stdexcept>
 
 #include "cli/arguments.h"
+#include "radiosity/solve_words.h"
 
 namespace lightwell {
 namespace {
-
-// A number and its unit: "0.5%", "0.5 %", "5lx".
-struct Quantity {
-  double value = 0.0;
-  std::string unit{};
-};
-
-std::optional<Quantity> parse_quantity(const std::string& text) {
-  Quantity quantity;
-  const char* const last = text.data() + text.size();
-  const auto [end, error] = std::from_chars(text.data(), last, quantity.value);
-  if (error != std::errc()) return std::nullopt;
-  quantity.unit.assign(end, last);
-  if (quantity.unit.starts_with(' ')) quantity.unit.erase(0, 1);
-  return quantity;
-}
-
-std::optional<Accuracy> parse_accuracy(const std::string& text) {
-  if (const auto share = parse_share(text)) return Accuracy{.share = *share};
-  const auto quantity = parse_quantity(text);
-  if (!quantity || quantity->unit != "lx") return std::nullopt;
-  constexpr double least = 1e-6, most = 1e9;
-  if (!(quantity->value >= least && quantity->value <= most)) return std::nullopt;
-  return Accuracy{.lux = quantity->value};
-}
-
-// True for a number without a unit that means per cent more probably than a share: "1".
-bool is_doubtful(const std::string& text, const Accuracy& accuracy) {
-  constexpr double least = 0.25;  // an error of more than 16 % takes no fewer rays than that
-  const auto quantity = parse_quantity(text);
-  return quantity && quantity->unit.empty() && accuracy.share >= least;
-}
 
 const char* refine_outcome_name(RefineOutcome outcome) {
   switch (outcome) {
@@ -61,17 +30,6 @@ const char* refine_outcome_name(RefineOutcome outcome) {
 }
 
 }  // namespace
-
-std::optional<double> parse_share(const std::string& text) {
-  const auto quantity = parse_quantity(text);
-  if (!quantity || (!quantity->unit.empty() && quantity->unit != "%")) return std::nullopt;
-  constexpr double percent = 0.01;
-  const double share = quantity->unit == "%" ? percent * quantity->value : quantity->value;
-  // Errors below 0.001 % are those of rounding; above 100 % nothing would be refined.
-  constexpr double least = 1e-5, most = 1.0;
-  if (!(share >= least && share <= most)) return std::nullopt;
-  return share;
-}
 
 void add_refinement(CLI::App& command, RefineOptions& options, const std::string& group) {
   command
@@ -113,18 +71,11 @@ void add_accuracy(CLI::App& command, std::optional<Accuracy>& accuracy, const st
             if (refine.count() > 0 && refine.as<std::string>() != "off") {
               refuse_beside(command, "--accuracy", {"--refine"});
             }
-            accuracy = parse_accuracy(text);
-            if (accuracy && is_doubtful(text, *accuracy)) {
-              throw CLI::ValidationError(
-                  "--accuracy", fmt::format("'{0}' would be {1:g} %; write {0}% or {1:g}%", text,
-                                            100.0 * accuracy->share));
+            try {
+              accuracy = parse_accuracy(text);
+            } catch (const std::invalid_argument& error) {
+              throw CLI::ValidationError("--accuracy", error.what());
             }
-            if (accuracy) return;
-            throw CLI::ValidationError(
-                "--accuracy",
-                fmt::format("'{}' is no accuracy; write a share of the mean irradiance from 0.001% "
-                            "to 100%, such as 1%, or an illuminance, such as 5lx",
-                            text));
           },
           "target of the estimated RMS error: a share of the mean irradiance, 1%, or lux, 5lx")
       ->type_name("ERROR")

@@ -10,10 +10,6 @@
 
 namespace lightwell {
 
-/// The share in `text`: 0.005 for "0.5%" and for "0.005". Empty if `text` is not a share from
-/// 0.001 % to 100 %.
-std::optional<double> parse_share(const std::string& text);
-
 /// Adds --refine PERCENT|off and --max-elements N.
 void add_refinement(CLI::App& command, RefineOptions& options, const std::string& group);
 
