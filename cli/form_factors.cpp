@@ -1,12 +1,9 @@
-#include "radiosity/form_factors/form_factors.h"
+#include "radiosity/form_factors/facet_view_factors.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <memory>
-#include <optional>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -15,9 +12,7 @@
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
-#include "cli/view_factor_rows.h"
 #include "radiosity/form_factors/form_factor_file.h"
-#include "radiosity/form_factors/view_factor_scene.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -52,143 +47,35 @@ fs::path FormFactorArguments::row_file() const {
   return fs::path(output).replace_extension(fmt::format(".row{}.vtp", show_row));
 }
 
-/// Mesh options for one row per facet. Ray casting samples a whole facet, so a facet is one patch.
-/// A hemicube has one centre per patch, and a closed form few shadow rays per pair of patches: both
-/// are summed over smaller patches. Every method cuts facets where other facets touch them.
-constexpr int patches_of_hemicubes = 2048, patches_of_closed_forms = 512;
-MeshOptions mesh_for_facets(FormFactorMethod method, const Scene& scene) {
-  MeshOptions options{.elements_per_patch_edge = 1};
-  if (method == FormFactorMethod::hemicube) {
-    options.auto_patch_count = patches_of_hemicubes;
-  } else if (method == FormFactorMethod::analytic) {
-    options.auto_patch_count = patches_of_closed_forms;
-  } else {
-    options.max_patch_size = 2.0 * scene_bounds(scene).diagonal();
-  }
-  return options;
-}
+using Computed = FacetViewFactors;
 
-struct Computed {
-  PatchMesh mesh{};
-  ViewFactorRows rows{};
-  ViewFactors factors{0};
-  FormFactorReport report{};
-  std::optional<double> error{};  // estimated error of the worst factor
-  bool has_rays_alone = false;    // `automatic` fell back on them: facets are cut to shreds
-};
-
-/// Facets that cross each other by the dozen are cut into very many patches. Pairs of these with
-/// partly hidden patches are too many for closed forms; but a facet's factors are means over its
-/// patches, whose rays are independent, so few rays for each of them suffice. A facet that a few
-/// others stand on or cut is in fewer than eight patches.
-bool are_facets_shredded(const PatchMesh& mesh, const ViewFactorRows& rows) {
-  constexpr int many = patches_of_closed_forms, of_each = 8;
-  return mesh.patch_count() > many && mesh.patch_count() / of_each > rows.count();
-}
-
-/// Standard error of a patch's rays that gives a row the target error: rows with one large patch
-/// need most rays.
-double target_of_patches(double target, const PatchMesh& mesh, const ViewFactorRows& rows) {
-  const auto count = static_cast<std::size_t>(rows.count());
-  std::vector<double> area(count, 0.0), squares(count, 0.0);
-  for (int i = 0; i < mesh.patch_count(); ++i) {
-    const int row = rows.of_patch[static_cast<std::size_t>(i)];
-    if (row < 0) continue;
-    area[static_cast<std::size_t>(row)] += mesh.area[i];
-    squares[static_cast<std::size_t>(row)] += mesh.area[i] * mesh.area[i];
-  }
-  double least_even = 0.0;
-  for (std::size_t row = 0; row < count; ++row) {
-    if (area[row] > 0.0) least_even = std::max(least_even, std::sqrt(squares[row]) / area[row]);
-  }
-  return least_even > 0.0 ? target / least_even : target;
-}
-
-/// Options of rays alone for shredded facets: as many as any share of them needs for the target, or
-/// those of a minute or two.
-void take_rays_alone(double target, const PatchMesh& mesh, const ViewFactorRows& rows,
-                     FormFactorOptions& options) {
-  constexpr unsigned most_rays = 1u << 26;
-  const double error = target_of_patches(target, mesh, rows);
-  const auto most = std::bit_floor(most_rays / static_cast<unsigned>(mesh.patch_count()));
-  const double needed = std::clamp(0.25 / (error * error), 1.0, static_cast<double>(most));
-  options.method = FormFactorMethod::ray_cast;
-  options.target_error = error;
-  options.rays_per_patch =
-      std::clamp(static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(needed)))),
-                 options.rays_per_patch, options.most_rays_per_patch);
-  options.most_rays_per_patch = options.rays_per_patch;
-}
-
-/// Computes the factors on the mesh that suits `method`.
-Computed compute_as(FormFactorMethod method, const FormFactorArguments& arguments,
-                    const NumberedScene& numbered, const ViewFactorScene& view,
-                    const Feedback& feedback) {
+Computed compute(const FormFactorArguments& arguments, const NumberedScene& numbered,
+                 const FacetCheck& check, const Feedback& feedback) {
   const auto& [console, report] = feedback;
   Stopwatch watch;
-  const bool per_patch = arguments.max_patch_size > 0.0;
-  MeshOptions mesh_options = mesh_for_facets(method, view.scene);
-  if (per_patch) {
-    mesh_options.max_patch_size = arguments.max_patch_size * view.scene.metres_per_unit;
-  }
-  Computed computed;
-  computed.mesh = build_patches(view.scene, mesh_options, console.progress());
-  report.add_phase("mesh", watch.lap());
-  computed.rows = per_patch ? patch_rows(numbered, view, computed.mesh)
-                            : facet_rows(numbered, view, computed.mesh);
-  if (arguments.show_row > computed.rows.count()) {
+  FacetViewFactorOptions options{
+      .method = form_factor_method(arguments.method),
+      .target_error = arguments.target_error,
+      .max_patch_size = arguments.max_patch_size * numbered.scene.metres_per_unit,
+      .hemicube_resolution = arguments.hemicube_resolution,
+      .two_sided = arguments.two_sided,
+      .memory = {.limit = arguments.memory, .folder = fs::path(arguments.output).parent_path()},
+      .progress = console.progress()};
+  options.rows_found = [&](const ViewFactorRows& rows) {
+    if (arguments.show_row <= rows.count()) return;
     throw InputError(fmt::format("{}: there is no row {} to show; there are {}",
-                                 view.scene.file.string(), arguments.show_row,
-                                 computed.rows.count()));
-  }
-  const ElementCaster caster(computed.mesh);
-  const DirectLight no_light(view.scene, computed.mesh);
-  FormFactorOptions options;
-  options.method = method;
-  options.target_error = arguments.target_error;
-  options.hemicube_resolution = arguments.hemicube_resolution;
-  options.memory = std::make_shared<MemoryBudget>(
-      MemoryOptions{.limit = arguments.memory, .folder = fs::path(arguments.output).parent_path()});
-  options.run.progress = console.progress();
-  computed.has_rays_alone = method == FormFactorMethod::automatic && !per_patch &&
-                            are_facets_shredded(computed.mesh, computed.rows);
-  if (computed.has_rays_alone) {
-    take_rays_alone(arguments.target_error, computed.mesh, computed.rows, options);
-  }
-  const auto form_factors =
-      compute_form_factors({view.scene, caster, no_light}, options, &computed.report);
+                                 numbered.scene.file.string(), arguments.show_row, rows.count()));
+  };
+  options.phase_done = [&](const char* phase) { report.add_phase(phase, watch.lap()); };
+  Computed computed = facet_view_factors(numbered, check, options);
   console.finish_phase();
   stop_if_interrupted();
-  if (!computed.report.row_error.empty()) {
-    computed.error =
-        error_estimate(computed.report, *form_factors, computed.mesh, computed.rows.of_patch);
-  }
-  computed.factors = sum_form_factors(*form_factors, computed.mesh, computed.rows.of_patch,
-                                      computed.rows.count(), options.memory);
-  report.add_storage(options.memory->report());
-  report.add_phase("form_factors", watch.lap());
+  report.add_storage(computed.storage);
   return computed;
 }
 
 bool is_short(const Computed& computed, const FormFactorArguments& arguments) {
-  return computed.error && *computed.error > arguments.target_error;
-}
-
-Computed compute(const FormFactorArguments& arguments, const NumberedScene& numbered,
-                 const FacetCheck& check, const Feedback& feedback) {
-  const ViewFactorScene view = make_view_factor_scene(numbered, check, arguments.two_sided);
-  const FormFactorMethod method = form_factor_method(arguments.method);
-  Computed computed = compute_as(method, arguments, numbered, view, feedback);
-  // Few whole facets may be too large for exact visibility of many corners, and for the rays of one
-  // row. Closed forms of their parts come nearer to the target.
-  const bool is_coarse = method == FormFactorMethod::automatic &&
-                         !(arguments.max_patch_size > 0.0) &&
-                         computed.mesh.patch_count() < patches_of_closed_forms;
-  if (is_coarse && is_short(computed, arguments)) {
-    Computed finer = compute_as(FormFactorMethod::analytic, arguments, numbered, view, feedback);
-    if (*finer.error < *computed.error) computed = std::move(finer);
-  }
-  return computed;
+  return computed.is_short(arguments.target_error);
 }
 
 Json form_factor_facts(const FormFactorArguments& arguments, const NumberedScene& numbered,

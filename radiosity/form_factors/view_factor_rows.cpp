@@ -1,4 +1,4 @@
-#include "cli/view_factor_rows.h"
+#include "radiosity/form_factors/view_factor_rows.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
