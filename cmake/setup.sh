@@ -23,6 +23,10 @@ fault_packages=(python3 strace)
 # A second browser (0.3 GB), and hands for the window: without them the tests with them are skipped.
 extra_packages=(firefox-esr xdotool)
 
+# What the package for Python and its tests need: Debian's names, and those of PyPI.
+python_packages=(python3-dev python3-venv)
+python_modules=(nanobind numpy scipy)
+
 # use_preset NAME: builds with another preset of CMakePresets.json, in build/NAME.
 use_preset() {
   preset=$1
@@ -79,6 +83,25 @@ job_count() {
   [ "$jobs" -ge 1 ] || jobs=1
   echo "${LIGHTWELL_JOBS:-$jobs}"
 }
+
+# make_python: makes the environment for the package in build/python, from PyPI, where there is none; sets
+# python_options for configure. Fails, and says why, where that cannot be done.
+python_options=()
+make_python() {
+  local python=build/python/bin/python
+  if ! "$python" -c "import ${python_modules[*]/%/,} sys" 2>/dev/null; then
+    mkdir -p build
+    say "Making an environment for the Python package in build/python (0.1 GB to download)"
+    { python3 -m venv build/python && "$python" -m pip install --retries 1 "${python_modules[@]}"; } >build/python.log 2>&1 || {
+      tail -n 5 build/python.log >&2
+      return 1
+    }
+  fi
+  python_options=(-DLIGHTWELL_PYTHON=ON "-DPython_EXECUTABLE=$PWD/$python")
+}
+
+# is_with_python: true if the build folder is configured with the package.
+is_with_python() { grep -q '^LIGHTWELL_PYTHON:BOOL=ON' $build_dir/CMakeCache.txt 2>/dev/null; }
 
 # configure [-DNAME=VALUE...]: the first time, or when values are given.
 configure() {

@@ -1,0 +1,119 @@
+#include "python/binding/long_work.h"
+
+#include <nanobind/stl/string.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+namespace nb = nanobind;
+
+namespace lightwell::python {
+namespace {
+
+struct PhaseShare {
+  std::string phase{};
+  double share = 0.0;
+};
+
+/// What the working thread and the waiting thread tell each other.
+class Exchange {
+ public:
+  /// Called by the working thread: notes progress, and returns whether the work is to go on.
+  bool note(std::string_view phase, double share) {
+    const std::lock_guard lock(mutex_);
+    if (news_.empty() || news_.back().phase != phase) news_.push_back({std::string(phase)});
+    news_.back().share = share;
+    return !stops_;
+  }
+  void finish(std::exception_ptr error) {
+    const std::lock_guard lock(mutex_);
+    error_ = std::move(error);
+    is_done_ = true;
+    done_.notify_one();
+  }
+
+  /// Called by the waiting thread: waits for the end, a twentieth of a second at most.
+  bool is_done_after_waiting() {
+    using namespace std::chrono_literals;
+    std::unique_lock lock(mutex_);
+    return done_.wait_for(lock, 50ms, [&] { return is_done_; });
+  }
+  /// The latest share of each phase since the last call.
+  std::vector<PhaseShare> take_news() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(news_, {});
+  }
+  void stop() {
+    const std::lock_guard lock(mutex_);
+    stops_ = true;
+  }
+  std::exception_ptr error() const { return error_; }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable done_;
+  std::vector<PhaseShare> news_;
+  std::exception_ptr error_;
+  bool stops_ = false, is_done_ = false;
+};
+
+// Tells Python of the news and of signals. Returns false if the work is to stop.
+bool tell_python(const nb::object& callback, Exchange& exchange) {
+  if (PyErr_CheckSignals() != 0) nb::raise_python_error();
+  const std::vector<PhaseShare> news = exchange.take_news();
+  if (callback.is_none()) return true;
+  for (const auto& [phase, share] : news) {
+    if (callback(phase, share).ptr() == Py_False) return false;
+  }
+  return true;
+}
+
+// Waits for the end of the work. Returns what Python raised meanwhile; null: nothing. Called
+// without Python's lock.
+std::exception_ptr wait(const nb::object& callback, Exchange& exchange) {
+  std::exception_ptr raised;
+  bool is_told = true;
+  for (bool is_done = false; !is_done;) {
+    is_done = exchange.is_done_after_waiting();
+    if (!is_told) continue;
+    const nb::gil_scoped_acquire lock;
+    try {
+      is_told = tell_python(callback, exchange);
+    } catch (...) {
+      raised = std::current_exception();
+      is_told = false;
+    }
+    if (!is_told) exchange.stop();
+  }
+  return raised;
+}
+
+}  // namespace
+
+void run_long(const nb::object& callback, const std::function<void(const Progress&)>& work) {
+  Exchange exchange;
+  std::exception_ptr raised;
+  {
+    const nb::gil_scoped_release others_may_run;
+    std::thread worker([&] {
+      std::exception_ptr error;
+      try {
+        work([&](std::string_view phase, double share) { return exchange.note(phase, share); });
+      } catch (...) {
+        error = std::current_exception();
+      }
+      exchange.finish(std::move(error));
+    });
+    raised = wait(callback, exchange);
+    worker.join();
+  }
+  if (raised) std::rethrow_exception(raised);
+  if (exchange.error()) std::rethrow_exception(exchange.error());
+}
+
+}  // namespace lightwell::python

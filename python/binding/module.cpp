@@ -1,0 +1,40 @@
+#include "python/binding/module.h"
+
+#include "scene/parallel.h"
+
+namespace nb = nanobind;
+
+namespace lightwell::python {
+namespace {
+
+/// A limit of threads that Python takes and gives back.
+class Threads {
+ public:
+  explicit Threads(int count) : count_(count) {}
+  void enter() { limit_ = std::make_unique<ThreadLimit>(count_); }
+  void exit() { limit_.reset(); }
+
+ private:
+  int count_;
+  std::unique_ptr<ThreadLimit> limit_;
+};
+
+}  // namespace
+}  // namespace lightwell::python
+
+NB_MODULE(_lightwell, module) {
+  using namespace lightwell::python;
+  module.doc() = "The compiled part of the package lightwell; use the package itself.";
+  add_errors();
+  add_scene(module);
+  add_form_factors(module);
+  add_solve(module);
+  add_solution(module);
+  add_pictures(module);
+  nb::class_<Threads>(module, "ThreadLimit")
+      .def(nb::init<int>(), nb::arg("count"))
+      .def("enter", &Threads::enter)
+      .def("exit", &Threads::exit);
+  module.def("thread_count", &lightwell::thread_count);
+  module.attr("__version__") = LIGHTWELL_VERSION;
+}

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+// The parts of the extension module `_lightwell`. Each adds its classes and functions.
+namespace lightwell::python {
+
+void add_errors();
+void add_scene(nanobind::module_& module);
+void add_form_factors(nanobind::module_& module);
+void add_solve(nanobind::module_& module);
+void add_solution(nanobind::module_& module);
+void add_pictures(nanobind::module_& module);
+
+}  // namespace lightwell::python

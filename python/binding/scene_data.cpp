@@ -1,0 +1,16 @@
+#include "python/binding/scene_data.h"
+
+#include <utility>
+
+namespace lightwell::python {
+
+SharedScene scene_data(Scene given, References references, std::optional<NumberedScene> faces) {
+  auto data = std::make_shared<SceneData>();
+  data->clean = merge_planar_regions(given, &data->clean_up);
+  data->given = std::move(given);
+  data->references = references;
+  data->faces = std::move(faces);
+  return data;
+}
+
+}  // namespace lightwell::python

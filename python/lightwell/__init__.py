@@ -1,0 +1,46 @@
+"""Lightwell: radiosity with a ray-traced second pass.
+
+    import lightwell as lw
+
+    scene = lw.read("room.toml")                      # or lw.Scene.from_arrays(vertices, faces, ...)
+    F, report = lw.form_factors(scene)                # scipy.sparse.csr_array of view factors
+    solution = lw.solve(scene, accuracy="1%")         # arrays of light on a mesh
+    lux = solution.lux_at(points, normals)
+    picture = solution.render("camera", width=640)    # height x width x 3, float32
+
+Lengths are metres, irradiance and radiosity W/m^2 per band, and angles degrees, whatever the unit of
+a scene's file. Exceptions are sentences: `InputError` for wrong input, `Interrupted` where a progress
+callback said stop, and `Error`, the base of both, for everything else.
+
+Functions that take long let other Python threads run, and end within about a second after Ctrl-C.
+Several may run at once in several threads. Results have the same bits for any number of threads.
+"""
+
+from ._errors import Error, InputError, Interrupted  # isort: skip  (the compiled module needs it)
+from ._form_factors import FormFactors, form_factors
+from ._lightwell import __version__, thread_count
+from ._pictures import tone_map, write_picture
+from ._scene import Camera, Material, Scene, read
+from ._solution import Readings, Solution, load, solve
+from ._threads import thread_limit
+
+__all__ = [
+    "Camera",
+    "Error",
+    "FormFactors",
+    "InputError",
+    "Interrupted",
+    "Material",
+    "Readings",
+    "Scene",
+    "Solution",
+    "__version__",
+    "form_factors",
+    "load",
+    "read",
+    "solve",
+    "thread_count",
+    "thread_limit",
+    "tone_map",
+    "write_picture",
+]

@@ -1,0 +1,460 @@
+"""Solutions: the light of a scene on a mesh."""
+
+import os
+from functools import cached_property
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
+
+import numpy as np
+
+from . import _lightwell
+from ._arrays import (
+    checked_progress,
+    directions_of,
+    points_of,
+    real_number,
+    set_options,
+    share_text,
+    whole_number,
+)
+from ._errors import InputError
+from ._scene import Camera, Progress, Scene
+
+Path = Union[str, "os.PathLike[str]"]
+
+
+class Readings(NamedTuple):
+    """Light at points."""
+
+    irradiance: np.ndarray
+    """(n, bands) float32, W/m^2."""
+    lux: np.ndarray
+    """(n,) float64, lx."""
+    lux_within: np.ndarray
+    """(n,) float64, lx: bound of the error with odds of about 19 to 1; NaN where nothing is known."""
+
+
+class Solution:
+    """The light of a scene, view-independent, on a mesh of triangles and quadrilaterals.
+
+    Made by `solve` and `load`; never changed afterwards. Arrays named as views are read-only and
+    share the solution's memory, which lives as long as any of them.
+    """
+
+    def __init__(self, data: "_lightwell.SolutionData"):
+        if not isinstance(data, _lightwell.SolutionData):
+            raise InputError("a Solution is made by lightwell.solve(scene) or lightwell.load(path)")
+        self._data = data
+
+    # The mesh.
+
+    @property
+    def vertices(self) -> np.ndarray:
+        """(n, 3) float64, metres; a view."""
+        return self._data.vertices
+
+    @property
+    def normals(self) -> np.ndarray:
+        """(n, 3) float64: unit normals of the vertices, on the side that is lit; a view."""
+        return self._data.normals
+
+    @property
+    def elements(self) -> np.ndarray:
+        """(m, 4) int32: vertices of each element, counter-clockwise; [3] is -1 for a triangle; a view."""
+        return self._data.elements
+
+    @cached_property
+    def triangle_element(self) -> np.ndarray:
+        """(k,) int32: the element that each of `triangles` is of."""
+        quads = np.flatnonzero(self.elements[:, 3] >= 0).astype(np.int32)
+        return np.concatenate([np.arange(len(self.elements), dtype=np.int32), quads])
+
+    @cached_property
+    def triangles(self) -> np.ndarray:
+        """(k, 3) int32: the elements as triangles; second halves of quadrilaterals come last."""
+        quads = self.elements[self.elements[:, 3] >= 0]
+        return np.concatenate([self.elements[:, :3], quads[:, [0, 2, 3]]])
+
+    @property
+    def element_area(self) -> np.ndarray:
+        """(m,) float64, m^2; a view."""
+        return self._data.element_area
+
+    @property
+    def element_patch(self) -> np.ndarray:
+        """(m,) int32: the patch that each element is of; a view."""
+        return self._data.element_patch
+
+    @property
+    def patch_area(self) -> np.ndarray:
+        """(p,) float64, m^2; a view."""
+        return self._data.patch_area
+
+    @property
+    def patch_surface(self) -> np.ndarray:
+        """(p,) int32: surface of each patch, an index into `Scene.names`; a view."""
+        return self._data.patch_surface
+
+    # The light.
+
+    @cached_property
+    def irradiance(self) -> np.ndarray:
+        """(n, bands) float32, W/m^2 at the vertices: direct and indirect light together."""
+        return self._data.irradiance
+
+    @property
+    def direct_irradiance(self) -> np.ndarray:
+        """(n, bands) float32, W/m^2 at the vertices, straight from lights; a view."""
+        return self._data.direct_irradiance
+
+    @property
+    def indirect_irradiance(self) -> np.ndarray:
+        """(n, bands) float32, W/m^2 at the vertices, all other light; a view."""
+        return self._data.indirect_irradiance
+
+    @cached_property
+    def radiosity(self) -> np.ndarray:
+        """(n, bands) float32, W/m^2 at the vertices: B = M + rho E."""
+        return self._data.radiosity
+
+    @property
+    def patch_radiosity(self) -> np.ndarray:
+        """(p, bands) float32, W/m^2; a view."""
+        return self._data.patch_radiosity
+
+    @property
+    def patch_reflectance(self) -> np.ndarray:
+        """(p, bands) float32, 0 to 1; a view."""
+        return self._data.patch_reflectance
+
+    @property
+    def patch_emission(self) -> np.ndarray:
+        """(p, bands) float32, exitance M, W/m^2; a view."""
+        return self._data.patch_emission
+
+    @cached_property
+    def lux(self) -> np.ndarray:
+        """(n,) float64, lx at the vertices."""
+        return self._data.lux
+
+    # How sure it is.
+
+    @property
+    def error(self) -> float:
+        """Estimated RMS error of irradiance, relative to the mean irradiance; 0: no estimate."""
+        return self._data.error
+
+    @cached_property
+    def element_error(self) -> np.ndarray:
+        """(m,) float32: bound of the error anywhere in each element, relative, odds of 19 to 1."""
+        return self._data.element_error
+
+    @property
+    def energy(self) -> Dict[str, float]:
+        """Watts: `emitted` = `absorbed` + `escaped` + `unshot`. `from_lamps` is part of emitted,
+        `missed` part of escaped."""
+        return self._data.energy
+
+    @property
+    def outcome(self) -> str:
+        """"converged", "max_sweeps_reached", "accuracy_missed" or "cut_short"."""
+        return self._data.outcome
+
+    @property
+    def residual(self) -> float:
+        """Largest |M + rho F B - B| relative to the largest B, at the end."""
+        return self._data.residual
+
+    @property
+    def seconds(self) -> Dict[str, float]:
+        """Wall time of the phases, s."""
+        return self._data.seconds
+
+    @property
+    def notes(self) -> List[str]:
+        """What meshing had to leave out, and how refinement ended, a sentence each."""
+        refined = self._data.refinement
+        return self._data.notes + ([f"Refinement: {refined}."] if refined else [])
+
+    @property
+    def bands(self) -> List[str]:
+        """Names of the bands, the columns of arrays of light."""
+        return self._data.bands
+
+    @property
+    def channels(self) -> Dict[str, float]:
+        """Luminous flux of each channel of light that is kept apart, lm; empty: none."""
+        return self._data.channels
+
+    @property
+    def options(self) -> str:
+        """The options it was solved with."""
+        return self._data.options
+
+    @property
+    def scene(self) -> Optional[Scene]:
+        """The scene; None if the solution was loaded without it."""
+        return None if self._data.scene is None else Scene(self._data.scene)
+
+    # Readings and pictures.
+
+    def probe(
+        self,
+        points: Any,
+        normals: Any,
+        *,
+        rays: int = 1024,
+        interpolate: bool = False,
+        progress: Optional[Progress] = None,
+    ) -> np.ndarray:
+        """Irradiance at points, (n, bands) float32, W/m^2.
+
+        points: (n, 3), metres.
+        normals: (n, 3) or (3,), of any length: the directions that the points face.
+        rays: of the gather at each point, a power of two.
+        interpolate: read the mesh instead, which is quick; points must then lie on surfaces.
+        """
+        places = points_of("points", points)
+        ways = directions_of("normals", normals, len(places))
+        if interpolate:
+            return _lightwell.interpolate(self._data, places, ways)
+        count = whole_number("rays", rays, 1, 1 << 20)
+        return _lightwell.probe(self._data, places, ways, count, checked_progress(progress))
+
+    def measure(
+        self,
+        points: Any,
+        normals: Any,
+        *,
+        accuracy: Union[float, str] = 0.0,
+        rays: int = 1024,
+        progress: Optional[Progress] = None,
+    ) -> Readings:
+        """Irradiance and illuminance at points, each with a bound of its error.
+
+        accuracy: bound to reach at each point, as a share of its illuminance (0.01 or "1%"; 0.1 % at
+            least); 0: what the rays give.
+        Other arguments: those of `probe`.
+        """
+        places = points_of("points", points)
+        ways = directions_of("normals", normals, len(places))
+        count = whole_number("rays", rays, 1, 1 << 20)
+        text = share_text(accuracy)
+        wanted = 0.0 if text in ("0", "0.0") else _lightwell.share("accuracy", text)
+        return Readings(
+            *_lightwell.probe_with_bounds(
+                self._data, places, ways, wanted, count, checked_progress(progress)
+            )
+        )
+
+    def lux_at(self, points: Any, normals: Any, **options: Any) -> np.ndarray:
+        """Illuminance at points, (n,) float64, lx. Arguments: those of `measure`."""
+        return self.measure(points, normals, **options).lux
+
+    def render(
+        self,
+        camera: Union[Camera, str, None] = None,
+        *,
+        width: Optional[int] = None,
+        height: Optional[int] = None,
+        quality: str = "good",
+        pass_: str = "auto",
+        shadow_rays: Optional[int] = None,
+        photons: Optional[int] = None,
+        gather_samples: Optional[int] = None,
+        virtual_lights: Optional[int] = None,
+        depth: Optional[int] = None,
+        samples: Optional[int] = None,
+        noise: Union[float, str, None] = None,
+        progress: Optional[Progress] = None,
+    ) -> np.ndarray:
+        """A picture: (height, width, 3) float32, linear sRGB radiance, W/(m^2 sr), row 0 on top.
+
+        camera: a Camera, the name of one of the scene's, or None for the scene's first.
+        width, height: pixels; the width alone keeps the shape.
+        quality: "draft", "good" or "final".
+        pass_: "auto", "interpolate", "direct", "gather" or "virtual-lights".
+        noise: relative standard error at which sampling of a pixel ends.
+        Others: those of `lightwell render --help`.
+        """
+        if height is not None and width is None:
+            raise InputError("height is given without width; give both, or the width alone")
+        options = _lightwell.RenderOptions()
+        asked = {
+            "quality": quality,
+            "pass_": pass_,
+            "shadow_rays": shadow_rays,
+            "photons": photons,
+            "gather_samples": gather_samples,
+            "virtual_lights": virtual_lights,
+            "depth": depth,
+            "samples": samples,
+            "noise": noise,
+        }
+        set_options(options, asked, shares=["noise"])
+        sizes = [
+            None if size is None else whole_number(name, size, 1, 32768)
+            for name, size in (("width", width), ("height", height))
+        ]
+        if isinstance(camera, Camera):
+            view = camera._compiled()
+        elif camera is None or isinstance(camera, str):
+            view = _lightwell.camera_named(self._data, camera or "")
+        else:
+            raise InputError(f"camera is {camera!r}; give a lightwell.Camera or a camera's name")
+        return _lightwell.render(self._data, view, *sizes, options, checked_progress(progress))
+
+    def relight(self, channels: Mapping[str, Union[float, str]]) -> "Solution":
+        """A solution with channels of light dimmed or recoloured, without solving again.
+
+        channels: by the name of a channel, or a pattern such as "row*": a factor (0.3), "off", "on", a
+            colour ("#ffd9b0") or both ("0.3,#ffd9b0"), relative to the scene as solved.
+        """
+        settings = [
+            (str(name), value if isinstance(value, str) else repr(real_number(str(name), value)))
+            for name, value in channels.items()
+        ]
+        return Solution(_lightwell.relight(self._data, settings))
+
+    def save(self, path: Path) -> None:
+        """Writes the solution (.vtp), which `load`, the command line and ParaView read."""
+        if os.path.splitext(os.fspath(path))[1] != ".vtp":
+            raise InputError(f"'{os.fspath(path)}' must end in .vtp")
+        _lightwell.save(self._data, os.fspath(path))
+
+    def export(self, path: Path, *, exposure: float = 0.0, sides: str = "front") -> None:
+        """Writes a model with its light: .glb, .ply or .obj, or a page to walk through, .html.
+
+        exposure: stops, negative for darker.
+        sides: of thin surfaces, "front" or "both".
+        """
+        if sides not in ("front", "both"):
+            raise InputError(f"there are no sides '{sides}'; choose from: front, both")
+        _lightwell.export_model(
+            self._data, os.fspath(path), real_number("exposure", exposure), sides == "both"
+        )
+
+    def to_pyvista(self) -> Any:
+        """The elements as a `pyvista.PolyData`; point data irradiance, radiosity, lux. Needs pyvista."""
+        import pyvista
+
+        faces = np.column_stack([np.full(len(self.triangles), 3), self.triangles])
+        mesh = pyvista.PolyData(np.array(self.vertices), faces.reshape(-1))
+        for name in ("irradiance", "radiosity", "lux"):
+            mesh.point_data[name] = getattr(self, name)
+        return mesh
+
+    def __repr__(self) -> str:
+        error = f"error {100 * self.error:.2g} %" if self.error > 0 else "no error estimate"
+        parts = [f"{len(self.elements)} elements", f"{len(self.vertices)} vertices", self.outcome, error]
+        if self.channels:
+            parts.append(f"channels {', '.join(self.channels)}")
+        return f"<lightwell.Solution: {', '.join(parts)}>"
+
+
+def solve(
+    scene: Scene,
+    *,
+    accuracy: Union[float, str, None] = None,
+    seconds: Optional[float] = None,
+    max_patch_size: Optional[float] = None,
+    max_element_size: Optional[float] = None,
+    elements_per_patch_edge: Optional[int] = None,
+    discontinuity: bool = False,
+    form_factors: str = "auto",
+    hemicube_resolution: Optional[int] = None,
+    solver: str = "auto",
+    rays: Optional[int] = None,
+    refine: Union[float, str, None] = None,
+    max_elements: Optional[int] = None,
+    gather_rays: Optional[int] = None,
+    tolerance: Optional[float] = None,
+    max_sweeps: Optional[int] = None,
+    channels: Union[str, Mapping[str, str]] = "kinds",
+    memory: Optional[float] = None,
+    start_from: Optional[Solution] = None,
+    progress: Optional[Progress] = None,
+) -> Solution:
+    """Meshes a scene and solves for the light on its surfaces, as `lightwell solve` does.
+
+    accuracy: target of the estimated error: a share of the mean irradiance (0.01 or "1%"), or "5lx".
+    seconds: the best solution within this time.
+    max_patch_size, max_element_size: longest edges, metres (about 1600 patches; half a patch).
+    elements_per_patch_edge: 1 to 64 (2).
+    discontinuity: cut receivers along the bounds of shadows.
+    form_factors: "auto", "ray-cast", "hemicube" or "analytic".
+    solver: "auto", "gauss-seidel", "jacobi", "sor", "southwell", "cg", "bicgstab", "gmres" or
+        "progressive".
+    rays, gather_rays: powers of two: of each patch (512), of each vertex (1024 or fewer).
+    refine: error of interpolation at which elements are no longer split (0.7 %), or "off".
+    tolerance, max_sweeps: of the solver (1e-5, 500).
+    channels: light that is kept apart for `Solution.relight`: "kinds", "per-luminaire", "off", or
+        patterns of emitters by channel, {"desk": "desk lamp*"}.
+    memory: most bytes of the process; rows beyond it go to a file in the working folder.
+    start_from: a solution of the same geometry whose light the solver starts from.
+    progress: called with the phase and the share done; False stops the work.
+
+    With the same options the arrays have the same bits as those of the command line's solution.
+    Ctrl-C raises KeyboardInterrupt within about a second; then there is no solution.
+
+    Raises InputError, e.g. for a scene without light, and Interrupted after False.
+    """
+    asked = {name: value for name, value in locals().items() if name not in ("scene", "progress")}
+    if not isinstance(scene, Scene):
+        raise InputError(f"scene is {scene!r}; give a lightwell.Scene")
+    _refuse_contradictions(asked)
+    options = _lightwell.SolveOptions()
+    options.text = _options_text(asked)
+    del asked["channels"], asked["start_from"]
+    set_options(options, asked, shares=["accuracy", "refine"])
+    _set_channels(options, channels)
+    if solver not in _lightwell.solver_names():
+        names = ", ".join(_lightwell.solver_names())
+        raise InputError(f"there is no solver '{solver}'; choose from: {names}")
+    if start_from is not None:
+        if not isinstance(start_from, Solution):
+            raise InputError(f"start_from is {start_from!r}; give a lightwell.Solution")
+        options.start = start_from._data
+    return Solution(_lightwell.solve(scene._data, options, checked_progress(progress)))
+
+
+def load(path: Path, scene: Optional[Scene] = None) -> Solution:
+    """Reads a solution (.vtp), made here or by the command line.
+
+    scene: its scene, which pictures, gathers at points and models with names need.
+
+    Raises InputError for a file that is no solution, is damaged, or is of another scene.
+    """
+    if scene is not None and not isinstance(scene, Scene):
+        raise InputError(f"scene is {scene!r}; give a lightwell.Scene")
+    return Solution(_lightwell.load(os.fspath(path), None if scene is None else scene._data))
+
+
+def _refuse_contradictions(asked: Mapping[str, Any]) -> None:
+    for decides in ("accuracy", "seconds"):
+        if asked[decides] is None:
+            continue
+        for other in ("gather_rays", "refine"):
+            if asked[other] is not None and asked[other] != "off":
+                raise InputError(f"{decides} decides over {other}; give only one of the two")
+    if asked["max_element_size"] is not None and asked["elements_per_patch_edge"] is not None:
+        raise InputError(
+            "max_element_size and elements_per_patch_edge contradict each other; give only one of them"
+        )
+
+
+def _options_text(asked: Mapping[str, Any]) -> str:
+    said = {name: value for name, value in asked.items() if value is not None and name != "start_from"}
+    return f"lightwell.solve(scene, {', '.join(f'{name}={value!r}' for name, value in said.items())})"
+
+
+def _set_channels(options: "_lightwell.SolveOptions", channels: Any) -> None:
+    if isinstance(channels, Mapping):
+        for name, pattern in channels.items():
+            options.add_channel(str(name), str(pattern))
+    elif channels in ("kinds", "per-luminaire", "off"):
+        options.channels = channels
+    else:
+        raise InputError(
+            f"channels is {channels!r}; give 'kinds', 'per-luminaire', 'off', or patterns of emitters by "
+            "channel, such as {'desk': 'desk lamp*'}"
+        )
