@@ -16,6 +16,11 @@ namespace lightwell::python {
 template <class Scalar>
 using NumpyArray = nanobind::ndarray<nanobind::numpy, Scalar>;
 
+/// An array of NumPy as a result, by which stubs name its type.
+class ArrayOut : public nanobind::object {
+  NB_OBJECT_DEFAULT(ArrayOut, object, "numpy.ndarray", nanobind::ndarray_check)
+};
+
 using PointsIn = nanobind::ndarray<const double, nanobind::shape<-1, 3>, nanobind::c_contig,
                                    nanobind::device::cpu>;
 template <class Scalar>
@@ -24,25 +29,27 @@ using ListIn =
 
 /// A read-only array of memory that `owner` keeps alive: no copy.
 template <class Scalar>
-nanobind::object view_of(const Scalar* data, std::initializer_list<std::size_t> shape,
-                         nanobind::handle owner) {
+ArrayOut view_of(const Scalar* data, std::initializer_list<std::size_t> shape,
+                 nanobind::handle owner) {
   static const Scalar nothing{};  // an empty array must not begin at null
-  return nanobind::cast(NumpyArray<const Scalar>(data ? data : &nothing, shape, owner));
+  return nanobind::cast<ArrayOut>(
+      nanobind::cast(NumpyArray<const Scalar>(data ? data : &nothing, shape, owner)));
 }
 
 /// A writable array that owns a container, which is moved: no copy of its memory.
 template <class Container>
-nanobind::object owned(Container from, std::initializer_list<std::size_t> shape) {
+ArrayOut owned(Container from, std::initializer_list<std::size_t> shape) {
   auto kept = std::make_unique<Container>(std::move(from));
   using Scalar = std::remove_cvref_t<decltype(*kept->data())>;
   Scalar* const data = kept->data();
   const nanobind::capsule owner(kept.release(),
                                 [](void* all) noexcept { delete static_cast<Container*>(all); });
   static Scalar nothing{};
-  return nanobind::cast(NumpyArray<Scalar>(data ? data : &nothing, shape, owner));
+  return nanobind::cast<ArrayOut>(
+      nanobind::cast(NumpyArray<Scalar>(data ? data : &nothing, shape, owner)));
 }
 
-inline nanobind::object owned_bands(BandArray values) {
+inline ArrayOut owned_bands(BandArray values) {
   const auto rows = static_cast<std::size_t>(values.rows());
   const auto columns = static_cast<std::size_t>(values.cols());
   return owned(std::move(values), {rows, columns});

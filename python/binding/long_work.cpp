@@ -2,10 +2,12 @@
 
 #include <nanobind/stl/string.h>
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>
@@ -62,6 +64,54 @@ class Exchange {
   bool stops_ = false, is_done_ = false;
 };
 
+/// The threads that wait for work, and whether the interpreter is about to end. Python ends such a
+/// thread where it asks for the lock afterwards, which no C++ frame survives; so they stop before.
+class WaitingThreads {
+ public:
+  void enter() {
+    const std::lock_guard lock(mutex_);
+    if (is_ending_) throw std::runtime_error("Python is about to end, so no work can begin");
+    ++count_;
+  }
+  void leave() {
+    const std::lock_guard lock(mutex_);
+    --count_;
+    left_.notify_all();
+  }
+  bool is_ending() const { return is_ending_; }
+  /// Stops all work, and returns when no thread will ask for Python's lock any more.
+  void end() {
+    std::unique_lock lock(mutex_);
+    is_ending_ = true;
+    left_.wait(lock, [&] { return count_ == 0; });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable left_;
+  int count_ = 0;
+  std::atomic<bool> is_ending_ = false;
+};
+
+WaitingThreads& waiting_threads() {
+  static auto* const threads = new WaitingThreads;  // daemon threads outlive static objects
+  return *threads;
+}
+
+/// Counts the thread among those that wait, as long as the object lives.
+struct Waiting {
+  Waiting() { waiting_threads().enter(); }
+  ~Waiting() { waiting_threads().leave(); }
+  Waiting(const Waiting&) = delete;
+  Waiting& operator=(const Waiting&) = delete;
+};
+
+// Ends the part of a thread in a process that is about to end.
+[[noreturn]] void sleep_until_the_process_ends() {
+  waiting_threads().leave();
+  while (true) std::this_thread::sleep_for(std::chrono::hours(1));
+}
+
 // Tells Python of the news and of signals. Returns false if the work is to stop.
 bool tell_python(const nb::object& callback, Exchange& exchange) {
   if (PyErr_CheckSignals() != 0) nb::raise_python_error();
@@ -80,6 +130,11 @@ std::exception_ptr wait(const nb::object& callback, Exchange& exchange) {
   bool is_told = true;
   for (bool is_done = false; !is_done;) {
     is_done = exchange.is_done_after_waiting();
+    if (waiting_threads().is_ending()) {
+      exchange.stop();
+      if (is_done) sleep_until_the_process_ends();
+      continue;
+    }
     if (!is_told) continue;
     const nb::gil_scoped_acquire lock;
     try {
@@ -98,6 +153,7 @@ std::exception_ptr wait(const nb::object& callback, Exchange& exchange) {
 void run_long(const nb::object& callback, const std::function<void(const Progress&)>& work) {
   Exchange exchange;
   std::exception_ptr raised;
+  const Waiting waiting;
   {
     const nb::gil_scoped_release others_may_run;
     std::thread worker([&] {
@@ -114,6 +170,11 @@ void run_long(const nb::object& callback, const std::function<void(const Progres
   }
   if (raised) std::rethrow_exception(raised);
   if (exchange.error()) std::rethrow_exception(exchange.error());
+}
+
+void end_long_work() {
+  const nb::gil_scoped_release others_may_finish;
+  waiting_threads().end();
 }
 
 }  // namespace lightwell::python

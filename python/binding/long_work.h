@@ -27,4 +27,8 @@ auto result_of_long(const nanobind::object& callback, Work&& work) {
   return std::move(*result);
 }
 
+/// Stops the work of all threads, for good, and returns when they have stopped: to be called when
+/// the interpreter is about to end. Must be called with Python's lock held.
+void end_long_work();
+
 }  // namespace lightwell::python

@@ -1,5 +1,9 @@
 #include "python/binding/module.h"
 
+#include <memory>
+
+#include "python/binding/long_work.h"
+
 #include "scene/parallel.h"
 
 namespace nb = nanobind;
@@ -36,5 +40,9 @@ NB_MODULE(_lightwell, module) {
       .def("enter", &Threads::enter)
       .def("exit", &Threads::exit);
   module.def("thread_count", &lightwell::thread_count);
-  module.attr("__version__") = LIGHTWELL_VERSION;
+  module.attr("version") = LIGHTWELL_VERSION;
+  nb::module_::import_("atexit").attr("register")(nb::cpp_function(end_long_work));
+#ifdef NDEBUG
+  nb::set_leak_warnings(false);  // daemon threads keep what they work on until the process ends
+#endif
 }

@@ -63,9 +63,9 @@ BandArray rgb_of(Image image, const Bands& bands) {
   return rgb;
 }
 
-nb::object render_camera(const SharedSolution& solution, Camera camera, std::optional<int> width,
-                         std::optional<int> height, const PictureSettings& settings,
-                         const nb::object& progress) {
+ArrayOut render_camera(const SharedSolution& solution, Camera camera, std::optional<int> width,
+                       std::optional<int> height, const PictureSettings& settings,
+                       const nb::object& progress) {
   const SceneData& scene = solution->its_scene("a picture");
   if (width && height) {
     set_picture_size(whole_number("width", *width, 1, max_picture_edge),
@@ -100,7 +100,7 @@ std::vector<std::uint8_t> tones(const PictureIn& picture, double exposure_ev) {
   return tone_map(image_from(picture), rgb_bands(), {.exposure_ev = exposure_ev});
 }
 
-nb::object tone_mapped(const PictureIn& picture, double exposure_ev) {
+ArrayOut tone_mapped(const PictureIn& picture, double exposure_ev) {
   return owned(tones(picture, exposure_ev), {picture.shape(0), picture.shape(1), 3});
 }
 

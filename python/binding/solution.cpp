@@ -40,19 +40,19 @@ const SolutionData& data_of(const Handle& self) {
   return nb::cast<const SolutionData&>(self);
 }
 
-nb::object view_of_bands(const BandArray& values, const Handle& self) {
-  return nb::cast(view_of(
-      values.data(),
-      {static_cast<std::size_t>(values.rows()), static_cast<std::size_t>(values.cols())}, self));
+ArrayOut view_of_bands(const BandArray& values, const Handle& self) {
+  return view_of(values.data(),
+                 {static_cast<std::size_t>(values.rows()), static_cast<std::size_t>(values.cols())},
+                 self);
 }
 
 template <class Scalar>
-nb::object view_of_list(const Scalar* data, std::size_t count, const Handle& self) {
+ArrayOut view_of_list(const Scalar* data, std::size_t count, const Handle& self) {
   return view_of(data, {count}, self);
 }
 
 // Values per vertex as lx.
-nb::object lux_of(const Bands& bands, const BandArray& E) {
+ArrayOut lux_of(const Bands& bands, const BandArray& E) {
   std::vector<double> lux(static_cast<std::size_t>(E.rows()));
   for (std::size_t v = 0; v < lux.size(); ++v) {
     lux[v] = luminous(bands, E.row(static_cast<Eigen::Index>(v)).transpose());
@@ -95,8 +95,8 @@ std::vector<Probe> probes_from(const PointsIn& points, const PointsIn& normals) 
   return probes;
 }
 
-nb::object probe(const SharedSolution& solution, const PointsIn& points, const PointsIn& normals,
-                 int rays, const nb::object& progress) {
+ArrayOut probe(const SharedSolution& solution, const PointsIn& points, const PointsIn& normals,
+               int rays, const nb::object& progress) {
   const std::vector<Probe> probes = probes_from(points, normals);
   power_of_two("rays", rays);
   const SceneData& scene = solution->its_scene("a gather at points");
@@ -108,9 +108,9 @@ nb::object probe(const SharedSolution& solution, const PointsIn& points, const P
   }));
 }
 
-nb::object probe_with_bounds(const SharedSolution& solution, const PointsIn& points,
-                             const PointsIn& normals, double accuracy, int rays,
-                             const nb::object& progress) {
+nb::tuple probe_with_bounds(const SharedSolution& solution, const PointsIn& points,
+                            const PointsIn& normals, double accuracy, int rays,
+                            const nb::object& progress) {
   const std::vector<Probe> probes = probes_from(points, normals);
   power_of_two("rays", rays);
   const SceneData& scene = solution->its_scene("a gather at points");
@@ -121,14 +121,14 @@ nb::object probe_with_bounds(const SharedSolution& solution, const PointsIn& poi
                             DirectLight(scene.clean, solved.mesh), solved.solution, probes,
                             {.rays = rays, .run = {.progress = run}}, &bounds);
   });
-  const nb::object lux = lux_of(solution->solved.solution.bands, E);
+  const ArrayOut lux = lux_of(solution->solved.solution.bands, E);
   const std::size_t count = probes.size();
   return nb::make_tuple(owned_bands(std::move(E)), lux,
                         owned(std::move(bounds.lux_within), {count}));
 }
 
-nb::object interpolate(const SharedSolution& solution, const PointsIn& points,
-                       const PointsIn& normals) {
+ArrayOut interpolate(const SharedSolution& solution, const PointsIn& points,
+                     const PointsIn& normals) {
   const std::vector<Probe> probes = probes_from(points, normals);
   return owned_bands(result_of_long(nb::none(), [&](const Progress&) {
     const SolvedScene& solved = solution->solved;

@@ -18,7 +18,8 @@ Several may run at once in several threads. Results have the same bits for any n
 
 from ._errors import Error, InputError, Interrupted  # isort: skip  (the compiled module needs it)
 from ._form_factors import FormFactors, form_factors
-from ._lightwell import __version__, thread_count
+from ._lightwell import thread_count
+from ._lightwell import version as __version__
 from ._pictures import tone_map, write_picture
 from ._scene import Camera, Material, Scene, read
 from ._solution import Readings, Solution, load, solve

@@ -56,7 +56,7 @@ class FormFactors:
     def matrix(self) -> Any:
         """scipy.sparse.csr_array, (n, n) float32: F_ij in row i and column j. Needs scipy."""
         if self._matrix is None:
-            from scipy.sparse import csr_array
+            from scipy.sparse import csr_array  # type: ignore
 
             n = len(self.areas)
             self._matrix = csr_array(self._arrays, shape=(n, n))

@@ -202,7 +202,7 @@ class Scene:
 
     def to_trimesh(self) -> Any:
         """The triangles as a `trimesh.Trimesh`; face attribute `surface`. Needs trimesh."""
-        import trimesh
+        import trimesh  # type: ignore
 
         mesh = trimesh.Trimesh(self.vertices, self.faces, process=False)
         mesh.face_attributes["surface"] = self.surface
@@ -210,7 +210,7 @@ class Scene:
 
     def to_pyvista(self) -> Any:
         """The triangles as a `pyvista.PolyData`; cell data `surface`. Needs pyvista."""
-        import pyvista
+        import pyvista  # type: ignore
 
         faces = np.column_stack([np.full(len(self.faces), 3), self.faces])
         mesh = pyvista.PolyData(np.array(self.vertices), faces.reshape(-1))

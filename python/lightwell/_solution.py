@@ -240,11 +240,10 @@ class Solution:
         count = whole_number("rays", rays, 1, 1 << 20)
         text = share_text(accuracy)
         wanted = 0.0 if text in ("0", "0.0") else _lightwell.share("accuracy", text)
-        return Readings(
-            *_lightwell.probe_with_bounds(
-                self._data, places, ways, wanted, count, checked_progress(progress)
-            )
+        irradiance, lux, within = _lightwell.probe_with_bounds(
+            self._data, places, ways, wanted, count, checked_progress(progress)
         )
+        return Readings(irradiance, lux, within)
 
     def lux_at(self, points: Any, normals: Any, **options: Any) -> np.ndarray:
         """Illuminance at points, (n,) float64, lx. Arguments: those of `measure`."""
@@ -291,17 +290,18 @@ class Solution:
             "noise": noise,
         }
         set_options(options, asked, shares=["noise"])
-        sizes = [
-            None if size is None else whole_number(name, size, 1, 32768)
-            for name, size in (("width", width), ("height", height))
-        ]
+        for name, size in (("width", width), ("height", height)):
+            if size is not None:
+                whole_number(name, size, 1, 32768)
         if isinstance(camera, Camera):
             view = camera._compiled()
         elif camera is None or isinstance(camera, str):
             view = _lightwell.camera_named(self._data, camera or "")
         else:
             raise InputError(f"camera is {camera!r}; give a lightwell.Camera or a camera's name")
-        return _lightwell.render(self._data, view, *sizes, options, checked_progress(progress))
+        return _lightwell.render(
+            self._data, view, width, height, options, checked_progress(progress)
+        )
 
     def relight(self, channels: Mapping[str, Union[float, str]]) -> "Solution":
         """A solution with channels of light dimmed or recoloured, without solving again.
@@ -335,7 +335,7 @@ class Solution:
 
     def to_pyvista(self) -> Any:
         """The elements as a `pyvista.PolyData`; point data irradiance, radiosity, lux. Needs pyvista."""
-        import pyvista
+        import pyvista  # type: ignore
 
         faces = np.column_stack([np.full(len(self.triangles), 3), self.triangles])
         mesh = pyvista.PolyData(np.array(self.vertices), faces.reshape(-1))

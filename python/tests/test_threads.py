@@ -84,6 +84,34 @@ class Threads(unittest.TestCase):
         thread.join()
 
 
+DAEMON = """
+import sys
+import threading
+import lightwell as lw
+
+scene = lw.read(sys.argv[1])
+is_working = threading.Event()
+
+def work():
+    lw.solve(
+        scene, max_patch_size=0.004, gather_rays=4096, progress=lambda phase, share: is_working.set()
+    )
+
+threading.Thread(target=work, daemon=True).start()
+is_working.wait()
+print("the main thread ends", flush=True)
+"""
+
+
+class DaemonThreads(unittest.TestCase):
+    def test_end_with_the_interpreter(self):
+        done = subprocess.run(
+            [sys.executable, "-c", DAEMON, CORNELL], capture_output=True, text=True, check=False
+        )
+        self.assertEqual((done.stdout, done.stderr), ("the main thread ends\n", ""))
+        self.assertEqual(done.returncode, 0)
+
+
 INTERRUPTED = """
 import sys
 import lightwell as lw
