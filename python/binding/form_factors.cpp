@@ -1,5 +1,3 @@
-#include "radiosity/form_factors/facet_view_factors.h"
-
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -12,6 +10,7 @@
 
 #include "python/binding/arrays.h"
 #include "python/binding/checked.h"
+#include "python/binding/found_form_factors.h"
 #include "python/binding/long_work.h"
 #include "python/binding/module.h"
 #include "python/binding/scene_data.h"
@@ -21,34 +20,27 @@ namespace nb = nanobind;
 namespace lightwell::python {
 namespace {
 
-/// View factors, and the notes on the facets they are of.
-struct Found {
-  FacetViewFactors factors{};
-  std::vector<std::string> notes{};
-  std::size_t facets = 0;
-};
-
 // The facets of a scene: those given, or those of its file, which is read as the command line does,
 // with materials and texture left aside.
 NumberedScene faces_of(const SceneData& scene) {
   return scene.faces ? *scene.faces : read_numbered_scene(scene.given.file, scene.references);
 }
 
-Found form_factors(const SharedScene& scene, const FacetViewFactorOptions& asked,
-                   const nb::object& progress) {
+FoundFormFactors form_factors(const SharedScene& scene, const FacetViewFactorOptions& asked,
+                              const nb::object& progress) {
   return result_of_long(progress, [&](const Progress& run) {
     const NumberedScene numbered = faces_of(*scene);
     const FacetCheck check = check_facets(numbered.scene);
     FacetViewFactorOptions options = asked;
     options.progress = run;
-    return Found{.factors = facet_view_factors(numbered, check, options),
-                 .notes = findings(numbered, check),
-                 .facets = numbered.rows.size()};
+    return FoundFormFactors{.factors = facet_view_factors(numbered, check, options),
+                            .notes = findings(numbered, check),
+                            .facets = numbered.rows.size()};
   });
 }
 
 /// Rows of sparse factors: the arrays of scipy.sparse.csr_array.
-nb::tuple csr(const Found& found) {
+nb::tuple csr(const FoundFormFactors& found) {
   const ViewFactors& F = found.factors.factors;
   std::vector<float> values;
   std::vector<std::int32_t> columns;
@@ -102,25 +94,32 @@ void add_options(nb::module_& module) {
 
 void add_form_factors(nb::module_& module) {
   add_options(module);
-  nb::class_<Found>(module, "FoundFormFactors")
+  nb::class_<FoundFormFactors>(module, "FoundFormFactors")
       .def("csr", csr)
-      .def_prop_ro("area", [](const Found& f) { return list_of(f.factors.factors.area); })
-      .def_prop_ro("open", [](const Found& f) { return list_of(f.factors.factors.open); })
-      .def_prop_ro("blocked", [](const Found& f) { return list_of(f.factors.factors.blocked); })
-      .def_prop_ro("facet", [](const Found& f) { return list_of(f.factors.rows.facet); })
-      .def_prop_ro("emittance", [](const Found& f) { return list_of(f.factors.rows.emittance); })
-      .def_prop_ro("name", [](const Found& f) { return f.factors.rows.name; })
-      .def_prop_ro("is_back", [](const Found& f) { return list_of(f.factors.rows.is_back); })
-      .def_prop_ro("notes", [](const Found& f) { return f.notes; })
-      .def_prop_ro("error", [](const Found& f) { return f.factors.error; })
-      .def_prop_ro("has_rays_alone", [](const Found& f) { return f.factors.has_rays_alone; })
-      .def_prop_ro("facets", [](const Found& f) { return f.facets; })
-      .def_prop_ro("patches", [](const Found& f) { return f.factors.mesh.patch_count(); })
-      .def_prop_ro("rays", [](const Found& f) { return f.factors.report.rays; })
+      .def_prop_ro("area",
+                   [](const FoundFormFactors& f) { return list_of(f.factors.factors.area); })
+      .def_prop_ro("open",
+                   [](const FoundFormFactors& f) { return list_of(f.factors.factors.open); })
+      .def_prop_ro("blocked",
+                   [](const FoundFormFactors& f) { return list_of(f.factors.factors.blocked); })
+      .def_prop_ro("facet", [](const FoundFormFactors& f) { return list_of(f.factors.rows.facet); })
+      .def_prop_ro("emittance",
+                   [](const FoundFormFactors& f) { return list_of(f.factors.rows.emittance); })
+      .def_prop_ro("name", [](const FoundFormFactors& f) { return f.factors.rows.name; })
+      .def_prop_ro("is_back",
+                   [](const FoundFormFactors& f) { return list_of(f.factors.rows.is_back); })
+      .def_prop_ro("notes", [](const FoundFormFactors& f) { return f.notes; })
+      .def_prop_ro("error", [](const FoundFormFactors& f) { return f.factors.error; })
+      .def_prop_ro("has_rays_alone",
+                   [](const FoundFormFactors& f) { return f.factors.has_rays_alone; })
+      .def_prop_ro("facets", [](const FoundFormFactors& f) { return f.facets; })
+      .def_prop_ro("patches",
+                   [](const FoundFormFactors& f) { return f.factors.mesh.patch_count(); })
+      .def_prop_ro("rays", [](const FoundFormFactors& f) { return f.factors.report.rays; })
       .def_prop_ro("closure_max_error",
-                   [](const Found& f) { return closure_error(f.factors.factors); })
+                   [](const FoundFormFactors& f) { return closure_error(f.factors.factors); })
       .def_prop_ro("reciprocity_max_error",
-                   [](const Found& f) { return reciprocity_error(f.factors.factors); });
+                   [](const FoundFormFactors& f) { return reciprocity_error(f.factors.factors); });
   module.def("form_factors", form_factors, nb::arg("scene"), nb::arg("options"),
              nb::arg("progress").none());
 }

@@ -36,6 +36,7 @@ struct PictureSettings {
   std::optional<int> shadow_rays{}, photons{}, gather_samples{}, virtual_lights{}, depth{};
   std::optional<int> samples{};
   std::optional<double> noise{};
+  std::optional<int> width{}, height{};  ///< the width alone keeps the camera's shape
 
   RenderOptions options() const {
     PictureQuality numbers = picture_quality(quality);
@@ -63,16 +64,18 @@ BandArray rgb_of(Image image, const Bands& bands) {
   return rgb;
 }
 
-ArrayOut render_camera(const SharedSolution& solution, Camera camera, std::optional<int> width,
-                       std::optional<int> height, const PictureSettings& settings,
-                       const nb::object& progress) {
+Camera sized(Camera camera, const PictureSettings& settings) {
+  if (!settings.width) return camera;
+  const int width = whole_number("width", *settings.width, 1, max_picture_edge);
+  if (!settings.height) return resized(camera, width);
+  set_picture_size(width, whole_number("height", *settings.height, 1, max_picture_edge), camera);
+  return camera;
+}
+
+ArrayOut render_camera(const SharedSolution& solution, const Camera& asked,
+                       const PictureSettings& settings, const nb::object& progress) {
   const SceneData& scene = solution->its_scene("a picture");
-  if (width && height) {
-    set_picture_size(whole_number("width", *width, 1, max_picture_edge),
-                     whole_number("height", *height, 1, max_picture_edge), camera);
-  } else if (width) {
-    camera = resized(camera, whole_number("width", *width, 1, max_picture_edge));
-  }
+  const Camera camera = sized(asked, settings);
   RenderOptions options = settings.options();
   BandArray rgb = result_of_long(progress, [&](const Progress& run) {
     const SolvedScene& solved = solution->solved;
@@ -151,12 +154,13 @@ void add_pictures(nb::module_& module) {
       .def_rw("virtual_lights", &PictureSettings::virtual_lights)
       .def_rw("depth", &PictureSettings::depth)
       .def_rw("samples", &PictureSettings::samples)
+      .def_rw("width", &PictureSettings::width)
+      .def_rw("height", &PictureSettings::height)
       .def_prop_rw(
           "noise", [](const PictureSettings& s) { return s.noise; },
           [](PictureSettings& s, const std::string& text) { s.noise = share("noise", text); });
   module.def("camera_named", camera_named, nb::arg("solution"), nb::arg("name"));
-  module.def("render", render_camera, nb::arg("solution"), nb::arg("camera"),
-             nb::arg("width").none(), nb::arg("height").none(), nb::arg("options"),
+  module.def("render", render_camera, nb::arg("solution"), nb::arg("camera"), nb::arg("options"),
              nb::arg("progress").none());
   module.def("tone_map", tone_mapped, nb::arg("picture"), nb::arg("exposure_ev"));
   module.def("write_picture", write_picture, nb::arg("path"), nb::arg("picture"),

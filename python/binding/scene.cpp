@@ -7,8 +7,10 @@
 #include <nanobind/stl/vector.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
+#include <cstdint>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "python/binding/arrays.h"
@@ -42,34 +44,29 @@ Numbers numbers(const Spectrum& values) {
   return {values.begin(), values.end()};
 }
 
-void make_material(Material& material, const std::string& name, const Numbers& reflectance,
-                   const Numbers& emission, const Numbers& specular, float roughness,
-                   const Numbers& transmittance, bool one_sided, bool emits_both_sides) {
-  Material made{.name = name,
-                .reflectance = spectrum("reflectance", reflectance),
-                .specular = spectrum("specular", specular),
-                .specular_roughness = roughness,
-                .emission = spectrum("emission", emission),
-                .one_sided = one_sided,
-                .emits_both_sides = emits_both_sides};
-  const Spectrum passed = spectrum("transmittance", transmittance);
-  if ((passed != 0.0f).any()) made.transmittance = passed;
-  new (&material) Material(std::move(made));
-}
-
 void add_material(nb::module_& module) {
   nb::class_<Material>(module, "Material")
-      .def("__init__", make_material, nb::arg("name"), nb::arg("reflectance"), nb::arg("emission"),
-           nb::arg("specular"), nb::arg("roughness"), nb::arg("transmittance"),
-           nb::arg("one_sided"), nb::arg("emits_both_sides"))
-      .def_prop_ro("name", [](const Material& m) { return m.name; })
-      .def_prop_ro("reflectance", [](const Material& m) { return numbers(m.reflectance); })
-      .def_prop_ro("emission", [](const Material& m) { return numbers(m.emission); })
-      .def_prop_ro("specular", [](const Material& m) { return numbers(m.specular); })
-      .def_prop_ro("roughness", &Material::gloss_roughness)
-      .def_prop_ro("transmittance", [](const Material& m) { return numbers(m.transmittance); })
-      .def_prop_ro("one_sided", [](const Material& m) { return m.one_sided; })
-      .def_prop_ro("emits_both_sides", [](const Material& m) { return m.emits_both_sides; });
+      .def(nb::init<>())
+      .def_rw("name", &Material::name)
+      .def_prop_rw(
+          "reflectance", [](const Material& m) { return numbers(m.reflectance); },
+          [](Material& m, const Numbers& v) { m.reflectance = spectrum("reflectance", v); })
+      .def_prop_rw(
+          "emission", [](const Material& m) { return numbers(m.emission); },
+          [](Material& m, const Numbers& v) { m.emission = spectrum("emission", v); })
+      .def_prop_rw(
+          "specular", [](const Material& m) { return numbers(m.specular); },
+          [](Material& m, const Numbers& v) { m.specular = spectrum("specular", v); })
+      .def_prop_rw(
+          "transmittance", [](const Material& m) { return numbers(m.transmittance); },
+          [](Material& m, const Numbers& v) {
+            const Spectrum passed = spectrum("transmittance", v);
+            m.transmittance = (passed != 0.0f).any() ? passed : Spectrum();
+          })
+      .def_prop_rw("roughness", &Material::gloss_roughness,
+                   [](Material& m, float v) { m.specular_roughness = v; })
+      .def_rw("one_sided", &Material::one_sided)
+      .def_rw("emits_both_sides", &Material::emits_both_sides);
 }
 
 Eigen::Vector3d vector_of(const char* what, const std::vector<double>& values) {
@@ -77,36 +74,42 @@ Eigen::Vector3d vector_of(const char* what, const std::vector<double>& values) {
   throw InputError(fmt::format("{} has {} coordinates; three are needed", what, values.size()));
 }
 
-// A camera from `position` towards `target`, whose picture has `up` upwards.
-void make_camera(Camera& camera, const std::string& name, const std::vector<double>& position,
-                 const std::vector<double>& target, const std::vector<double>& up,
-                 std::optional<double> fov_degrees, int width, int height,
-                 const std::string& projection) {
-  Camera made{.name = name, .position = vector_of("position", position)};
-  const Eigen::Vector3d ahead = vector_of("target", target) - made.position;
-  const Eigen::Vector3d given_up = vector_of("up", up);
-  const Eigen::Vector3d upwards = given_up - ahead * (ahead.dot(given_up) / ahead.squaredNorm());
-  if (!(ahead.norm() > 0.0) || !(upwards.norm() > parallel_sine * given_up.norm())) {
+/// A camera from a place towards a target, whose picture has `up` upwards.
+struct View {
+  std::string name{};
+  std::vector<double> position{}, target{}, up{};
+  std::optional<double> fov_degrees{};
+  int width = 512, height = 512;
+  std::string projection = "perspective";
+};
+
+Projection projection_of(const View& view) {
+  if (const auto known = projection_named(view.projection)) return *known;
+  std::string names;
+  for (const NamedProjection& each : named_projections) names += fmt::format(" {}", each.name);
+  throw InputError(fmt::format("camera '{}': there is no projection '{}'; choose from:{}",
+                               view.name, view.projection, names));
+}
+
+Camera camera_of(const View& view) {
+  Camera camera{.name = view.name, .position = vector_of("position", view.position)};
+  const Eigen::Vector3d ahead = vector_of("target", view.target) - camera.position;
+  const Eigen::Vector3d up = vector_of("up", view.up);
+  const Eigen::Vector3d upwards = up - ahead * (ahead.dot(up) / ahead.squaredNorm());
+  if (!(ahead.norm() > 0.0) || !(upwards.norm() > parallel_sine * up.norm())) {
     throw InputError(
         fmt::format("camera '{}': it looks along its direction upwards, or nowhere; "
                     "give another target, or another direction upwards",
-                    name));
+                    view.name));
   }
-  made.direction = ahead.normalized();
-  made.up = upwards.normalized();
-  const auto known = projection_named(projection);
-  if (!known) {
-    std::string names;
-    for (const NamedProjection& each : named_projections) names += fmt::format(" {}", each.name);
-    throw InputError(fmt::format("camera '{}': there is no projection '{}'; choose from:{}", name,
-                                 projection, names));
-  }
-  made.projection = *known;
-  made.fov_degrees = fov_degrees.value_or(named(*known).usual);
-  made.width = whole_number("width", width, 1, max_picture_edge);
-  made.height = whole_number("height", height, 1, max_picture_edge);
-  validate(made);
-  new (&camera) Camera(std::move(made));
+  camera.direction = ahead.normalized();
+  camera.up = upwards.normalized();
+  camera.projection = projection_of(view);
+  camera.fov_degrees = view.fov_degrees.value_or(named(camera.projection).usual);
+  camera.width = whole_number("width", view.width, 1, max_picture_edge);
+  camera.height = whole_number("height", view.height, 1, max_picture_edge);
+  validate(camera);
+  return camera;
 }
 
 std::vector<double> coordinates(const Eigen::Vector3d& v) {
@@ -114,10 +117,18 @@ std::vector<double> coordinates(const Eigen::Vector3d& v) {
 }
 
 void add_camera(nb::module_& module) {
+  nb::class_<View>(module, "View")
+      .def(nb::init<>())
+      .def_rw("name", &View::name)
+      .def_rw("position", &View::position)
+      .def_rw("target", &View::target)
+      .def_rw("up", &View::up)
+      .def_rw("fov_degrees", &View::fov_degrees)
+      .def_rw("width", &View::width)
+      .def_rw("height", &View::height)
+      .def_rw("projection", &View::projection);
+  module.def("camera_of", camera_of, nb::arg("view"));
   nb::class_<Camera>(module, "Camera")
-      .def("__init__", make_camera, nb::arg("name"), nb::arg("position"), nb::arg("target"),
-           nb::arg("up"), nb::arg("fov_degrees").none(), nb::arg("width"), nb::arg("height"),
-           nb::arg("projection"))
       .def_prop_ro("name", [](const Camera& c) { return c.name; })
       .def_prop_ro("position", [](const Camera& c) { return coordinates(c.position); })
       .def_prop_ro("direction", [](const Camera& c) { return coordinates(c.direction); })
@@ -142,34 +153,36 @@ SharedScene read(const std::filesystem::path& path, bool inside_folder,
   });
 }
 
-/// The faces of a scene as Python's arrays.
-struct Faces {
-  PointsIn vertices;
-  ListIn<std::int32_t> corners;
-  ListIn<std::int64_t> first;
-  ListIn<std::int32_t> surface;
-
-  PolygonArrays polygons() const {
-    PolygonArrays made{.vertices = points_from(vertices)};
-    made.corners.assign(corners.data(), corners.data() + corners.size());
-    made.first.assign(first.data(), first.data() + first.size());
-    made.surface.assign(surface.data(), surface.data() + surface.size());
-    return made;
-  }
+/// A scene without its faces: a name and a material for each surface.
+struct SceneParts {
+  std::string title{};
+  std::vector<std::string> names{};
+  std::vector<Material> materials{};
+  std::vector<Camera> cameras{};
 };
 
-SharedScene from_arrays(const PointsIn& vertices, const ListIn<std::int32_t>& corners,
-                        const ListIn<std::int64_t>& first, const ListIn<std::int32_t>& surface,
-                        const std::vector<std::string>& names,
-                        const std::vector<Material>& materials, const std::vector<Camera>& cameras,
-                        const std::string& title) {
-  Scene scene{.title = title, .materials = materials, .cameras = cameras};
-  for (std::size_t s = 0; s < names.size(); ++s) {
-    scene.surfaces.push_back({.name = names[s], .material = static_cast<int>(s)});
+Scene scene_without_faces(const SceneParts& parts) {
+  Scene scene{.title = parts.title, .materials = parts.materials, .cameras = parts.cameras};
+  for (const std::string& name : parts.names) {
+    scene.surfaces.push_back({.name = name, .material = static_cast<int>(scene.surfaces.size())});
   }
-  const PolygonArrays polygons = Faces{vertices, corners, first, surface}.polygons();
+  return scene;
+}
+
+template <class Scalar>
+auto entries(const ListIn<Scalar>& list) {
+  return std::span<const Scalar>(list.data(), list.size());
+}
+
+SharedScene from_arrays(const SceneParts& parts, const PointsIn& vertices,
+                        const ListIn<std::int32_t>& corners, const ListIn<std::int64_t>& first,
+                        const ListIn<std::int32_t>& surface) {
+  PolygonArrays polygons{.vertices = points_from(vertices)};
+  polygons.corners.assign(entries(corners).begin(), entries(corners).end());
+  polygons.first.assign(entries(first).begin(), entries(first).end());
+  polygons.surface.assign(entries(surface).begin(), entries(surface).end());
   return result_of_long(nb::none(), [&](const Progress&) {
-    NumberedScene faces = scene_of_polygons(std::move(scene), polygons);
+    NumberedScene faces = scene_of_polygons(scene_without_faces(parts), polygons);
     Scene given = faces.scene;
     return scene_data(std::move(given), References::anywhere, std::move(faces));
   });
@@ -195,11 +208,7 @@ std::vector<std::string> texts_of(const Items& items, const Text& text) {
   return texts;
 }
 
-}  // namespace
-
-void add_scene(nb::module_& module) {
-  add_material(module);
-  add_camera(module);
+void add_scene_data(nb::module_& module) {
   nb::class_<SceneData>(module, "SceneData")
       .def_prop_ro("file", [](const SceneData& s) { return s.given.file.string(); })
       .def_prop_ro("title", [](const SceneData& s) { return s.given.title; })
@@ -237,10 +246,23 @@ void add_scene(nb::module_& module) {
       .def_prop_ro("gives_light", [](const SceneData& s) { return gives_light(s.given); })
       .def_prop_ro("hash", [](const SceneData& s) { return scene_hash(s.clean); })
       .def("triangles", triangles);
+}
+
+}  // namespace
+
+void add_scene(nb::module_& module) {
+  add_material(module);
+  add_camera(module);
+  add_scene_data(module);
   module.def("read", read, nb::arg("path"), nb::arg("inside_folder"), nb::arg("progress").none());
-  module.def("from_arrays", from_arrays, nb::arg("vertices"), nb::arg("corners"), nb::arg("first"),
-             nb::arg("surface"), nb::arg("names"), nb::arg("materials"), nb::arg("cameras"),
-             nb::arg("title"));
+  nb::class_<SceneParts>(module, "SceneParts")
+      .def(nb::init<>())
+      .def_rw("title", &SceneParts::title)
+      .def_rw("names", &SceneParts::names)
+      .def_rw("materials", &SceneParts::materials)
+      .def_rw("cameras", &SceneParts::cameras);
+  module.def("from_arrays", from_arrays, nb::arg("parts"), nb::arg("vertices"), nb::arg("corners"),
+             nb::arg("first"), nb::arg("surface"));
 }
 
 }  // namespace lightwell::python

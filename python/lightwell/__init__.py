@@ -21,6 +21,7 @@ from ._form_factors import FormFactors, form_factors
 from ._lightwell import thread_count
 from ._lightwell import version as __version__
 from ._pictures import tone_map, write_picture
+from ._radiation import Radiation, radiation
 from ._scene import Camera, Material, Scene, read
 from ._solution import Readings, Solution, load, solve
 from ._threads import thread_limit
@@ -32,12 +33,14 @@ __all__ = [
     "InputError",
     "Interrupted",
     "Material",
+    "Radiation",
     "Readings",
     "Scene",
     "Solution",
     "__version__",
     "form_factors",
     "load",
+    "radiation",
     "read",
     "solve",
     "thread_count",

@@ -49,6 +49,7 @@ class FormFactors:
             "rays_alone": found.has_rays_alone,
         }
         """Figures by the names that `lightwell form-factors --json` has."""
+        self._found = found
         self._arrays = found.csr()
         self._matrix: Any = None
 

@@ -41,16 +41,16 @@ class Material:
     emits_both_sides: bool = False
 
     def _compiled(self) -> "_lightwell.Material":
-        return _lightwell.Material(
-            name=str(self.name),
-            reflectance=_values("reflectance", self.reflectance),
-            emission=_values("emission", self.emission),
-            specular=_values("specular", self.specular),
-            roughness=real_number("roughness", self.roughness),
-            transmittance=_values("transmittance", self.transmittance),
-            one_sided=bool(self.one_sided),
-            emits_both_sides=bool(self.emits_both_sides),
-        )
+        made = _lightwell.Material()
+        made.name = str(self.name)
+        made.reflectance = _values("reflectance", self.reflectance)
+        made.emission = _values("emission", self.emission)
+        made.specular = _values("specular", self.specular)
+        made.roughness = real_number("roughness", self.roughness)
+        made.transmittance = _values("transmittance", self.transmittance)
+        made.one_sided = bool(self.one_sided)
+        made.emits_both_sides = bool(self.emits_both_sides)
+        return made
 
 
 @dataclass(frozen=True)
@@ -70,16 +70,16 @@ class Camera:
     name: str = "camera"
 
     def _compiled(self) -> "_lightwell.Camera":
-        return _lightwell.Camera(
-            name=str(self.name),
-            position=_values("position", self.position),
-            target=_values("target", self.target),
-            up=_values("up", self.up),
-            fov_degrees=None if self.fov is None else real_number("fov", self.fov),
-            width=whole_number("width", self.width, 1, 32768),
-            height=whole_number("height", self.height, 1, 32768),
-            projection=str(self.projection),
-        )
+        view = _lightwell.View()
+        view.name = str(self.name)
+        view.position = _values("position", self.position)
+        view.target = _values("target", self.target)
+        view.up = _values("up", self.up)
+        view.fov_degrees = None if self.fov is None else real_number("fov", self.fov)
+        view.width = whole_number("width", self.width, 1, 32768)
+        view.height = whole_number("height", self.height, 1, 32768)
+        view.projection = str(self.projection)
+        return _lightwell.camera_of(view)
 
 
 def _camera(compiled: "_lightwell.Camera") -> Camera:
@@ -166,18 +166,12 @@ class Scene:
             surfaces = count if count > 1 and any(_length(x) == count for x in each) else 1
             owner = np.arange(count, dtype=np.int32) if surfaces > 1 else np.zeros(count, np.int32)
         made = _materials(surfaces, materials, reflectance, emission)
-        return cls(
-            _lightwell.from_arrays(
-                vertices=points,
-                corners=corners,
-                first=first,
-                surface=owner,
-                names=_names(surfaces, names),
-                materials=[material._compiled() for material in made],
-                cameras=[camera._compiled() for camera in cameras],
-                title=str(title),
-            )
-        )
+        parts = _lightwell.SceneParts()
+        parts.title = str(title)
+        parts.names = _names(surfaces, names)
+        parts.materials = [material._compiled() for material in made]
+        parts.cameras = [camera._compiled() for camera in cameras]
+        return cls(_lightwell.from_arrays(parts, points, corners, first, owner))
 
     @classmethod
     def from_trimesh(cls, mesh: Any, **options: Any) -> "Scene":
@@ -358,8 +352,8 @@ def _per_surface(name: str, surfaces: int, values: Any) -> List[Values]:
         return [real_number(name, values)] * surfaces
     if len(array) != surfaces:
         raise InputError(
-            f"{name} has {len(array)} entries for {surfaces} surfaces; give one for all, one for each, "
-            "or one for each of three bands"
+            f"{name} has {len(array)} entries for {surfaces} surfaces; give one for all, or one for each, "
+            "of one value or three (r, g, b)"
         )
     return [value if np.ndim(value) == 0 else tuple(value) for value in array]
 

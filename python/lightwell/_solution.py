@@ -288,20 +288,17 @@ class Solution:
             "depth": depth,
             "samples": samples,
             "noise": noise,
+            "width": width,
+            "height": height,
         }
         set_options(options, asked, shares=["noise"])
-        for name, size in (("width", width), ("height", height)):
-            if size is not None:
-                whole_number(name, size, 1, 32768)
         if isinstance(camera, Camera):
             view = camera._compiled()
         elif camera is None or isinstance(camera, str):
             view = _lightwell.camera_named(self._data, camera or "")
         else:
             raise InputError(f"camera is {camera!r}; give a lightwell.Camera or a camera's name")
-        return _lightwell.render(
-            self._data, view, width, height, options, checked_progress(progress)
-        )
+        return _lightwell.render(self._data, view, options, checked_progress(progress))
 
     def relight(self, channels: Mapping[str, Union[float, str]]) -> "Solution":
         """A solution with channels of light dimmed or recoloured, without solving again.

@@ -1,0 +1,125 @@
+"""Radiant exchange against closed forms, and its laws."""
+
+import unittest
+
+import numpy as np
+
+import lightwell as lw
+from scenes import FLOAT, box
+
+SIGMA = 5.670374419e-8
+
+# Relative error of a few products and of a small system of equations in doubles.
+ROUNDING = 1e-13
+
+
+class ClosedForms(unittest.TestCase):
+    def test_infinite_parallel_plates(self):
+        found = lw.radiation(
+            [[0, 1], [1, 0]], areas=[1, 1], emissivity=[0.8, 0.3], temperature=[600, 300]
+        )
+        expected = 1 / (1 / 0.8 + 1 / 0.3 - 1)
+        self.assertAlmostEqual(found.script_f[0, 1], expected, delta=ROUNDING)
+        heat = SIGMA * (600**4 - 300**4) * expected
+        self.assertAlmostEqual(found.heat[0], heat, delta=ROUNDING * heat)
+        self.assertAlmostEqual(found.exchange[0, 1], heat, delta=ROUNDING * heat)
+
+    def test_concentric_spheres(self):
+        # A sphere of 1 m^2 in one of 4 m^2, whose rest of light it sees itself.
+        found = lw.radiation(
+            [[0, 1], [0.25, 0.75]], areas=[1, 4], emissivity=[0.6, 0.2], temperature=[400, 300]
+        )
+        self.assertAlmostEqual(
+            found.script_f[0, 1], 1 / (1 / 0.6 + 0.25 * (1 / 0.2 - 1)), delta=ROUNDING
+        )
+
+    def test_a_box_with_adiabatic_walls(self):
+        # Floor and ceiling of a cube, and walls that give off nothing: by symmetry the walls are one
+        # surface, and the network of three surfaces gives the heat.
+        factors = lw.form_factors(lw.Scene.from_arrays(*box(), names=list("wxyzfc")))
+        found = lw.radiation(
+            factors, emissivity={**dict.fromkeys("wxyz", 0.5), "f": 0.9, "c": 0.4}, temperature={"f": 350, "c": 290}
+        )
+        F = 0.199824895698387  # of opposite faces of a cube
+        between = F + 1 / (2 / (1 - F))
+        heat = SIGMA * (350**4 - 290**4) / (0.1 / 0.9 + 1 / between + 0.6 / 0.4)
+        # View factors are float32, rounded twice; four walls of one factor each.
+        self.assertAlmostEqual(found.heat[4], heat, delta=10 * FLOAT * heat)
+        self.assertAlmostEqual(found.heat_by_surface["c"], -heat, delta=10 * FLOAT * heat)
+        self.assertLess(abs(found.heat.sum()), 1e-9 * heat)
+        # Adiabatic to the rounding of doubles, since each is an equation of its own.
+        self.assertLess(abs(found.heat[:4]).max(), 1e-9 * heat)
+
+
+class Laws(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        vertices, faces = box(high=(3, 2, 1))
+        cls.closed = lw.form_factors(lw.Scene.from_arrays(vertices, faces))
+        cls.open = lw.form_factors(lw.Scene.from_arrays(vertices, faces[:5]))
+        cls.eps = np.array([0.1, 0.3, 0.5, 0.7, 0.9, 1.0])
+
+    def test_heats_add_up_to_zero(self):
+        T = [300, 320, 340, 360, 380, np.nan]
+        found = lw.radiation(self.closed, emissivity=self.eps, temperature=T, heat=[0] * 5 + [200])
+        self.assertAlmostEqual(found.heat[5], 200, delta=1e-9)
+        scale = abs(found.heat).sum()
+        # No opening: what the rounding of view factors lets out is all that is lost.
+        self.assertAlmostEqual(found.heat.sum(), found.to_surroundings, delta=1e-12 * scale)
+        self.assertGreater(found.temperature[5], 300)
+        np.testing.assert_allclose(found.exchange.sum(axis=1), found.heat, atol=1e-11 * scale)
+        np.testing.assert_allclose(found.gebhart.sum(axis=1), 1, atol=ROUNDING)
+
+    def test_openings_lead_to_the_surroundings(self):
+        found = lw.radiation(self.open, emissivity=self.eps[:5], temperature=400, surroundings=300)
+        self.assertGreater(found.to_surroundings, 0)
+        self.assertAlmostEqual(found.heat.sum(), found.to_surroundings, delta=1e-12 * found.heat.sum())
+        # Black surfaces at one temperature: all of the opening, 6 m^2, shines at 400 K.
+        black = lw.radiation(self.open, emissivity=1.0, temperature=400, surroundings=300)
+        expected = 6 * SIGMA * (400**4 - 300**4)
+        # Shares of five rows, float32.
+        self.assertAlmostEqual(black.to_surroundings, expected, delta=10 * FLOAT * expected)
+        self.assertIn("to surroundings of 300 K", repr(black))
+
+
+class BadInput(unittest.TestCase):
+    def test_is_refused_with_a_sentence(self):
+        F = [[0, 1], [1, 0]]
+        sound = {"areas": [1, 1], "emissivity": 0.5, "temperature": 300}
+        for change, pattern in (
+            ({"areas": None}, "need areas"),
+            ({"areas": [1, 2]}, "not reciprocal"),
+            ({"areas": [1, 1, 1]}, r"\(2,\), is needed"),
+            ({"emissivity": 2}, "surface 0: its emittance is 2"),
+            ({"emissivity": [0.5, np.nan]}, "surface 1: its emittance is nan"),
+            ({"emissivity": "black"}, "elements of type"),
+            ({"emissivity": {"floor": 1}}, "by names"),
+            ({"temperature": -3}, "-3 K"),
+            ({"temperature": None}, "nothing decides"),
+            ({"heat": 5}, "give one of the two"),
+            ({"temperature": [300, np.nan], "heat": [0, -1e6]}, "colder than 0 K"),
+            ({"surroundings": np.inf}, "finite number"),
+            ({"open": [0.5, 0]}, "add up to 1.5"),
+        ):
+            with self.subTest(change), self.assertRaisesRegex(lw.InputError, pattern):
+                lw.radiation(F, **{**sound, **change})
+        for bad, pattern in (
+            ([[0, 1]], r"\(n, n\)"),
+            ([[0, 2], [2, 0]], "add up to 2"),
+            (np.zeros((0, 0)), "no surfaces"),
+            ("F.mtx", "elements of type"),
+        ):
+            with self.subTest(bad), self.assertRaisesRegex(lw.InputError, pattern):
+                lw.radiation(bad, **{**sound, "areas": [1] * len(bad) if len(bad) < 3 else 1})
+        factors = lw.form_factors(lw.Scene.from_arrays(*box(), names=list("abcdef")))
+        for options, pattern in (
+            ({"emissivity": {"a": 1}}, "surface 1: its emittance is nan"),
+            ({"emissivity": {"g": 1}}, "no surface 'g'"),
+            ({"emissivity": 1, "areas": [1] * 6}, "belong to factors in an array"),
+        ):
+            with self.subTest(options), self.assertRaisesRegex(lw.InputError, pattern):
+                lw.radiation(factors, temperature=300, **options)
+
+
+if __name__ == "__main__":
+    unittest.main()
