@@ -10,7 +10,6 @@
 #include "cli/commands.h"
 #include "cli/grid_arguments.h"
 #include "cli/interrupt.h"
-#include "cli/lighting/year_report.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
 #include "cli/steps.h"
@@ -23,6 +22,7 @@
 #include "scene/io/weather/weather_file.h"
 #include "viewer/export/start_view.h"
 #include "viewer/export/write_whole.h"
+#include "viewer/report/year_report.h"
 
 namespace lightwell {
 namespace {
@@ -92,8 +92,8 @@ Sensors sensors_of(const DaylightArguments& arguments, const Scene& scene,
                    const Eigen::Vector3d& up) {
   Sensors sensors;
   for (LuxGrid& planned :
-       arguments.grids.grids(clean_up.names ? clean_up.names->apart(scene) : scene,
-                             read_lighting_design(scene), up)) {
+       requested_grids(arguments.grids.in_metres(scene), read_lighting_design(scene).grids,
+                       clean_up.names ? clean_up.names->apart(scene) : scene, up)) {
     const LuxGrid grid = without_buried_points(caster, std::move(planned));
     sensors.add({.name = grid.name, .grid = grid, .lines = plan_lines(scene, caster, grid, {})},
                 grid.points);

@@ -5,8 +5,6 @@
 #include <charconv>
 
 #include "cli/arguments.h"
-#include "scene/errors.h"
-#include "scene/io/nearest_name.h"
 
 namespace lightwell {
 
@@ -23,23 +21,8 @@ NamedNumber named_number(const std::string& text, char mark, const char* option,
                                                  text, mark, least > 0.0 ? "above" : "from"));
 }
 
-namespace {
-
-int find_surface(const Scene& scene, const std::string& name) {
-  std::vector<std::string> names;
-  for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    if (scene.surfaces[i].name == name) return static_cast<int>(i);
-    names.push_back(scene.surfaces[i].name);
-  }
-  throw InputError(
-      fmt::format("{}: there is no surface '{}'.{} 'lightwell info {} --surfaces' lists all.",
-                  scene.file.string(), name, did_you_mean(name, names), scene.file.string()));
-}
-
-}  // namespace
-
 void GridArguments::add_to(CLI::App& command) {
-  command.add_option("--surface", surfaces, "measure on this surface; may be repeated")
+  command.add_option("--surface", request.surfaces, "measure on this surface; may be repeated")
       ->type_name("NAME")
       ->type_size(1)
       ->allow_extra_args(false);
@@ -48,7 +31,7 @@ void GridArguments::add_to(CLI::App& command) {
           "--plane",
           [this](const std::vector<std::string>& texts) {
             for (const auto& text : texts) {
-              planes.push_back(named_number(text, '@', "--plane", 0.0));
+              request.planes.push_back(named_number(text, '@', "--plane", 0.0));
             }
           },
           "measure on a plane at this height above a surface: floor@0.75; may be repeated")
@@ -56,41 +39,24 @@ void GridArguments::add_to(CLI::App& command) {
       ->type_size(1)
       ->allow_extra_args(false);
   command
-      .add_option("--margin", margin,
+      .add_option("--margin", request.margin,
                   "strip along the outline of planes that is left out (default 0.5 m)")
       ->type_name("LENGTH")
       ->check(CLI::NonNegativeNumber.description(""));  // no ":NONNEGATIVE" in --help
   command
-      .add_option("--spacing", spacing, "largest distance between points (default: by EN 12464-1)")
+      .add_option("--spacing", request.spacing,
+                  "largest distance between points (default: by EN 12464-1)")
       ->type_name("LENGTH")
       ->check(positive());
 }
 
-std::vector<LuxGrid> GridArguments::grids(const Scene& scene, const LightingDesign& design,
-                                          const Eigen::Vector3d& up) const {
-  std::vector<LuxGrid> grids;
+GridRequest GridArguments::in_metres(const Scene& scene) const {
   const double metres = scene.metres_per_unit;
-  const double greatest = spacing * metres;
-  constexpr double strip = 0.5;  // m; strip along walls that EN 12464-1 leaves out
-  const double left_out = margin ? *margin * metres : strip;
-  for (const CalculationGrid& grid : design.grids) {
-    const double usual = grid.height > 0.0 ? left_out : 0.0;
-    grids.push_back(lux_grid(scene, grid.surface, up,
-                             {.height = grid.height,
-                              .margin = grid.margin.value_or(usual),
-                              .spacing = grid.spacing > 0.0 ? grid.spacing : greatest}));
-    grids.back().name = grid.name;
-  }
-  for (const std::string& name : surfaces) {
-    grids.push_back(lux_grid(scene, find_surface(scene, name), up, {.spacing = greatest}));
-  }
-  for (const NamedNumber& plane : planes) {
-    grids.push_back(
-        lux_grid(scene, find_surface(scene, plane.name), up,
-                 {.height = plane.value * metres, .margin = left_out, .spacing = greatest}));
-    grids.back().name = fmt::format("{} + {:g} {}", plane.name, plane.value, scene.unit_name);
-  }
-  return grids;
+  GridRequest scaled = request;
+  for (NamedNumber& plane : scaled.planes) plane.value *= metres;
+  if (scaled.margin) *scaled.margin *= metres;
+  scaled.spacing *= metres;
+  return scaled;
 }
 
 }  // namespace lightwell

@@ -1,4 +1,4 @@
-#include "cli/lighting/page.h"
+#include "viewer/report/page.h"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <set>
 #include <utility>
 
-#include "cli/lighting/page_frame.h"
-#include "cli/lighting/plan_svg.h"
 #include "viewer/export/page_data.h"
+#include "viewer/report/page_frame.h"
+#include "viewer/report/plan_svg.h"
 
 namespace lightwell {
 namespace {

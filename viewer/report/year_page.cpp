@@ -4,11 +4,11 @@
 #include <iterator>
 #include <limits>
 
-#include "cli/lighting/heat_map.h"
-#include "cli/lighting/page_frame.h"
-#include "cli/lighting/plan_svg.h"
-#include "cli/lighting/year_report.h"
 #include "viewer/export/page_data.h"
+#include "viewer/report/heat_map.h"
+#include "viewer/report/page_frame.h"
+#include "viewer/report/plan_svg.h"
+#include "viewer/report/year_report.h"
 
 namespace lightwell {
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/lighting/plan_lines.h"
+#include "viewer/report/plan_lines.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "cli/lighting/figures.h"
+#include "viewer/report/figures.h"
 
 #include <fmt/format.h>
 
@@ -8,6 +8,8 @@
 
 namespace lightwell {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 // Bound of the first point that has the given illuminance; null where nothing is known.
 Json within_of(const LuxField& field, double lux) {
@@ -106,7 +108,7 @@ std::string csv_name(std::string name) {
 
 }  // namespace
 
-Json figures_json(const LightingReport& report) {
+nlohmann::ordered_json figures_json(const LightingReport& report) {
   Json surfaces = Json::array(), observers = Json::array(), lamps = Json::array();
   for (const CalculationSurface& surface : report.surfaces) {
     surfaces.push_back(surface_json(report, surface));

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "cli/lighting/plan_lines.h"
 #include "raytrace/readings/glare.h"
 #include "raytrace/readings/lux_grid.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/luminaires/luminaire_file.h"
 #include "viewer/export/appearance.h"
+#include "viewer/report/plan_lines.h"
 
 namespace lightwell {
 

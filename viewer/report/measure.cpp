@@ -1,10 +1,10 @@
-#include "cli/lighting/measure.h"
+#include "viewer/report/measure.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "cli/lighting/plan_lines.h"
 #include "radiosity/solution/relight.h"
+#include "viewer/report/plan_lines.h"
 
 namespace lightwell {
 namespace {

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/lighting/lighting_report.h"
 #include "radiosity/solve.h"
+#include "viewer/report/lighting_report.h"
 
 namespace lightwell {
 

@@ -1,4 +1,4 @@
-#include "cli/lighting/heat_map.h"
+#include "viewer/report/heat_map.h"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,10 @@
 #include <iterator>
 #include <vector>
 
-#include "cli/lighting/colour_scale.h"
 #include "raytrace/pictures/encode_png.h"
 #include "scene/io/weather/weather_file.h"
 #include "viewer/export/page_data.h"
+#include "viewer/report/colour_scale.h"
 
 namespace lightwell {
 namespace {

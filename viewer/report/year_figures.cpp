@@ -2,10 +2,12 @@
 
 #include <iterator>
 
-#include "cli/lighting/year_report.h"
+#include "viewer/report/year_report.h"
 
 namespace lightwell {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 Json room_json(const YearRoom& room) {
   const auto with_bounds = [&](double RoomMetrics::*value) {
@@ -30,7 +32,7 @@ Json room_json(const YearRoom& room) {
 
 }  // namespace
 
-Json year_json(const YearReport& report) {
+nlohmann::ordered_json year_json(const YearReport& report) {
   Json json;
   json["version"] = report.version;
   json["title"] = report.title;

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/lighting/lighting_report.h"
+#include "viewer/report/lighting_report.h"
 
 namespace lightwell {
 

@@ -1,4 +1,4 @@
-#include "cli/lighting/colour_scale.h"
+#include "viewer/report/colour_scale.h"
 
 #include <fmt/format.h>
 

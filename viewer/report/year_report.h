@@ -1,14 +1,14 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/lighting/plan_lines.h"
-#include "cli/report.h"
 #include "daylight/annual_metrics.h"
 #include "raytrace/readings/lux_grid.h"
 #include "scene/io/weather/weather_file.h"
+#include "viewer/report/plan_lines.h"
 
 namespace lightwell {
 
@@ -40,7 +40,7 @@ struct YearReport {
 };
 
 /// Measures, bounds and conventions.
-Json year_json(const YearReport& report);
+nlohmann::ordered_json year_json(const YearReport& report);
 
 /// The figures that people look for first, a line each.
 std::string year_text(const YearReport& report);

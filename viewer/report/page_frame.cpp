@@ -1,4 +1,4 @@
-#include "cli/lighting/page_frame.h"
+#include "viewer/report/page_frame.h"
 
 #include <fmt/format.h>
 

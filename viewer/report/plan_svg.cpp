@@ -1,4 +1,4 @@
-#include "cli/lighting/plan_svg.h"
+#include "viewer/report/plan_svg.h"
 
 #include <fmt/format.h>
 
@@ -9,12 +9,12 @@
 #include <iterator>
 #include <numbers>
 
-#include "cli/lighting/colour_scale.h"
 #include "raytrace/pictures/encode_png.h"
 #include "raytrace/readings/isolux_lines.h"
 #include "raytrace/readings/round_step.h"
 #include "scene/photometric_web.h"
 #include "viewer/export/page_data.h"
+#include "viewer/report/colour_scale.h"
 
 namespace lightwell {
 namespace {

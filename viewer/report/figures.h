@@ -1,14 +1,14 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
-#include "cli/lighting/lighting_report.h"
-#include "cli/report.h"
+#include "viewer/report/lighting_report.h"
 
 namespace lightwell {
 
 /// All figures of a report but the values of points.
-Json figures_json(const LightingReport& report);
+nlohmann::ordered_json figures_json(const LightingReport& report);
 
 /// Illuminance and bound of every point, and where they are apart also electric light and daylight.
 std::string points_csv(const LightingReport& report);

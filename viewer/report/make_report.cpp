@@ -1,0 +1,179 @@
+#include "viewer/report/make_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "mesh/elements/element_caster.h"
+#include "mesh/patches/mesh_bounds.h"
+#include "radiosity/direct_light/direct_light.h"
+#include "raytrace/cameras/choose_camera.h"
+#include "raytrace/pictures/encode_png.h"
+#include "raytrace/scene_renderer.h"
+#include "scene/errors.h"
+#include "scene/io/text_file.h"
+#include "viewer/export/start_view.h"
+#include "viewer/export/write_whole.h"
+#include "viewer/report/figures.h"
+#include "viewer/report/measure.h"
+#include "viewer/report/page.h"
+
+namespace lightwell {
+namespace {
+
+// One row per name of emitters and lamps. Installed power is that of the scene and its photometric
+// files (`design`); 0 if the power of one emitter of the name is unknown.
+std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
+                                     const DirectLight& direct_light,
+                                     const LightingDesign& design) {
+  std::vector<LuminaireRow> rows;
+  const auto row_of = [&](const std::string& name) -> LuminaireRow& {
+    const auto at = std::ranges::find(rows, name, &LuminaireRow::name);
+    return at != rows.end() ? *at : rows.emplace_back(LuminaireRow{.name = name});
+  };
+  std::set<std::string> partly_known;
+  std::vector<char> counted(scene.surfaces.size(), 0);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const auto s = static_cast<std::size_t>(mesh.surface[p]);
+    if (!scene.materials[static_cast<std::size_t>(scene.surfaces[s].material)].is_emitter()) {
+      continue;
+    }
+    LuminaireRow& row = row_of(scene.surfaces[s].name);
+    partly_known.insert(row.name);
+    row.count += counted[s] == 0 ? 1 : 0;
+    counted[s] = 1;
+    row.flux += mesh.area[p] * luminous(scene.bands, mesh.emission.row(p).transpose());
+  }
+  for (const FreeSource& source : direct_light.free_sources()) {
+    const auto* light = std::get_if<LampLight>(&source.shape);
+    if (!light) continue;
+    LuminaireRow& row = row_of(light->lamp.name);
+    ++row.count;
+    row.flux += total_weight(source) * luminous(scene.bands, mean_light(source));
+    const auto i = static_cast<std::size_t>(source.number);
+    const double known = i < design.watts.size() ? design.watts[i] : 0.0;
+    row.watts += known;
+    if (!(known > 0.0)) partly_known.insert(row.name);
+    const SharedLuminaireFile file = i < design.files.size() ? design.files[i] : nullptr;
+    if (row.count == 1) row.file = file;
+    if (row.file != file) row.file = nullptr;
+  }
+  for (LuminaireRow& row : rows) {
+    if (partly_known.contains(row.name)) row.watts = 0.0;
+  }
+  return rows;
+}
+
+// Replaces the installed power of the luminaires whose power is given.
+void set_watts(std::vector<LuminaireRow>& rows, const std::vector<NamedNumber>& watts,
+               const Scene& scene) {
+  for (const NamedNumber& known : watts) {
+    const auto at = std::ranges::find(rows, known.name, &LuminaireRow::name);
+    if (at == rows.end()) {
+      throw InputError(fmt::format("{}: there is no luminaire '{}', whose power is given",
+                                   scene.file.string(), known.name));
+    }
+    at->watts = at->count * known.value;
+  }
+}
+
+// The picture of the named camera, of the first one by default, with light from the solution alone.
+// Empty for a scene without cameras.
+std::optional<ReportPicture> picture_of(const ReportRequest& asked, const Scene& scene,
+                                        const SolvedScene& solved, const Progress& progress) {
+  if (!asked.has_picture || scene.cameras.empty()) return {};
+  constexpr int width = 1000;  // pixels
+  const Camera camera = resized(choose_camera(scene, asked.camera), width);
+  SceneRenderer renderer(scene, solved.mesh, solved.solution);
+  const Image image = renderer.render(
+      camera, {.pass = Pass::interpolate, .photons = 0, .run = {.progress = progress}});
+  ToneMapping tone;
+  if (const auto light = renderer.incident_light(camera)) tone.metered_scale = light->exposure;
+  return ReportPicture{
+      .camera = camera.name,
+      .width = camera.width,
+      .height = camera.height,
+      .png = encode_png(camera.width, camera.height, tone_map(image, scene.bands, tone))};
+}
+
+// Heading and provenance of a report, without measurements.
+LightingReport report_of(const ReportPlan& plan, const Scene& scene, const SolvedScene& solved) {
+  LightingReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
+                      .heading = plan.design.heading,
+                      .provenance = solved.solution.provenance,
+                      .metres_per_unit = scene.metres_per_unit,
+                      .unit_name = scene.unit_name,
+                      .maintenance_factor = plan.request.maintenance_factor,
+                      .rays = plan.request.rays,
+                      .error_estimate = solved.solution.error_estimate};
+  if (scene.sky) {
+    made.sky = scene.sky->name.empty() ? "sky" : scene.sky->name;
+    made.north = scene.sky->north;
+  }
+  return made;
+}
+
+}  // namespace
+
+ReportPlan plan_report(const Scene& scene, ReportRequest request) {
+  if (scene.relative_units) {
+    throw InputError(
+        fmt::format("{}: the scene names no unit of light, so no illuminance can be reported",
+                    scene.file.string()));
+  }
+  ReportPlan plan{.design = read_lighting_design(scene)};
+  for (const std::string& name : request.observers) plan.eyes.push_back(choose_camera(scene, name));
+  if (!request.camera.empty()) choose_camera(scene, request.camera);
+  plan.request = std::move(request);
+  return plan;
+}
+
+LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, SolvedScene& solved,
+                           const Progress& progress) {
+  const auto& [scene, names] = of;
+  LightingReport made = report_of(plan, scene, solved);
+  made.luminaires = luminaires(scene, solved.mesh, DirectLight(scene, solved.mesh), plan.design);
+  set_watts(made.luminaires, plan.request.watts, scene);
+  Measurements what;
+  what.eyes = plan.eyes;
+  what.maintenance_factor = plan.request.maintenance_factor;
+  what.gathering.rays = plan.request.rays;
+  what.luminous_heights = plan.design.luminous_height;
+  what.between = [&] { report(progress, "measure", 0.0); };
+  what.gathering.run.progress = progress;
+  // Requests name surfaces of the file, which merge_planar_regions() may have joined with others:
+  // names->apart() separates them again.
+  const ElementCaster caster(solved.mesh);
+  for (LuxGrid& grid :
+       requested_grids(plan.request.grids, plan.design.grids, names ? names->apart(scene) : scene,
+                       guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)))) {
+    what.grids.push_back(without_buried_points(caster, std::move(grid)));
+  }
+  measure(scene, solved, what, made);
+  made.picture = picture_of(plan.request, scene, solved, progress);
+  return made;
+}
+
+std::string report_json(const LightingReport& report) {
+  // Names may hold bytes that are not UTF-8.
+  using Json = nlohmann::ordered_json;
+  return figures_json(report).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_report(const std::filesystem::path& path, const LightingReport& report,
+                  const std::optional<LuxRange>& range) {
+  const std::string kind = lower_extension(path);
+  if (kind == ".html") {
+    write_whole(path, {lighting_page(report, range)});
+  } else if (kind == ".csv") {
+    write_whole(path, {points_csv(report)});
+  } else if (kind == ".json") {
+    write_whole(path, {report_json(report)});
+  } else {
+    throw InputError(fmt::format("'{}' must end in .html, .json or .csv", path.string()));
+  }
+}
+
+}  // namespace lightwell

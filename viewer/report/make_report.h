@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mesh/cleaning/joined_surfaces.h"
+#include "radiosity/solution/solution.h"
+#include "scene/progress.h"
+#include "viewer/report/lighting_report.h"
+#include "viewer/report/requested_grids.h"
+
+namespace lightwell {
+
+/// What a lighting report is asked for, besides the calculation grids of the scene file. Lengths in
+/// metres.
+struct ReportRequest {
+  GridRequest grids{};                   ///< measured on
+  std::vector<std::string> observers{};  ///< cameras for whose eyes glare is rated
+  std::vector<NamedNumber> watts{};      ///< electric power of each luminaire of the name, W, > 0
+  double maintenance_factor = 1.0;       ///< of electric light, (0,1]
+  int rays = 1024;                       ///< of the gather at each point, a power of two
+  bool has_picture = false;
+  std::string camera{};  ///< of the picture; empty: the first
+};
+
+/// A request whose names were found.
+struct ReportPlan {
+  ReportRequest request{};
+  LightingDesign design{};
+  std::vector<Camera> eyes{};  ///< of the observers
+
+  /// True if there is nothing to measure.
+  bool is_empty() const { return design.grids.empty() && request.grids.is_empty() && eyes.empty(); }
+};
+
+/// Reads the lighting design of a scene and looks names of cameras up, before anything is computed.
+/// Throws InputError for a scene without units of light, for a name that is not there, and as
+/// read_lighting_design() does.
+ReportPlan plan_report(const Scene& scene, ReportRequest request);
+
+/// A scene after merge_planar_regions(), and the surfaces that it joined; null: none.
+struct ReportedScene {
+  const Scene& scene;
+  const JoinedSurfaces* names = nullptr;
+};
+
+/// Measures what a plan asks for. `solved` is relit meanwhile, and is afterwards as before.
+/// Throws InputError for surfaces and luminaires that are not there, Interrupted when progress says
+/// stop.
+LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, SolvedScene& solved,
+                           const Progress& progress);
+
+/// All figures of a report but the values of points, as a JSON object.
+std::string report_json(const LightingReport& report);
+
+/// Writes a report: .html (one page to print), .json (all figures) or .csv (every point). `range`
+/// is the scale of the false colours of all plans. The file is written under a temporary name and
+/// renamed. Throws InputError for another extension, std::runtime_error that names the file if
+/// writing fails.
+void write_report(const std::filesystem::path& path, const LightingReport& report,
+                  const std::optional<LuxRange>& range = {});
+
+}  // namespace lightwell

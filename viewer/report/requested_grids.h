@@ -1,0 +1,38 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "raytrace/readings/lux_grid.h"
+#include "scene/io/lighting_design.h"
+
+namespace lightwell {
+
+/// A number for what has a name: a height above a surface, the power of a luminaire.
+struct NamedNumber {
+  std::string name{};
+  double value = 0.0;
+};
+
+/// Surfaces, and planes above surfaces, with a grid of points each. Lengths in metres.
+struct GridRequest {
+  std::vector<std::string> surfaces{};
+  std::vector<NamedNumber> planes{};  ///< heights above surfaces, >= 0
+  /// Strip along the outline of planes that is left out, >= 0; empty: 0.5 m, which EN 12464-1
+  /// leaves out along walls.
+  std::optional<double> margin{};
+  double spacing = 0.0;  ///< largest distance between points; 0: by EN 12464-1
+
+  bool is_empty() const { return surfaces.empty() && planes.empty(); }
+};
+
+/// The grids of a scene file, of surfaces and of planes, in this order. `scene` has the surfaces of
+/// the file by their names (see JoinedSurfaces::apart). Throws InputError for a surface that is not
+/// there, and what lux_grid() throws.
+std::vector<LuxGrid> requested_grids(const GridRequest& asked,
+                                     std::span<const CalculationGrid> of_file, const Scene& scene,
+                                     const Eigen::Vector3d& up);
+
+}  // namespace lightwell
