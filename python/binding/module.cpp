@@ -35,6 +35,7 @@ NB_MODULE(_lightwell, module) {
   add_solve(module);
   add_solution(module);
   add_pictures(module);
+  add_report(module);
   add_radiation(module);
   nb::class_<Threads>(module, "ThreadLimit")
       .def(nb::init<int>(), nb::arg("count"))

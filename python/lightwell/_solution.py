@@ -1,8 +1,9 @@
 """Solutions: the light of a scene on a mesh."""
 
+import json
 import os
 from functools import cached_property
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Union
 
 import numpy as np
 
@@ -312,6 +313,57 @@ class Solution:
         ]
         return Solution(_lightwell.relight(self._data, settings))
 
+    def report(
+        self,
+        *paths: Path,
+        surfaces: Sequence[str] = (),
+        planes: Mapping[str, float] = {},
+        observers: Sequence[str] = (),
+        watts: Mapping[str, float] = {},
+        margin: Optional[float] = None,
+        spacing: Optional[float] = None,
+        maintenance: float = 1.0,
+        rays: int = 1024,
+        camera: Optional[str] = None,
+        progress: Optional[Progress] = None,
+    ) -> Dict[str, Any]:
+        """Figures of the lighting design; also written to `paths`: .html (a page to print), .json, .csv.
+
+        surfaces: measured on, besides the [[grids]] of the scene's file.
+        planes: heights above surfaces, metres, by the name of the surface: {"floor": 0.75}.
+        observers: cameras for whose eyes glare (UGR) is rated.
+        watts: electric power of each luminaire, by its name.
+        margin: strip along the outline of planes that is left out, metres (0.5).
+        spacing: largest distance between points, metres (by EN 12464-1).
+        maintenance: maintenance factor of electric light, above 0 up to 1.
+        rays: of the gather at each point, a power of two.
+        camera: of the picture on the page (the first).
+
+        Keys: those of `lightwell report --json`; lengths there are metres or the unit they name.
+        """
+        request = _lightwell.ReportRequest()
+        request.surfaces = [str(name) for name in surfaces]
+        request.observers = [str(name) for name in observers]
+        for name, height in planes.items():
+            request.add_plane(str(name), _at_least_zero(f"the height above {name}", height))
+        for name, power in watts.items():
+            request.add_watts(str(name), real_number(f"the power of {name}", power))
+        request.margin = None if margin is None else _at_least_zero("margin", margin)
+        request.maintenance = real_number("maintenance", maintenance)
+        if not 0.0 < request.maintenance <= 1.0:
+            raise InputError(f"maintenance is {maintenance}; a factor above 0 up to 1 is needed")
+        files = [os.fspath(path) for path in paths]
+        request.has_picture = any(file.endswith(".html") for file in files)
+        request.camera = "" if camera is None else str(camera)
+        set_options(request, {"spacing": spacing, "rays": rays})
+        for file in files:
+            if os.path.splitext(file)[1] not in (".html", ".json", ".csv"):
+                raise InputError(f"'{file}' must end in .html, .json or .csv")
+        figures: Dict[str, Any] = json.loads(
+            _lightwell.report(self._data, request, files, checked_progress(progress))
+        )
+        return figures
+
     def save(self, path: Path) -> None:
         """Writes the solution (.vtp), which `load`, the command line and ParaView read."""
         if os.path.splitext(os.fspath(path))[1] != ".vtp":
@@ -424,6 +476,13 @@ def load(path: Path, scene: Optional[Scene] = None) -> Solution:
     if scene is not None and not isinstance(scene, Scene):
         raise InputError(f"scene is {scene!r}; give a lightwell.Scene")
     return Solution(_lightwell.load(os.fspath(path), None if scene is None else scene._data))
+
+
+def _at_least_zero(name: str, value: Any) -> float:
+    number = real_number(name, value)
+    if number < 0.0:
+        raise InputError(f"{name} is {number:g}; a number of 0 or more is needed")
+    return number
 
 
 def _refuse_contradictions(asked: Mapping[str, Any]) -> None:

@@ -1,0 +1,55 @@
+"""Lighting reports: the figures of the command line."""
+
+import json
+import os
+import unittest
+
+import lightwell as lw
+from scenes import ROOM, run_program, scratch
+
+
+class Report(unittest.TestCase):
+    def test_has_the_figures_of_the_command_line(self):
+        folder = scratch(self)
+        vtp, theirs, csv = (os.path.join(folder, name) for name in ("r.vtp", "r.json", "r.csv"))
+        scene = lw.read(ROOM)
+        solution = lw.solve(scene, refine="off", gather_rays=64)
+        solution.save(vtp)
+        run_program(
+            "report", ROOM, vtp, "--plane", "floor@0.75", "--surface", "chest", "--observer", "door",
+            "--watts", "panel=40", "--maintenance", "0.8", "--rays", "64", "-o", theirs, "-o", csv,
+        )
+        ours = [os.path.join(folder, name) for name in ("o.json", "o.csv", "o.html")]
+        figures = solution.report(
+            *ours, planes={"floor": 0.75}, surfaces=["chest"], observers=["door"], watts={"panel": 40},
+            maintenance=0.8, rays=64,
+        )
+        with open(theirs, encoding="utf-8") as file:
+            self.assertEqual(figures, json.load(file))
+        for one, other in ((theirs, ours[0]), (csv, ours[1])):
+            with open(one, "rb") as a, open(other, "rb") as b:
+                self.assertEqual(a.read(), b.read())
+        self.assertGreater(os.path.getsize(ours[2]), 10000)
+
+    def test_refuses_what_is_not_there(self):
+        solution = lw.solve(lw.read(ROOM), refine="off", gather_rays=16)
+        for options, pattern in (
+            ({}, "nothing to report"),
+            ({"surfaces": ["flor"]}, "Did you mean 'floor'"),
+            ({"planes": {"floor": -1}}, "height above floor is -1"),
+            ({"observers": ["window"]}, "no camera 'window'"),
+            ({"surfaces": ["floor"], "watts": {"sun": 5}}, "no luminaire 'sun'"),
+            ({"surfaces": ["floor"], "watts": {"panel": 0}}, "watts is 0"),
+            ({"surfaces": ["floor"], "maintenance": 2}, "maintenance is 2"),
+            ({"surfaces": ["floor"], "rays": 3}, "power of two"),
+            ({"surfaces": ["floor"], "spacing": 0}, "spacing is 0"),
+            ({"surfaces": ["floor"], "margin": -1}, "margin is -1"),
+        ):
+            with self.subTest(options), self.assertRaisesRegex(lw.InputError, pattern):
+                solution.report(**options)
+        with self.assertRaisesRegex(lw.InputError, "must end in .html"):
+            solution.report("r.pdf", surfaces=["floor"])
+
+
+if __name__ == "__main__":
+    unittest.main()
