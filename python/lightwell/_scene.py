@@ -131,7 +131,7 @@ class Scene:
         materials: Union[Material, Sequence[Material], None] = None,
         reflectance: Any = None,
         emission: Any = None,
-        cameras: Sequence[Camera] = (),
+        cameras: Union[Camera, Sequence[Camera]] = (),
         title: str = "",
     ) -> "Scene":
         """A scene of polygons.
@@ -161,6 +161,12 @@ class Scene:
             if len(owner) != count:
                 raise InputError(f"surface has {len(owner)} entries for {count} faces; give one each")
             surfaces = int(owner.max()) + 1 if count else 0
+            most = max(count, *(_length(x) for x in (names, materials, reflectance, emission)))
+            if surfaces > most:
+                raise InputError(
+                    f"surface has the number {surfaces - 1}, but {count} faces make {count} surfaces at "
+                    "most; number them from 0"
+                )
         else:
             each = [names, materials, reflectance, emission]
             surfaces = count if count > 1 and any(_length(x) == count for x in each) else 1
@@ -170,7 +176,10 @@ class Scene:
         parts.title = str(title)
         parts.names = _names(surfaces, names)
         parts.materials = [material._compiled() for material in made]
-        parts.cameras = [camera._compiled() for camera in cameras]
+        views = [cameras] if isinstance(cameras, Camera) else list(cameras)
+        if not all(isinstance(view, Camera) for view in views):
+            raise InputError("cameras must be a list of lightwell.Camera")
+        parts.cameras = [view._compiled() for view in views]
         return cls(_lightwell.from_arrays(parts, points, corners, first, owner))
 
     @classmethod

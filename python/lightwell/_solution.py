@@ -307,6 +307,10 @@ class Solution:
         channels: by the name of a channel, or a pattern such as "row*": a factor (0.3), "off", "on", a
             colour ("#ffd9b0") or both ("0.3,#ffd9b0"), relative to the scene as solved.
         """
+        if not isinstance(channels, Mapping):
+            raise InputError(
+                f"channels is {channels!r}; give settings by the name of a channel, such as {{'desk': 0.3}}"
+            )
         settings = [
             (str(name), value if isinstance(value, str) else repr(real_number(str(name), value)))
             for name, value in channels.items()

@@ -63,6 +63,8 @@ class BadInput(unittest.TestCase):
         for options, pattern in (
             ({"surface": [0, 1]}, "2 entries for 6 faces"),
             ({"surface": [0, 0, 0, 0, 0, -1]}, "is of surface -1"),
+            ({"surface": [0, 0, 0, 0, 0, 10**9]}, "number 1000000000, but 6 faces"),
+            ({"cameras": ["door"]}, "list of lightwell.Camera"),
             ({"surface": [0.0] * 6}, "integers are needed"),
             ({"names": ["a", "b"]}, "2 entries for 1 surfaces"),
             ({"reflectance": 1.5}, "between 0 and 1|above 1|\\[0"),
@@ -164,6 +166,7 @@ class BadInput(unittest.TestCase):
             ([[1, 1, 1]], ["up"], "elements of type"),
         ):
             self.assert_refused(pattern, solution.probe, points, normals)
+        self.assert_refused("by the name of a channel", solution.relight, "panel")
         self.assert_refused("rays is 100", solution.probe, [[1, 1, 1]], [0, 0, 1], rays=100)
         self.assert_refused("", solution.probe, [[9, 9, 9]], [0, 0, 1], interpolate=True)
         self.assert_refused("no camera", solution.render)
