@@ -6,7 +6,7 @@ import numpy as np
 
 from . import _lightwell
 from ._arrays import checked_progress, set_options
-from ._errors import InputError
+from ._errors import Error, InputError
 from ._scene import Progress, Scene
 
 
@@ -57,7 +57,12 @@ class FormFactors:
     def matrix(self) -> Any:
         """scipy.sparse.csr_array, (n, n) float32: F_ij in row i and column j. Needs scipy."""
         if self._matrix is None:
-            from scipy.sparse import csr_array  # type: ignore
+            try:
+                from scipy.sparse import csr_array  # type: ignore
+            except ImportError:
+                raise Error(
+                    "the matrix of view factors needs SciPy 1.8, which is not installed: pip install scipy"
+                ) from None
 
             n = len(self.areas)
             self._matrix = csr_array(self._arrays, shape=(n, n))

@@ -32,6 +32,24 @@ class Progress(unittest.TestCase):
         with self.assertRaises(lw.Interrupted):
             lw.solve(lw.read(CORNELL), **LONG, progress=lambda phase, share: False)
 
+    def test_false_stops_every_long_call(self):
+        def stop(phase, share):
+            return False
+
+        scene = lw.read(CORNELL)
+        solution = lw.solve(scene, refine="off", gather_rays=16)
+        points = [[0.2 + 1e-5 * k, 0.3, 0.2] for k in range(2000)]
+        with self.assertRaises(lw.Interrupted):
+            lw.form_factors(scene, max_patch_size=0.01, progress=stop)
+        with self.assertRaises(lw.Interrupted):
+            solution.render(width=2048, pass_="gather", quality="final", progress=stop)
+        with self.assertRaises(lw.Interrupted):
+            solution.probe(points, [0, 0, 1], rays=16384, progress=stop)
+        with self.assertRaises(lw.Interrupted):
+            solution.measure(points, [0, 0, 1], rays=16384, progress=stop)
+        with self.assertRaises(lw.Interrupted):
+            solution.report(surfaces=["floor"], rays=16384, spacing=0.01, progress=stop)
+
     def test_none_and_zero_go_on(self):
         lw.solve(lit_room(), refine="off", gather_rays=16, progress=lambda phase, share: 0)
 
