@@ -23,7 +23,8 @@ from ._lightwell import version as __version__
 from ._pictures import tone_map, write_picture
 from ._radiation import Radiation, radiation
 from ._scene import Camera, Material, Scene, read
-from ._solution import Readings, Solution, load, solve
+from ._solution import Readings, Solution
+from ._solve import load, solve
 from ._threads import thread_limit
 
 __all__ = [

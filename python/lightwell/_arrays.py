@@ -108,6 +108,14 @@ def real_number(name: str, value: Any) -> float:
     return number
 
 
+def at_least_zero(name: str, value: Any) -> float:
+    """A finite number of 0 or more."""
+    number = real_number(name, value)
+    if number < 0.0:
+        raise InputError(f"{name} is {number:g}; a number of 0 or more is needed")
+    return number
+
+
 def share_text(value: Any) -> str:
     """A share as the library reads it: 0.01 as "0.01"; text as it is."""
     return value if isinstance(value, str) else repr(float(value))

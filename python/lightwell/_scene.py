@@ -156,21 +156,8 @@ class Scene:
         points = points_of("vertices", vertices)
         corners, first = faces_of(faces)
         count = len(first) - 1
-        if surface is not None:
-            owner = integers_of("surface", surface)
-            if len(owner) != count:
-                raise InputError(f"surface has {len(owner)} entries for {count} faces; give one each")
-            surfaces = int(owner.max()) + 1 if count else 0
-            most = max(count, *(_length(x) for x in (names, materials, reflectance, emission)))
-            if surfaces > most:
-                raise InputError(
-                    f"surface has the number {surfaces - 1}, but {count} faces make {count} surfaces at "
-                    "most; number them from 0"
-                )
-        else:
-            each = [names, materials, reflectance, emission]
-            surfaces = count if count > 1 and any(_length(x) == count for x in each) else 1
-            owner = np.arange(count, dtype=np.int32) if surfaces > 1 else np.zeros(count, np.int32)
+        each = (names, materials, reflectance, emission)
+        owner, surfaces = _owners(surface, count, max(_length(values) for values in each))
         made = _materials(surfaces, materials, reflectance, emission)
         parts = _lightwell.SceneParts()
         parts.title = str(title)
@@ -338,6 +325,23 @@ def read(
             + "\n  ".join(scene.losses)
         )
     return scene
+
+
+def _owners(surface: Any, faces: int, given: int) -> Tuple[np.ndarray, int]:
+    """The surface of each face, and the number of surfaces; `given`: most values of any argument."""
+    if surface is None:
+        surfaces = faces if faces > 1 and given == faces else 1
+        return np.arange(faces, dtype=np.int32) if surfaces > 1 else np.zeros(faces, np.int32), surfaces
+    owner = integers_of("surface", surface)
+    if len(owner) != faces:
+        raise InputError(f"surface has {len(owner)} entries for {faces} faces; give one each")
+    surfaces = int(owner.max()) + 1 if faces else 0
+    if surfaces > max(faces, given):
+        raise InputError(
+            f"surface has the number {surfaces - 1}, but {faces} faces make {faces} surfaces at most; "
+            "number them from 0"
+        )
+    return owner, surfaces
 
 
 def _length(values: Any) -> int:

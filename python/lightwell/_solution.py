@@ -9,6 +9,7 @@ import numpy as np
 
 from . import _lightwell
 from ._arrays import (
+    at_least_zero,
     checked_progress,
     directions_of,
     points_of,
@@ -349,10 +350,10 @@ class Solution:
         request.surfaces = [str(name) for name in surfaces]
         request.observers = [str(name) for name in observers]
         for name, height in planes.items():
-            request.add_plane(str(name), _at_least_zero(f"the height above {name}", height))
+            request.add_plane(str(name), at_least_zero(f"the height above {name}", height))
         for name, power in watts.items():
             request.add_watts(str(name), real_number(f"the power of {name}", power))
-        request.margin = None if margin is None else _at_least_zero("margin", margin)
+        request.margin = None if margin is None else at_least_zero("margin", margin)
         request.maintenance = real_number("maintenance", maintenance)
         if not 0.0 < request.maintenance <= 1.0:
             raise InputError(f"maintenance is {maintenance}; a factor above 0 up to 1 is needed")
@@ -402,119 +403,3 @@ class Solution:
         if self.channels:
             parts.append(f"channels {', '.join(self.channels)}")
         return f"<lightwell.Solution: {', '.join(parts)}>"
-
-
-def solve(
-    scene: Scene,
-    *,
-    accuracy: Union[float, str, None] = None,
-    seconds: Optional[float] = None,
-    max_patch_size: Optional[float] = None,
-    max_element_size: Optional[float] = None,
-    elements_per_patch_edge: Optional[int] = None,
-    discontinuity: bool = False,
-    form_factors: str = "auto",
-    hemicube_resolution: Optional[int] = None,
-    solver: str = "auto",
-    rays: Optional[int] = None,
-    refine: Union[float, str, None] = None,
-    max_elements: Optional[int] = None,
-    gather_rays: Optional[int] = None,
-    tolerance: Optional[float] = None,
-    max_sweeps: Optional[int] = None,
-    channels: Union[str, Mapping[str, str]] = "kinds",
-    memory: Optional[float] = None,
-    start_from: Optional[Solution] = None,
-    progress: Optional[Progress] = None,
-) -> Solution:
-    """Meshes a scene and solves for the light on its surfaces, as `lightwell solve` does.
-
-    accuracy: target of the estimated error: a share of the mean irradiance (0.01 or "1%"), or "5lx".
-    seconds: the best solution within this time.
-    max_patch_size, max_element_size: longest edges, metres (about 1600 patches; half a patch).
-    elements_per_patch_edge: 1 to 64 (2).
-    discontinuity: cut receivers along the bounds of shadows.
-    form_factors: "auto", "ray-cast", "hemicube" or "analytic".
-    solver: "auto", "gauss-seidel", "jacobi", "sor", "southwell", "cg", "bicgstab", "gmres" or
-        "progressive".
-    rays, gather_rays: powers of two: of each patch (512), of each vertex (1024 or fewer).
-    refine: error of interpolation at which elements are no longer split (0.7 %), or "off".
-    tolerance, max_sweeps: of the solver (1e-5, 500).
-    channels: light that is kept apart for `Solution.relight`: "kinds", "per-luminaire", "off", or
-        patterns of emitters by channel, {"desk": "desk lamp*"}.
-    memory: most bytes of the process; rows beyond it go to a file in the working folder.
-    start_from: a solution of the same geometry whose light the solver starts from.
-    progress: called with the phase and the share done; False stops the work.
-
-    With the same options the arrays have the same bits as those of the command line's solution.
-    Ctrl-C raises KeyboardInterrupt within about a second; then there is no solution.
-
-    Raises InputError, e.g. for a scene without light, and Interrupted after False.
-    """
-    asked = {name: value for name, value in locals().items() if name not in ("scene", "progress")}
-    if not isinstance(scene, Scene):
-        raise InputError(f"scene is {scene!r}; give a lightwell.Scene")
-    _refuse_contradictions(asked)
-    options = _lightwell.SolveOptions()
-    options.text = _options_text(asked)
-    del asked["channels"], asked["start_from"]
-    set_options(options, asked, shares=["accuracy", "refine"])
-    _set_channels(options, channels)
-    if solver not in _lightwell.solver_names():
-        names = ", ".join(_lightwell.solver_names())
-        raise InputError(f"there is no solver '{solver}'; choose from: {names}")
-    if start_from is not None:
-        if not isinstance(start_from, Solution):
-            raise InputError(f"start_from is {start_from!r}; give a lightwell.Solution")
-        options.start = start_from._data
-    return Solution(_lightwell.solve(scene._data, options, checked_progress(progress)))
-
-
-def load(path: Path, scene: Optional[Scene] = None) -> Solution:
-    """Reads a solution (.vtp), made here or by the command line.
-
-    scene: its scene, which pictures, gathers at points and models with names need.
-
-    Raises InputError for a file that is no solution, is damaged, or is of another scene.
-    """
-    if scene is not None and not isinstance(scene, Scene):
-        raise InputError(f"scene is {scene!r}; give a lightwell.Scene")
-    return Solution(_lightwell.load(os.fspath(path), None if scene is None else scene._data))
-
-
-def _at_least_zero(name: str, value: Any) -> float:
-    number = real_number(name, value)
-    if number < 0.0:
-        raise InputError(f"{name} is {number:g}; a number of 0 or more is needed")
-    return number
-
-
-def _refuse_contradictions(asked: Mapping[str, Any]) -> None:
-    for decides in ("accuracy", "seconds"):
-        if asked[decides] is None:
-            continue
-        for other in ("gather_rays", "refine"):
-            if asked[other] is not None and asked[other] != "off":
-                raise InputError(f"{decides} decides over {other}; give only one of the two")
-    if asked["max_element_size"] is not None and asked["elements_per_patch_edge"] is not None:
-        raise InputError(
-            "max_element_size and elements_per_patch_edge contradict each other; give only one of them"
-        )
-
-
-def _options_text(asked: Mapping[str, Any]) -> str:
-    said = {name: value for name, value in asked.items() if value is not None and name != "start_from"}
-    return f"lightwell.solve(scene, {', '.join(f'{name}={value!r}' for name, value in said.items())})"
-
-
-def _set_channels(options: "_lightwell.SolveOptions", channels: Any) -> None:
-    if isinstance(channels, Mapping):
-        for name, pattern in channels.items():
-            options.add_channel(str(name), str(pattern))
-    elif channels in ("kinds", "per-luminaire", "off"):
-        options.channels = channels
-    else:
-        raise InputError(
-            f"channels is {channels!r}; give 'kinds', 'per-luminaire', 'off', or patterns of emitters by "
-            "channel, such as {'desk': 'desk lamp*'}"
-        )
