@@ -42,11 +42,15 @@ std::string report(const SharedSolution& solution, const ReportRequest& request,
 void add_report(nb::module_& module) {
   nb::class_<ReportRequest>(module, "ReportRequest")
       .def(nb::init<>())
-      .def_rw("surfaces", &ReportRequest::surfaces)
+      .def_prop_rw(
+          "surfaces", [](const ReportRequest& r) { return r.grids.surfaces; },
+          [](ReportRequest& r, std::vector<std::string> names) {
+            r.grids.surfaces = std::move(names);
+          })
       .def_rw("observers", &ReportRequest::observers)
       .def("add_plane",
            [](ReportRequest& r, const std::string& name, double height) {
-             r.planes.push_back({name, height});
+             r.grids.planes.push_back({name, height});
            })
       .def("add_watts",
            [](ReportRequest& r, const std::string& name, double watts) {
@@ -54,8 +58,8 @@ void add_report(nb::module_& module) {
            })
       .def_rw("margin", &ReportRequest::margin)
       .def_prop_rw(
-          "spacing", [](const ReportRequest& r) { return r.spacing; },
-          [](ReportRequest& r, double v) { r.spacing = positive("spacing", v); })
+          "spacing", [](const ReportRequest& r) { return r.grids.spacing; },
+          [](ReportRequest& r, double v) { r.grids.spacing = positive("spacing", v); })
       .def_rw("maintenance", &ReportRequest::maintenance_factor)
       .def_prop_rw(
           "rays", [](const ReportRequest& r) { return r.rays; },
