@@ -56,7 +56,9 @@ void add_report(nb::module_& module) {
            [](ReportRequest& r, const std::string& name, double watts) {
              r.watts.push_back({name, positive("watts", watts)});
            })
-      .def_rw("margin", &ReportRequest::margin)
+      .def_prop_rw(
+          "margin", [](const ReportRequest& r) { return r.grids.margin; },
+          [](ReportRequest& r, std::optional<double> v) { r.grids.margin = v; })
       .def_prop_rw(
           "spacing", [](const ReportRequest& r) { return r.grids.spacing; },
           [](ReportRequest& r, double v) { r.grids.spacing = positive("spacing", v); })
