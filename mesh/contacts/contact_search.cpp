@@ -261,16 +261,17 @@ std::vector<FlatLine> ContactGraph::contact_lines(int index) const {
 // Adds the lines where gaps begin that are narrow against an element. Only facets that are wide
 // enough to cover a gap are compared, of which there are few however finely a scene is divided.
 void ContactGraph::add_gap_lines() {
-  constexpr double narrow = 0.1, least_width = 0.2;  // shares of an element
+  constexpr double narrow = 0.1, least_width = 0.2, least_length = 1.0;  // in elements
   const double element = size_.element_size();
   const GapLimits limits{.narrowest = 2.0 * welded_.tolerance(),
                          .widest = narrow * element,
-                         .least_width = least_width * element};
+                         .least_width = least_width * element,
+                         .least_length = least_length * element};
   if (!(limits.widest > limits.narrowest)) return;
   std::vector<int> wide;
   std::vector<BoxTree::Box> boxes;
   for (std::size_t i = 0; i < planes_.size(); ++i) {
-    if (!covers_gaps(planes_[i], limits)) continue;
+    if (!(widest_covered(planes_[i], limits) > limits.narrowest)) continue;
     wide.push_back(static_cast<int>(i));
     const Vector3d d = Vector3d::Constant(0.5 * limits.widest);
     boxes.emplace_back(planes_[i].box.min() - d, planes_[i].box.max() + d);

@@ -66,13 +66,19 @@ std::vector<double> crossings(const FacetPlane& on, const Vector2d& p, const Vec
 
 }  // namespace
 
-bool covers_gaps(const FacetPlane& facet, const GapLimits& limits) {
-  return 2.0 * facet.area() >= limits.least_width * facet.boundary_length();
+double widest_covered(const FacetPlane& facet, const GapLimits& limits) {
+  const double boundary = facet.boundary_length(), area = facet.area();
+  if (2.0 * area >= limits.least_width * boundary) return limits.widest;
+  constexpr double of_a_strip = 1.0 / 3.0;
+  if (!(0.5 * boundary >= limits.least_length)) return 0.0;
+  return std::min(limits.widest, of_a_strip * 2.0 * area / boundary);
 }
 
 std::vector<ContactSegment> gap_lines(const FacetPlane& on, const FacetPlane& over,
-                                      const GapLimits& limits) {
+                                      const GapLimits& of_all) {
   constexpr double facing = 0.5;  // cosine of 60 degrees
+  GapLimits limits = of_all;
+  limits.widest = widest_covered(over, of_all);
   if (std::abs(on.normal.dot(over.normal)) < facing) return {};
   const double side = on.height(over.box.center()) < 0.0 ? -1.0 : 1.0;
   std::vector<ContactSegment> segments;

@@ -17,14 +17,19 @@ using Eigen::Vector3d;
 
 constexpr double patch = 0.2;  // m; elements are half as long
 
-/// A floor of 2 m x 2 m, and a plate of 0.5 m x 0.4 m at a height above its middle, turned about
-/// the vertical.
-Scene floor_and_plate(double height, double turn, double scale = 1.0) {
+/// Half-axes of a plate.
+struct Half {
+  double x = 0.25, y = 0.2;
+};
+
+/// A floor of 2 m x 2 m, and a plate at a height above its middle, turned about the vertical.
+Scene floor_and_plate(double height, double turn, double scale = 1.0, Half half = {}) {
   Scene scene = empty_scene();
   add_polygon(scene, "floor", {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
   const double c = std::cos(turn), s = std::sin(turn);
   std::vector<Vector3d> plate;
-  for (const auto& [x, y] : {std::pair(-0.25, -0.2), {-0.25, 0.2}, {0.25, 0.2}, {0.25, -0.2}}) {
+  for (const auto& [x, y] :
+       {std::pair(-half.x, -half.y), {-half.x, half.y}, {half.x, half.y}, {half.x, -half.y}}) {
     plate.push_back({1.0 + c * x - s * y, 1.0 + s * x + c * y, height});
   }
   add_polygon(scene, "plate", plate);
@@ -36,12 +41,12 @@ Scene floor_and_plate(double height, double turn, double scale = 1.0) {
 
 /// Area of the floor's elements under the plate, m^2. Fails if a vertex of the floor belongs both
 /// to an element under the plate and to another one, or if an element straddles the outline.
-double area_under_plate(const PatchMesh& mesh, double turn, double scale = 1.0) {
+double area_under_plate(const PatchMesh& mesh, double turn, double scale = 1.0, Half half = {}) {
   const double c = std::cos(turn), s = std::sin(turn);
   const auto depth = [&](const Vector3d& p) {
     const Vector3d q = p / scale - Vector3d(1, 1, 0);
     const double x = c * q.x() + s * q.y(), y = c * q.y() - s * q.x();
-    return std::min(0.25 - std::abs(x), 0.2 - std::abs(y));
+    return std::min(half.x - std::abs(x), half.y - std::abs(y));
   };
   double area = 0.0;
   std::map<int, std::set<bool>> sides_of_vertex;
@@ -67,6 +72,26 @@ TEST(GapLines, FloorIsCutUnderAPlateThatHovers) {
           build_patches(floor_and_plate(height, turn), {.max_patch_size = patch});
       EXPECT_NEAR(area_under_plate(mesh, turn), 0.2, 1e-9) << height << " m, turned by " << turn;
     }
+  }
+}
+
+// The lower edge of a door, 40 mm thick, is narrower than a fifth of an element of 0.25 m. A patch
+// must not reach from one side of the door to the other.
+TEST(GapLines, FloorIsCutUnderADoor) {
+  constexpr Half door{.x = 0.45, .y = 0.02};
+  for (const double height : {0.0005, 0.002, 0.009}) {
+    const PatchMesh mesh =
+        build_patches(floor_and_plate(height, 0.7, 1.0, door), {.max_patch_size = 0.5});
+    EXPECT_NEAR(area_under_plate(mesh, 0.7, 1.0, door), 4.0 * door.x * door.y, 1e-9) << height;
+  }
+  // Below a strip shorter than an element, such as the foot of a chair, and below one less than
+  // three times as wide as the gap, the floor is not cut.
+  const auto count = [&](double height, const Half& half) {
+    return build_patches(floor_and_plate(height, 0.7, 1.0, half), {.max_patch_size = 0.5})
+        .element_count();
+  };
+  for (const auto& half : {Half{.x = 0.1, .y = 0.02}, Half{.x = 0.45, .y = 0.004}}) {
+    EXPECT_EQ(count(0.009, half), count(0.5, half)) << half.x;
   }
 }
 
