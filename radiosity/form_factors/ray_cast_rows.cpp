@@ -208,16 +208,17 @@ void RowCaster::aim_at_portals(int patch, int rays, const Portals::View& view, S
   for (int i = 0; i < count; ++i) {
     const Eigen::Array4d u = aims_.point(i, key).cast<double>();
     const PatchPoint from = sampler.point(u[0], u[1]);
-    const Ray ray{
-        .origin = from.position,
-        .direction = portals_->draw(view, from.position, SobolPoints::fifth(i, key), u[2], u[3]),
-        .origin_group = mesh.facet[from.element]};
+    const Portals::Aim aim =
+        portals_->draw(view, from.position, SobolPoints::fifth(i, key), u[2], u[3]);
+    const Ray ray{.origin = from.position,
+                  .direction = aim.direction,
+                  .origin_group = mesh.facet[from.element]};
     const double cosine = ray.direction.dot(from.normal);
     if (!(cosine > 0.0)) continue;
     ElementHit hit;
     caster_.closest_elements({&ray, 1}, {&hit, 1});
     const double aimed = density(view, ray, hit);
-    if (!(aimed > 0.0)) continue;
+    if (!(aimed > 0.0) || !portals_->passes(aim, from.position, hit.t)) continue;
     const double by_cosine = rays * cosine * std::numbers::inv_pi;
     add_weight(hit, by_cosine / (by_cosine + count * aimed), scratch, row);
   }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/random_purpose.h"
@@ -42,22 +43,10 @@ Ray scattered(const SurfacePoint& at, std::uint64_t key) {
           .origin_group = at.facet};
 }
 
-// The share of rays from a surface that is drawn among exits. Light of surfaces that reflect much
-// goes on inside the gap for longer.
-float share_to_exits(float reflectance) {
+// The share of rays from a surface that is aimed. Light of surfaces that reflect much goes on
+// inside the gap for longer.
+float share_aimed(float reflectance) {
   return std::clamp(1.0f - reflectance, 0.2f, 0.5f);
-}
-
-// Draws a share of the rays among the exits instead; returns the weight of the ray.
-double draw_among_exits(const GapExits& exits, double share, const SurfacePoint& at,
-                        std::uint64_t key, Ray& ray) {
-  const auto number = [&](std::uint64_t i) { return random_uniform(random_key(key, i)); };
-  if (number(4) < share) {
-    ray.direction = exits.draw(at.normal, number(5), number(6), number(7));
-  }
-  const double by_cosine = ray.direction.dot(at.normal) * std::numbers::inv_pi;
-  if (!(by_cosine > 0.0)) return 0.0;
-  return by_cosine / ((1.0 - share) * by_cosine + share * exits.density(at.normal, ray.direction));
 }
 
 }  // namespace
@@ -209,11 +198,39 @@ std::optional<GapExits> GapLight::exits(const ElementCaster& caster, const Surfa
   });
 }
 
+// Draws the next ray of a path from a surface, and finds its end. A `share` of the rays is aimed:
+// at exits or at the portals of `view`. Returns the ray's weight; 0: it counts for nothing.
+double GapLight::next_ray(const ElementCaster& caster, const GapAims& aims,
+                          const Portals::View& view, double share, Stop& stop) const {
+  const Eigen::Vector3d& from = stop.at.position;
+  const auto number = [&](std::uint64_t i) { return random_uniform(random_key(stop.key, i)); };
+  stop.ray = scattered(stop.at, stop.key);
+  const bool is_aimed = share > 0.0 && number(4) < share;
+  Portals::Aim at_portal;
+  if (is_aimed && aims.exits) {
+    stop.ray.direction = aims.exits->draw(stop.at.normal, number(5), number(6), number(7));
+  } else if (is_aimed) {
+    at_portal = aims.portals->draw(view, from, number(5), number(6), number(7));
+    stop.ray.direction = at_portal.direction;
+  }
+  const double by_cosine = stop.ray.direction.dot(stop.at.normal) * std::numbers::inv_pi;
+  if (!(by_cosine > 0.0)) return 0.0;
+  caster.closest_hits({&stop.ray, 1}, {&stop.hit, 1});
+  if (stop.hit.facet < 0) return 0.0;
+  if (at_portal.portal >= 0 && !aims.portals->passes(at_portal, from, stop.hit.t)) return 0.0;
+  if (!(share > 0.0)) return 1.0;
+  const double aimed = aims.exits
+                           ? aims.exits->density(stop.at.normal, stop.ray.direction)
+                           : aims.portals->density(view, from, stop.ray.direction, stop.hit.t);
+  return by_cosine / ((1.0 - share) * by_cosine + share * aimed);
+}
+
 void GapLight::follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                      std::uint64_t key, const GapExits* exits,
+                      std::uint64_t key, const GapAims& aims,
                       const std::function<void(const Stop&)>& at_surface,
                       const std::function<void(const Stop&)>& at_end) const {
   const PatchMesh& mesh = lit_.mesh();
+  const GapExits* const exits = aims.exits;
   Stop stop{.ray = ray, .hit = hit, .share = Spectrum::Ones(lit_.scene.bands.count())};
   for (int bounce = 0; bounce < most_bounces; ++bounce) {
     stop.key = random_key(key, RandomPurpose::gap_rays, static_cast<std::uint64_t>(bounce));
@@ -221,22 +238,19 @@ void GapLight::follow(const ElementCaster& caster, const Ray& ray, const Element
     stop.at = {.position = stop.ray.origin + stop.hit.t * stop.ray.direction,
                .normal = normal,
                .facet = stop.hit.facet};
+    Portals::View view;
+    if (aims.portals && !exits) view = aims.portals->view(stop.at.position, normal, 1);
     // Paths end by chance (Arvo & Kirk 1990), at once or after as many bounces as light makes. The
-    // rays that are not drawn among exits weigh more, and more paths go on instead.
+    // rays that are not aimed weigh more, and more paths go on instead.
     const auto rho = mesh.reflectance.row(mesh.patch[stop.hit.element]);
-    const float to_exits = exits ? share_to_exits(rho.maxCoeff()) : 0.0f;
-    const float survival = std::min(1.0f, rho.maxCoeff() / (1.0f - to_exits));
+    const float aimed = exits || !view.is_empty() ? share_aimed(rho.maxCoeff()) : 0.0f;
+    const float survival = std::min(1.0f, rho.maxCoeff() / (1.0f - aimed));
     if (random_uniform(random_key(stop.key, 3)) >= static_cast<double>(survival)) return;
     stop.share *= rho.transpose() / survival;
     at_surface(stop);
-    stop.ray = scattered(stop.at, stop.key);
-    if (exits) {
-      const double weight = draw_among_exits(*exits, double{to_exits}, stop.at, stop.key, stop.ray);
-      if (!(weight > 0.0)) return;
-      stop.share *= static_cast<float>(weight);
-    }
-    caster.closest_hits({&stop.ray, 1}, {&stop.hit, 1});
-    if (stop.hit.facet < 0) return;
+    const double weight = next_ray(caster, aims, view, double{aimed}, stop);
+    if (!(weight > 0.0)) return;
+    stop.share *= static_cast<float>(weight);
     if (bounce + 1 < most_bounces && stays_in(caster, exits, normal, stop.ray, stop.hit)) continue;
     at_end(stop);
     return;
@@ -244,9 +258,9 @@ void GapLight::follow(const ElementCaster& caster, const Ray& ray, const Element
 }
 
 void GapLight::add(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                   std::uint64_t key, Eigen::ArrayXd& sum, const GapExits* exits) const {
+                   std::uint64_t key, Eigen::ArrayXd& sum, const GapAims& aims) const {
   follow(
-      caster, ray, hit, key, exits,
+      caster, ray, hit, key, aims,
       [&](const Stop& stop) {
         const LightQuery query{
             .at = stop.at, .key = stop.key, .shadows = shadows, .one_stands_for_all = true};
@@ -272,26 +286,17 @@ void GapLight::add_near_portal(const ElementCaster& caster, const Portals& porta
   const Spectrum rho = mesh.reflectance.row(mesh.patch[first_hit.element]).transpose();
   add_direct(caster, {.at = at, .key = portal_key, .shadows = shadows, .one_stands_for_all = true},
              rho, sum);
-  // One ray of two kinds, each with the same chance; weights as of the balance heuristic.
   const Portals::View view = portals.view(at.position, at.normal, 1);
-  const auto number = [&](std::uint64_t i) { return random_uniform(random_key(portal_key, i)); };
-  const bool is_aimed = !view.is_empty() && number(4) < 0.5;
-  Ray ray = scattered(at, portal_key);
-  if (is_aimed) {
-    ray.direction = portals.draw(view, at.position, number(5), number(6), number(7));
-  }
-  const double by_cosine = ray.direction.dot(at.normal) * std::numbers::inv_pi;
-  if (!(by_cosine > 0.0)) return;
-  ElementHit hit;
-  caster.closest_hits({&ray, 1}, {&hit, 1});
-  const double aimed =
-      view.is_empty() ? 0.0 : portals.density(view, at.position, ray.direction, hit.t);
-  if (hit.facet < 0 || (is_aimed && !(aimed > 0.0))) return;
-  const double weight = view.is_empty() ? 1.0 : by_cosine / (0.5 * (by_cosine + aimed));
+  const GapAims aims{.portals = &portals};
+  Stop stop{.at = at, .key = portal_key};
+  const double weight = next_ray(caster, aims, view, view.is_empty() ? 0.0 : 0.5, stop);
+  if (!(weight > 0.0)) return;
+  const auto& [ray, hit] = std::tie(stop.ray, stop.hit);
+  const bool passes = portals.density(view, at.position, ray.direction, hit.t) > 0.0;
   const Spectrum share = static_cast<float>(weight) * rho;
-  if (is_gap(at.normal, ray, hit) || (aimed > 0.0 && is_narrow(caster, ray, hit))) {
+  if (is_gap(at.normal, ray, hit) || (passes && is_narrow(caster, ray, hit))) {
     Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
-    add(caster, ray, hit, portal_key, found);
+    add(caster, ray, hit, portal_key, found, aims);
     for (Eigen::Index k = 0; k < sum.size(); k += rho.size()) {
       sum.segment(k, rho.size()) += share.cast<double>() * found.segment(k, rho.size());
     }

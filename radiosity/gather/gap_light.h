@@ -23,6 +23,12 @@ namespace lightwell {
 GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex, double inset,
                            const GatherPoint& point);
 
+/// Aims of the rays of paths in a gap, beside cosine-distributed ones.
+struct GapAims {
+  const GapExits* exits = nullptr;   ///< of the point that the path begins at; null: not known
+  const Portals* portals = nullptr;  ///< null: none are to be aimed at
+};
+
 /// Light that gathers find in gaps. Between two surfaces that face each other, such as a desk and
 /// the foot of a monitor, light falls off within about the width of the gap. Elements that are much
 /// larger than the gap cannot hold this light: their vertices stand in the open, and their
@@ -73,16 +79,15 @@ class GapLight {
   /// path. Calls `at_surface` on each surface, with the share that its irradiance has, and `at_end`
   /// at the end of the last ray, unless the path ends before or meets nothing.
   ///
-  /// With `exits`, those of the point that the ray begins at, some of the rays are drawn among
-  /// these, weighed by the balance heuristic.
+  /// Some of the rays are aimed as `aims` says, weighed by the balance heuristic.
   void follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
-              const GapExits* exits, const std::function<void(const Stop&)>& at_surface,
+              const GapAims& aims, const std::function<void(const Stop&)>& at_surface,
               const std::function<void(const Stop&)>& at_end) const;
 
   /// Adds the radiosity B at the end of a ray in a gap to the columns of `sum`. `key` decides the
   /// further rays. `caster` is that of the scene or its ElementCaster::at().
   void add(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
-           Eigen::ArrayXd& sum, const GapExits* exits = nullptr) const;
+           Eigen::ArrayXd& sum, const GapAims& aims) const;
 
   /// True if a ray ends on a surface that reflects, so near a portal that its element does not show
   /// how light varies there (see Portals::is_near).
@@ -96,6 +101,8 @@ class GapLight {
  private:
   void add_direct(const ElementCaster& caster, const LightQuery& query, const Spectrum& share,
                   Eigen::ArrayXd& sum) const;
+  double next_ray(const ElementCaster& caster, const GapAims& aims, const Portals::View& view,
+                  double share, Stop& stop) const;
   void add_end(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                std::uint64_t key, const Spectrum& share, Eigen::ArrayXd& sum) const;
   bool is_closed_end(const ElementCaster& caster, const Eigen::Vector3d& across, double width,

@@ -130,40 +130,50 @@ void HemisphereGather::aim_at_bright(const Place& place, Sums& sum) const {
   }
 }
 
-// Adds rays towards portals. Each counts whatever it finds, if it passes a portal.
+// Adds rays towards portals. Each counts whatever it finds, if it passes its portal.
 void HemisphereGather::aim_at_portals(const Place& place, Sums& sum) const {
-  const auto direction = [&](const Eigen::Array4d& u) {
-    return options_.portals->draw(place.portals, place.at.position, u[0], u[1], u[2]);
-  };
-  aim(place, portal_aims_.at(place.rays), random_key(place.key, RandomPurpose::gather_portals),
-      place.rays, direction, sum);
+  const Portals& portals = *options_.portals;
+  const Eigen::Vector3d& from = place.at.position;
+  aim(
+      place, portal_aims_.at(place.rays), random_key(place.key, RandomPurpose::gather_portals),
+      place.rays,
+      [&](const Eigen::Array4d& u) { return portals.draw(place.portals, from, u[0], u[1], u[2]); },
+      [&](const Portals::Aim& aim, double distance) { return portals.passes(aim, from, distance); },
+      sum);
 }
 
 // Adds rays towards the exits of a gap. Each counts whatever it finds.
 void HemisphereGather::aim_at_exits(const Place& place, Sums& sum) const {
-  const auto direction = [&](const Eigen::Array4d& u) {
-    return place.exits->draw(place.at.normal, u[0], u[1], u[2]);
+  struct Aim {
+    Eigen::Vector3d direction;
   };
-  aim(place, SobolPoints(GapExits::aimed(place.rays)),
-      random_key(place.key, RandomPurpose::gap_rays, exit_aims), 2 * place.rays, direction, sum);
+  aim(
+      place, SobolPoints(GapExits::aimed(place.rays)),
+      random_key(place.key, RandomPurpose::gap_rays, exit_aims), 2 * place.rays,
+      [&](const Eigen::Array4d& u) {
+        return Aim{place.exits->draw(place.at.normal, u[0], u[1], u[2])};
+      },
+      [](const Aim&, double) { return true; }, sum);
 }
 
-// Adds aimed rays, whose `direction` four random numbers give; they are numbered from `first_index`
-// on.
-template <class Direction>
+// Adds aimed rays, which `draw` makes of four random numbers, and which are numbered from
+// `first_index` on. `counts` decides by a ray's aim and length.
+template <class Draw, class Counts>
 void HemisphereGather::aim(const Place& place, const SobolPoints& aims, std::uint64_t key,
-                           int first_index, Direction direction, Sums& sum) const {
+                           int first_index, Draw draw, Counts counts, Sums& sum) const {
   const GatherPoint& at = place.at;
   std::array<Ray, gather_batch> ray;
   std::array<ElementHit, gather_batch> hit;
+  std::array<decltype(draw(Eigen::Array4d())), gather_batch> drawn;
   for (int begin = 0; begin < aims.count(); begin += gather_batch) {
     const auto n = static_cast<std::size_t>(std::min(gather_batch, aims.count() - begin));
     for (std::size_t r = 0; r < n; ++r) {
-      const Eigen::Array4d u = aims.point(begin + static_cast<int>(r), key).cast<double>();
-      ray[r] = {.origin = at.position, .direction = direction(u), .origin_group = at.facet};
+      drawn[r] = draw(aims.point(begin + static_cast<int>(r), key).template cast<double>());
+      ray[r] = {.origin = at.position, .direction = drawn[r].direction, .origin_group = at.facet};
     }
     caster_.closest_hits({ray.data(), n}, {hit.data(), n});
     for (std::size_t r = 0; r < n; ++r) {
+      if (!counts(drawn[r], hit[r].t)) continue;
       const double density = aimed_density(place, ray[r], hit[r]);
       if (!(density > 0.0) || !(at.normal.dot(ray[r].direction) > 0.0)) continue;
       const std::size_t index = static_cast<std::size_t>(begin) + r;
@@ -210,13 +220,14 @@ void HemisphereGather::add(const Place& place, const Ray& ray, const ElementHit&
 
 void HemisphereGather::add_of_gap(const Place& place, const Ray& ray, const ElementHit& hit,
                                   std::uint64_t key, double share, Eigen::ArrayXd& sum) const {
-  const GapExits* const exits = place.exits ? &*place.exits : nullptr;
+  const GapAims aims{.exits = place.exits ? &*place.exits : nullptr,
+                     .portals = place.portals.is_empty() ? nullptr : options_.portals.get()};
   if (share == 1.0) {
-    gaps_.add(caster_, ray, hit, key, sum, exits);
+    gaps_.add(caster_, ray, hit, key, sum, aims);
     return;
   }
   Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
-  gaps_.add(caster_, ray, hit, key, found, exits);
+  gaps_.add(caster_, ray, hit, key, found, aims);
   sum += share * found;
 }
 

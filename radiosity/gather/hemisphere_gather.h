@@ -50,9 +50,9 @@ class HemisphereGather {
 
   void aim_at_exits(const Place& place, Sums& sum) const;
 
-  template <class Direction>
+  template <class Draw, class Counts>
   void aim(const Place& place, const SobolPoints& aims, std::uint64_t key, int first_index,
-           Direction direction, Sums& sum) const;
+           Draw draw, Counts counts, Sums& sum) const;
 
   void add(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
            double aimed, Eigen::ArrayXd& sum) const;

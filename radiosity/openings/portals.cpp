@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "scene/parallel.h"
@@ -32,10 +33,13 @@ class Sights {
   Sights(const ElementCaster& caster, const std::vector<float>& brightness)
       : caster_(caster), brightness_(brightness) {}
 
-  // Adds paths begin to end - 1 from points of the opening towards its front (`side` 0) or back.
+  static constexpr int most_paths = 128;
+
+  // Adds paths begin to end - 1 from points of the opening towards its front (`side` 0) or back,
+  // and more of them until one has come out on that side: few paths get through a deep passage.
   void look(const Opening& opening, std::uint64_t key, int side, int begin, int end,
             Sight& sight) const {
-    for (int i = begin; i < end; ++i) {
+    for (int i = begin; i < end || (sight.paths == 0 && i < most_paths); ++i) {
       const std::uint64_t path =
           random_key(key, RandomPurpose::portal_paths, static_cast<std::uint64_t>(2 * i + side));
       follow(opening, path, side == 0 ? opening.normal : Vector3d(-opening.normal), sight);
@@ -43,9 +47,10 @@ class Sights {
   }
 
  private:
-  // A path leaves the passage behind an opening when a ray is longer than so many widths.
-  static constexpr double long_ray = 5.0;
-  static constexpr int most_rays = 24;
+  // A path leaves the passage behind an opening when a ray is longer than so many widths and ends
+  // where no other surface is nearer than so many.
+  static constexpr double long_ray = 5.0, passage = 2.0;
+  static constexpr int most_rays = 96;
 
   static double number(std::uint64_t path, int i) {
     return random_uniform(random_key(path, static_cast<std::uint64_t>(i)));
@@ -58,9 +63,30 @@ class Sights {
     return d.x() * x + d.y() * y + d.z() * normal;
   }
 
+  // A ray along a passage: the logarithm of tan is even over two decades, since of
+  // cosine-distributed rays one in (length / width)^2 gets to the end of a passage.
+  static Vector3d along_passage(const Vector3d& normal, std::uint64_t path, int i) {
+    constexpr double ln_100 = 4.6;
+    Vector3d x, y;
+    tangent_frame(normal, x, y);
+    const double tan = std::exp(ln_100 * number(path, i)),
+                 turn = 2.0 * std::numbers::pi * number(path, i + 1);
+    return (tan * (std::cos(turn) * x + std::sin(turn) * y) + normal).normalized();
+  }
+
+  // True if another surface is near before the point at which a ray ended, whose normal is
+  // `normal`.
+  bool is_in_passage(const Vector3d& at, const Vector3d& normal, int facet, double width) const {
+    const Ray across{
+        .origin = at, .direction = normal, .t_max = passage * width, .origin_group = facet};
+    std::uint8_t is_near = 0;
+    caster_.occluded({&across, 1}, {&is_near, 1});
+    return is_near != 0;
+  }
+
   void follow(const Opening& opening, std::uint64_t path, const Vector3d& outwards,
               Sight& sight) const {
-    const double far = long_ray * 2.0 * opening.across.norm();
+    const double width = 2.0 * opening.across.norm(), far = long_ray * width;
     Ray ray{.origin = opening.center + (2.0 * number(path, 0) - 1.0) * opening.along +
                       (2.0 * number(path, 1) - 1.0) * opening.across,
             .direction = scattered(outwards, path, 2)};
@@ -74,7 +100,11 @@ class Sights {
       const Vector3d at = ray.origin + hit.t * ray.direction;
       // A path that came back out of the passage says nothing about this side.
       if ((at - opening.center).dot(outwards) < 0.0) return;
-      if (hit.t > far || hit.element < 0) {
+      Vector3d normal = hit.element >= 0 ? element_center(caster_.mesh(), hit.element).normal
+                                         : Vector3d(-ray.direction);
+      if (normal.dot(ray.direction) > 0.0) normal = -normal;
+      const bool goes_on = hit.t > far && is_in_passage(at, normal, hit.facet, width);
+      if ((hit.t > far && !goes_on) || hit.element < 0) {
         ++sight.paths;
         sight.region.extend(at);
         sight.distance += (at - opening.center).norm();
@@ -85,10 +115,11 @@ class Sights {
         }
         return;
       }
-      Vector3d normal = element_center(caster_.mesh(), hit.element).normal;
-      if (normal.dot(ray.direction) > 0.0) normal = -normal;
+      const int next = 2 * i + 4;
       ray = {
-          .origin = at, .direction = scattered(normal, path, 2 * i + 4), .origin_group = hit.facet};
+          .origin = at,
+          .direction = goes_on ? along_passage(normal, path, next) : scattered(normal, path, next),
+          .origin_group = hit.facet};
     }
   }
 
@@ -112,7 +143,7 @@ bool has_contrast(const std::array<Sight, 2>& sight, double least) {
 
 Portals::Portals(const ElementCaster& caster, const std::vector<float>& brightness,
                  const std::vector<Opening>& openings) {
-  constexpr int few = 8, many = 128;
+  constexpr int few = 8, many = Sights::most_paths;
   const Sights sights(caster, brightness);
   std::vector<std::array<Sight, 2>> seen(openings.size());
   parallel_for(static_cast<int>(openings.size()), 4, [&](int begin, int end) {
@@ -121,7 +152,8 @@ Portals::Portals(const ElementCaster& caster, const std::vector<float>& brightne
       const auto key = static_cast<std::uint64_t>(i);
       const Opening& opening = openings[static_cast<std::size_t>(i)];
       for (const int side : {0, 1}) sights.look(opening, key, side, 0, few, sight[side]);
-      if (!has_contrast(sight, 0.25 * least_contrast)) continue;
+      const bool is_dark = !(sight[0].brightness + sight[1].brightness > 0.0);
+      if (!is_dark && !has_contrast(sight, 0.25 * least_contrast)) continue;
       for (const int side : {0, 1}) sights.look(opening, key, side, few, many, sight[side]);
     }
   });
@@ -205,14 +237,32 @@ Portals::View Portals::view_both_ways(const Vector3d& from, const Vector3d& norm
   return view_of(from, normal, rays, [](const Portal&, int) { return 1.0; });
 }
 
-Vector3d Portals::draw(const View& view, const Vector3d& from, double which, double u,
-                       double v) const {
+Portals::Aim Portals::draw(const View& view, const Vector3d& from, double which, double u,
+                           double v) const {
   const auto& entries = view.entries_;
   const auto found = std::upper_bound(entries.begin(), entries.end() - 1, which,
                                       [](double x, const View::Entry& e) { return x < e.up_to; });
   const Opening& shape = portals_[static_cast<std::size_t>(found->portal)].shape;
   const Vector3d at = shape.center + (2.0 * u - 1.0) * shape.along + (2.0 * v - 1.0) * shape.across;
-  return (at - from).normalized();
+  return {(at - from).normalized(), found->portal};
+}
+
+// Where a ray passes a portal, metres from its origin; infinite if it does not.
+double Portals::distance_to(const Portal& portal, const Vector3d& from, const Vector3d& direction) {
+  constexpr double never = std::numeric_limits<double>::infinity();
+  const Vector3d to = portal.shape.center - from;
+  const double cosine = direction.dot(portal.shape.normal), height = to.dot(portal.shape.normal);
+  if (!(cosine * height > 0.0)) return never;
+  const double t = height / cosine;
+  const Vector3d at = t * direction - to;
+  const bool is_beside =
+      std::abs(at.dot(portal.along)) > 1.0 || std::abs(at.dot(portal.across)) > 1.0;
+  return is_beside ? never : t;
+}
+
+bool Portals::passes(const Aim& aim, const Vector3d& from, double distance) const {
+  return distance_to(portals_[static_cast<std::size_t>(aim.portal)], from, aim.direction) <=
+         distance;
 }
 
 double Portals::density(const View& view, const Vector3d& from, const Vector3d& direction,
@@ -224,14 +274,10 @@ double Portals::density(const View& view, const Vector3d& from, const Vector3d& 
     const double chance = up_to - before;
     before = up_to;
     const Portal& portal = portals_[static_cast<std::size_t>(number)];
-    const Vector3d to = portal.shape.center - from;
-    const double cosine = direction.dot(portal.shape.normal), height = to.dot(portal.shape.normal);
-    if (!(cosine * height > 0.0)) continue;
-    const double t = height / cosine;
-    if (t > distance) continue;
-    const Vector3d at = t * direction - to;
-    if (std::abs(at.dot(portal.along)) > 1.0 || std::abs(at.dot(portal.across)) > 1.0) continue;
-    sum += chance * t * t / (portal.area * std::max(std::abs(cosine), grazing));
+    const double t = distance_to(portal, from, direction);
+    if (!(t <= distance)) continue;
+    const double cosine = std::abs(direction.dot(portal.shape.normal));
+    sum += chance * t * t / (portal.area * std::max(cosine, grazing));
   }
   return sum;
 }

@@ -56,13 +56,19 @@ class Portals {
   /// of a portal is proportional to its approximate form factor.
   View view_both_ways(const Eigen::Vector3d& from, const Eigen::Vector3d& normal, int rays) const;
 
-  /// Unit direction to a point of a portal, from a point near that of the view. `which`, u and v
-  /// are random numbers in [0,1). The view must not be empty.
-  Eigen::Vector3d draw(const View& view, const Eigen::Vector3d& from, double which, double u,
-                       double v) const;
-  /// Probability density of draw()'s directions, 1/sr, for a ray that ends `distance` metres away:
-  /// of the portals that it passes before. 0 if it passes none; rays that were aimed at a portal
-  /// and end before it do not count.
+  /// A direction to a point of a portal.
+  struct Aim {
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit
+    int portal = -1;
+  };
+  /// Draws a direction, from a point near that of the view. `which`, u and v are random numbers in
+  /// [0,1). The view must not be empty.
+  Aim draw(const View& view, const Eigen::Vector3d& from, double which, double u, double v) const;
+  /// True if an aimed ray that ends `distance` metres away passes its portal before. Others do not
+  /// count, even if they pass further portals on their way: density() is that of rays that do.
+  bool passes(const Aim& aim, const Eigen::Vector3d& from, double distance) const;
+  /// Probability density, 1/sr, of draw()'s directions, for a ray that ends `distance` metres away:
+  /// of the portals that it passes before. 0 if it passes none.
   double density(const View& view, const Eigen::Vector3d& from, const Eigen::Vector3d& direction,
                  double distance) const;
 
@@ -86,6 +92,8 @@ class Portals {
     std::array<char, 2> is_dim{};                 // the side is the dim one
     std::array<Eigen::AlignedBox3d, 2> region{};  // what the portal sees on each side
   };
+  static double distance_to(const Portal& portal, const Eigen::Vector3d& from,
+                            const Eigen::Vector3d& direction);
   template <class Weight>
   View view_of(const Eigen::Vector3d& from, const Eigen::Vector3d& normal, int rays,
                Weight weight) const;

@@ -106,7 +106,7 @@ class ReadErrors {
     }
     double sum = gap && !gap->is_closed() ? 0.0 : missed_[mesh_.patch[hit.element]];
     gaps_.follow(
-        caster_, ray, hit, key, gap, [](const GapLight::Stop&) {},
+        caster_, ray, hit, key, {.exits = gap}, [](const GapLight::Stop&) {},
         [&](const GapLight::Stop& stop) {
           sum += end(stop.ray, stop.hit, double{stop.share.mean()}, stop.key);
         });

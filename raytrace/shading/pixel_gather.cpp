@@ -147,20 +147,19 @@ void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
   }
 }
 
-// Adds light by rays aimed at portals, of those that pass a portal.
+// Adds light by rays aimed at portals, of those that pass their portal.
 void PixelGather::aim_at_portals(const Place& place, Eigen::ArrayXd& sum) const {
   const ShadingPoint& at = place.at;
   const std::uint64_t aim_key = random_key(place.key, RandomPurpose::pixel_gather_portals);
   for (int i = 0; i < Portals::aimed(place.rays); ++i) {
     const Eigen::Array4d u = aims_.point(i, aim_key).cast<double>();
-    const Ray ray{.origin = at.position,
-                  .direction = portals_->draw(place.portals, at.position, u[0], u[1], u[2]),
-                  .origin_group = at.facet};
+    const Portals::Aim aim = portals_->draw(place.portals, at.position, u[0], u[1], u[2]);
+    const Ray ray{.origin = at.position, .direction = aim.direction, .origin_group = at.facet};
     if (!(measure(at, ray.direction) > 0.0)) continue;
     ElementHit hit;
     place.caster.closest_hits({&ray, 1}, {&hit, 1});
+    if (!portals_->passes(aim, at.position, hit.t)) continue;
     const double aimed = aimed_density(place, ray, hit);
-    if (!(aimed > 0.0)) continue;
     add(place, ray, hit, static_cast<std::uint64_t>(place.rays + i), aimed, sum);
   }
 }
@@ -186,12 +185,13 @@ void PixelGather::add_flat(const Place& place, const Ray& ray, const ElementHit&
   if (aimed > 0.0) shares.straight = shares.by_way = by_cosine / (by_cosine + aimed);
   if (gaps_.is_gap(place.at.normal, ray, hit) ||
       (aimed > 0.0 && gaps_.is_narrow(place.caster, ray, hit))) {
+    const GapAims aims{.portals = place.portals.is_empty() ? nullptr : portals_.get()};
     if (shares.by_way == 1.0) {
-      gaps_.add(place.caster, ray, hit, key, sum);
+      gaps_.add(place.caster, ray, hit, key, sum, aims);
       return;
     }
     Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
-    gaps_.add(place.caster, ray, hit, key, found);
+    gaps_.add(place.caster, ray, hit, key, found, aims);
     sum += shares.by_way * found;
     return;
   }
