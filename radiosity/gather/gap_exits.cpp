@@ -15,12 +15,18 @@ constexpr double least_log_reach = 1.5;
 
 }  // namespace
 
-GapExits::GapExits(const ElementCaster& caster, const SurfacePoint& at, double width, double reach,
-                   std::uint64_t key, const IsOut& is_out)
+GapExits::GapExits(const SurfacePoint& at, double width, double reach)
     : across_(at.normal),
       width_(width),
       log_reach_(std::max(std::log(reach / width), least_log_reach)) {
   tangent_frame(at.normal, a_, b_);
+  constexpr int cells = side * side;
+  for (int cell = 0; cell < cells; ++cell) cell_up_to_.push_back((cell + 1.0) / cells);
+}
+
+GapExits::GapExits(const ElementCaster& caster, const SurfacePoint& at, double width, double reach,
+                   std::uint64_t key, const IsOut& is_out)
+    : GapExits(at, width, reach) {
   const int cells = side * side;
   std::vector<Ray> rays(static_cast<std::size_t>(cells));
   std::vector<ElementHit> hits(rays.size());
@@ -36,17 +42,19 @@ GapExits::GapExits(const ElementCaster& caster, const SurfacePoint& at, double w
   }
   caster.closest_hits(rays, hits);
   std::vector<double> weight(rays.size(), 0.0);
+  double out = 0.0;
   for (std::size_t i = 0; i < rays.size(); ++i) {
     if (!is_out(rays[i], hits[i])) continue;
     const double cosine = rays[i].direction.dot(at.normal);
     weight[i] = cosine * std::numbers::inv_pi / even_density(cosine);
-    out_ += weight[i];
+    out += weight[i];
   }
-  const double even = is_closed() ? 1.0 : in_all_cells;
+  is_closed_ = !(out > 0.0);
+  if (is_closed_) return;
   double sum = 0.0;
-  for (const double w : weight) {
-    sum += even / cells + (is_closed() ? 0.0 : (1.0 - even) * w / out_);
-    cell_up_to_.push_back(sum);
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    sum += in_all_cells / cells + (1.0 - in_all_cells) * weight[i] / out;
+    cell_up_to_[i] = sum;
   }
   cell_up_to_.back() = 1.0;
 }

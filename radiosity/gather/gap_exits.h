@@ -22,7 +22,8 @@ namespace lightwell {
 ///
 /// Pilot rays tell in which cells of (log tan, phi) the gap has its exits; half of the directions
 /// are drawn there, in proportion to the light that even surroundings would send (Vorba et al.
-/// 2014, "On-line learning of parametric mixture models", guide paths so), half in all cells.
+/// 2014, "On-line learning of parametric mixture models", guide paths so), half in all cells. Where
+/// a gather has fewer rays than pilots would take, all are drawn in all cells.
 class GapExits {
  public:
   /// True if a ray is out of the gap.
@@ -33,8 +34,11 @@ class GapExits {
   GapExits(const ElementCaster& caster, const SurfacePoint& at, double width, double reach,
            std::uint64_t key, const IsOut& is_out);
 
+  /// Directions of the same gap that are drawn in all cells alike, without pilot rays.
+  GapExits(const SurfacePoint& at, double width, double reach);
+
   /// True if no pilot ray got out.
-  bool is_closed() const { return !(out_ > 0.0); }
+  bool is_closed() const { return is_closed_; }
 
   double width() const { return width_; }                    ///< metres
   const Eigen::Vector3d& across() const { return across_; }  ///< normal of the point, unit
@@ -65,8 +69,8 @@ class GapExits {
   Eigen::Vector3d a_ = Eigen::Vector3d::UnitX(), b_ = Eigen::Vector3d::UnitY();  // in the gap
   Eigen::Vector3d across_ = Eigen::Vector3d::UnitZ();
   double width_ = 0.0;
-  double log_reach_ = 1.0;            // ln T
-  double out_ = 0.0;                  // sum of the weights of pilot rays that got out
+  double log_reach_ = 1.0;  // ln T
+  bool is_closed_ = false;
   std::vector<double> cell_up_to_{};  // running sum of probabilities, row by row
 };
 

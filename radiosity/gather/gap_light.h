@@ -58,6 +58,11 @@ class GapLight {
                                 std::span<const Ray> rays, std::span<const ElementHit> hits,
                                 int count, std::uint64_t key) const;
 
+  /// The same without a search: directions that are even over the scales of the gap.
+  std::optional<GapExits> even_exits(const ElementCaster& caster, const SurfacePoint& at,
+                                     std::span<const Ray> rays,
+                                     std::span<const ElementHit> hits) const;
+
   /// True if a ray from a point of unit normal `normal` ends in a gap. In the gap of `exits` (null:
   /// not known) that is also where the gap is closed, such as on the floor between a cupboard and
   /// the wall.
@@ -99,6 +104,12 @@ class GapLight {
                        const ElementHit& hit, std::uint64_t key, Eigen::ArrayXd& sum) const;
 
  private:
+  struct GapSize {
+    double width = 0.0, reach = 0.0;  // metres
+  };
+  std::optional<GapSize> gap_around(const ElementCaster& caster, const SurfacePoint& at,
+                                    std::span<const Ray> rays,
+                                    std::span<const ElementHit> hits) const;
   void add_direct(const ElementCaster& caster, const LightQuery& query, const Spectrum& share,
                   Eigen::ArrayXd& sum) const;
   double next_ray(const ElementCaster& caster, const GapAims& aims, const Portals::View& view,

@@ -42,6 +42,7 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
       bright_(scene, caster, radiosity_),
       gaps_({scene, caster, direct_light}, radiosity_, paths_),
       aims_(std::max(BrightPatches::aimed(most_rays), Portals::aimed(most_rays))),
+      exit_aims_(GapExits::aimed(most_rays)),
       portals_(find_portals(scene, caster, brightness_of_vertices(caster.mesh(), radiosity_))) {
   if (const FreeSource* dome = direct_light.dome()) dome_ = dome->light;
   constexpr int fewest = 8;
@@ -74,12 +75,17 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
                  .origin_group = at.facet};
     }
     caster.closest_hits({rays.data(), n}, {hits.data(), n});
+    if (begin == 0 && at.facet >= 0) {
+      const SurfacePoint here{.position = at.position, .normal = at.normal, .facet = at.facet};
+      place.exits = gaps_.even_exits(caster, here, {rays.data(), n}, {hits.data(), n});
+    }
     for (std::size_t r = 0; r < n; ++r) {
       add(place, rays[r], hits[r], begin + r, aimed_density(place, rays[r], hits[r]), sum);
     }
   }
   if (!place.bright.is_empty()) aim_at_bright(place, sum);
   if (!place.portals.is_empty()) aim_at_portals(place, sum);
+  if (place.exits) aim_at_exits(place, sum);
   return (sum / static_cast<double>(points.size())).cast<float>();
 }
 
@@ -117,11 +123,17 @@ Eigen::Vector3d PixelGather::slant(const ElementCaster& caster, const ShadingPoi
   return all > 0.0 ? Eigen::Vector3d(sum / all) : Eigen::Vector3d::Zero();
 }
 
-// Number times density, 1/sr, of rays aimed at the portals that the ray passes.
+// Number times density, 1/sr, of rays aimed at the portals that the ray passes, and at exits.
 double PixelGather::aimed_density(const Place& place, const Ray& ray, const ElementHit& hit) const {
-  if (place.portals.is_empty()) return 0.0;
-  return Portals::aimed(place.rays) *
-         portals_->density(place.portals, ray.origin, ray.direction, hit.t);
+  double sum = 0.0;
+  if (!place.portals.is_empty()) {
+    sum += Portals::aimed(place.rays) *
+           portals_->density(place.portals, ray.origin, ray.direction, hit.t);
+  }
+  if (place.exits) {
+    sum += GapExits::aimed(place.rays) * place.exits->density(place.at.normal, ray.direction);
+  }
+  return sum;
 }
 
 // Adds light of bright patches by aimed rays.
@@ -137,7 +149,7 @@ void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
     ElementHit hit;
     place.caster.closest_hits({&ray, 1}, {&hit, 1});
     if (!bright_.counts(aim, hit) || !paths_.is_diffuse(hit.facet)) continue;
-    if (gaps_.is_gap(at.normal, ray, hit)) continue;
+    if (is_in_gap(place, ray, hit)) continue;
     if (!place.portals.is_empty() && gaps_.is_near_portal(*portals_, ray, hit)) continue;
     double share =
         bright_.share(place.bright, cosine, place.rays, ray, hit, aimed_density(place, ray, hit));
@@ -164,6 +176,30 @@ void PixelGather::aim_at_portals(const Place& place, Eigen::ArrayXd& sum) const 
   }
 }
 
+// Adds light by rays aimed at the exits of a gap.
+void PixelGather::aim_at_exits(const Place& place, Eigen::ArrayXd& sum) const {
+  const ShadingPoint& at = place.at;
+  const int count = GapExits::aimed(place.rays);
+  constexpr std::uint64_t exits = 1;
+  const std::uint64_t aim_key = random_key(place.key, RandomPurpose::pixel_gather_aims, exits);
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Array4d u = exit_aims_.point(i, aim_key).cast<double>();
+    const Ray ray{.origin = at.position,
+                  .direction = place.exits->draw(at.normal, u[0], u[1], u[2]),
+                  .origin_group = at.facet};
+    if (!(measure(at, ray.direction) > 0.0)) continue;
+    ElementHit hit;
+    place.caster.closest_hits({&ray, 1}, {&hit, 1});
+    add(place, ray, hit, static_cast<std::uint64_t>(2 * place.rays + i),
+        aimed_density(place, ray, hit), sum);
+  }
+}
+
+bool PixelGather::is_in_gap(const Place& place, const Ray& ray, const ElementHit& hit) const {
+  return gaps_.stays_in(place.caster, place.exits ? &*place.exits : nullptr, place.at.normal, ray,
+                        hit);
+}
+
 // Adds what a ray finds, times the gain of the relief.
 void PixelGather::add(const Place& place, const Ray& ray, const ElementHit& hit,
                       std::uint64_t index, double aimed, Eigen::ArrayXd& sum) const {
@@ -183,9 +219,9 @@ void PixelGather::add_flat(const Place& place, const Ray& ray, const ElementHit&
   const double by_cosine = place.rays * cosine * std::numbers::inv_pi;
   Shares shares;
   if (aimed > 0.0) shares.straight = shares.by_way = by_cosine / (by_cosine + aimed);
-  if (gaps_.is_gap(place.at.normal, ray, hit) ||
-      (aimed > 0.0 && gaps_.is_narrow(place.caster, ray, hit))) {
-    const GapAims aims{.portals = place.portals.is_empty() ? nullptr : portals_.get()};
+  if (is_in_gap(place, ray, hit) || (aimed > 0.0 && gaps_.is_narrow(place.caster, ray, hit))) {
+    const GapAims aims{.exits = place.exits ? &*place.exits : nullptr,
+                       .portals = place.portals.is_empty() ? nullptr : portals_.get()};
     if (shares.by_way == 1.0) {
       gaps_.add(place.caster, ray, hit, key, sum, aims);
       return;

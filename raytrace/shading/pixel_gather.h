@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
@@ -30,7 +31,8 @@ struct ShadingPoint {
 /// cosine-distributed rays of a scrambled Sobol sequence. B is the solution's radiosity at the end
 /// of a ray, which is followed through mirrors and clear glass. If there are bright patches, a
 /// quarter as many rays are aimed at them (see BrightPatches), and as many at openings between
-/// bright and dim parts (see Portals).
+/// bright and dim parts (see Portals). In a deep gap as many rays more are drawn with the logarithm
+/// of the tangent of their angle even over the scales of the gap (see GapExits).
 ///
 /// Light of emitters of DirectLight through mirrors and glass is not included: see
 /// RadiositySolution::caustic_irradiance. Light of the sky's dome through mirrors and glass is
@@ -60,7 +62,7 @@ class PixelGather {
   struct Shares {
     double straight = 1.0, by_way = 1.0;
   };
-  // A point, and the bright patches and portals that are seen from there.
+  // A point, and the bright patches, portals and exits of a gap that are seen from there.
   struct Place {
     const ElementCaster& caster;
     const ShadingPoint& at;
@@ -68,10 +70,13 @@ class PixelGather {
     int rays = 0;  // cosine-distributed
     BrightPatches::View bright{};
     Portals::View portals{};
+    std::optional<GapExits> exits{};
   };
   double aimed_density(const Place& place, const Ray& ray, const ElementHit& hit) const;
   void aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const;
   void aim_at_portals(const Place& place, Eigen::ArrayXd& sum) const;
+  void aim_at_exits(const Place& place, Eigen::ArrayXd& sum) const;
+  bool is_in_gap(const Place& place, const Ray& ray, const ElementHit& hit) const;
   void add(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
            double aimed, Eigen::ArrayXd& sum) const;
   void add_flat(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
@@ -86,6 +91,7 @@ class PixelGather {
   BrightPatches bright_;
   GapLight gaps_;
   SobolPoints aims_;                        // Sobol points of the rays towards bright_ and portals_
+  SobolPoints exit_aims_;                   // and out of gaps
   std::shared_ptr<const Portals> portals_;  // null: none
 };
 
