@@ -117,4 +117,13 @@ void note_if_dark(Scene& scene) {
   if (!gives_light(scene)) scene.notes.emplace_back("No surface shines, so the scene is dark.");
 }
 
+void finish_scene(const Repairs& repairs, Remarks& remarks, Scene& scene) {
+  drop_unused_uv(scene);
+  remark_pictures_without_uv(scene, remarks);
+  remarks.report_to(scene);
+  note_repairs(repairs, scene);
+  note_if_dark(scene);
+  validate(scene);
+}
+
 }  // namespace lightwell

@@ -81,4 +81,8 @@ void drop_unused_uv(Scene& scene);
 /// Adds a note if the scene has no light source.
 void note_if_dark(Scene& scene);
 
+/// The last steps of a reader whose surfaces may show pictures: drop_unused_uv(), all remarks, and
+/// the notes on repairs and on darkness. Throws InputError of validate().
+void finish_scene(const Repairs& repairs, Remarks& remarks, Scene& scene);
+
 }  // namespace lightwell

@@ -57,12 +57,7 @@ Scene read_mitsuba(const std::filesystem::path& path) {
                               : "the scene has no shapes that can be read",
                           remarks);
   }
-  drop_unused_uv(scene);
-  remark_pictures_without_uv(scene, remarks);
-  remarks.report_to(scene);
-  note_repairs(shapes.repairs(), scene);
-  note_if_dark(scene);
-  validate(scene);
+  finish_scene(shapes.repairs(), remarks, scene);
   return scene;
 }
 

@@ -42,12 +42,7 @@ Scene read_pov(const std::filesystem::path& path) {
   if (scene.surfaces.empty()) {
     fail_without_surfaces(path, "the scene has no shapes that can be read", remarks);
   }
-  drop_unused_uv(scene);
-  remark_pictures_without_uv(scene, remarks);
-  remarks.report_to(scene);
-  note_repairs(shapes.repairs(), scene);
-  note_if_dark(scene);
-  validate(scene);
+  finish_scene(shapes.repairs(), remarks, scene);
   return scene;
 }
 
