@@ -68,7 +68,7 @@ std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up
     const SkyState state = within_data(sky_state(light.direct_normal, light.diffuse_horizontal,
                                                  altitude, day_of_year(year, month, day)));
     const DaylightEfficacy efficacy =
-        daylight_efficacy(state, altitude, precipitable_water_cm(light.dew_point));
+        perez_efficacy(state, altitude, precipitable_water_cm(light.dew_point));
     hours.push_back({.number = n,
                      .sun = sky_direction(frame, sun.azimuth_degrees, altitude),
                      .altitude_degrees = altitude,

@@ -163,8 +163,8 @@ SkyState within_data(SkyState state) {
           .brightness = std::clamp(state.brightness, least_brightness, most_brightness)};
 }
 
-DaylightEfficacy daylight_efficacy(const SkyState& state, double sun_altitude_degrees,
-                                   double water_cm) {
+DaylightEfficacy perez_efficacy(const SkyState& state, double sun_altitude_degrees,
+                                double water_cm) {
   const double Z = (90.0 - sun_altitude_degrees) * degree;
   const auto at = std::ranges::find_if(efficacy_classes, [&](const EfficacyClass& c) {
     return state.clearness < c.clearness_below;

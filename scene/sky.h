@@ -35,30 +35,6 @@ struct SkyGradation {
 /// the standard clear sky. Throws std::invalid_argument for other numbers.
 SkyGradation standard_sky(int number);
 
-/// State of a sky by its light (Perez, Ineichen, Seals, Michalsky & Stewart 1990).
-struct SkyState {
-  double clearness = 1.0;   ///< epsilon, >= 1; 1: overcast
-  double brightness = 0.0;  ///< Delta, > 0
-};
-
-/// State of a sky; arguments as for perez_sky(), which checks them.
-SkyState sky_state(double direct_normal, double diffuse_horizontal, double sun_altitude_degrees,
-                   int day_of_year);
-
-/// Direct normal irradiance, W/m^2, of a sky of this clearness: the inverse of sky_state().
-double direct_normal_of(double clearness, double diffuse_horizontal, double sun_altitude_degrees);
-
-/// Irradiance of a plane across the sun's rays outside the atmosphere, W/m^2 (Spencer 1971, first
-/// order).
-double extraterrestrial_irradiance(int day_of_year);
-
-/// Gradation of the all-weather sky (Perez, Seals & Michalsky 1993). `direct_normal` and
-/// `diffuse_horizontal` are irradiances, W/m^2; `day_of_year` counts from 1. Throws
-/// std::invalid_argument if the diffuse irradiance is not above 0, the direct one is below 0 or the
-/// sun is not above the horizon.
-SkyGradation perez_sky(double direct_normal, double diffuse_horizontal, double sun_altitude_degrees,
-                       int day_of_year);
-
 /// Distribution of radiance over the dome.
 enum class SkyKind : std::uint8_t {
   gradation,  ///< SkyGradation, of which the uniform sky is one

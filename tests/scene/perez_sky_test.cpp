@@ -17,7 +17,7 @@ TEST(PerezSky, StateOfAWinterMorning) {
 
 TEST(PerezSky, EfficaciesOfTheSameMorning) {
   const SkyState state{.clearness = 3.32741, .brightness = 0.18048};
-  const DaylightEfficacy lm = daylight_efficacy(state, 18.3068, precipitable_water_cm(11.0));
+  const DaylightEfficacy lm = perez_efficacy(state, 18.3068, precipitable_water_cm(11.0));
   // 49643.64 lx of the sun and 12320.08 lx of the dome by an independent program. The brightness is
   // rounded to 5e-6, times slopes of 26.7 and 13 / 0.18 lm/W.
   EXPECT_NEAR(573.0 * lm.direct, 49643.64, 0.2);

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "scene/perez_sky.h"
 #include "scene/sun_position.h"
 
 namespace lightwell::sky_test {

@@ -13,6 +13,7 @@
 #include "scene/errors.h"
 #include "scene/io/pictures/environment_file.h"
 #include "scene/limits.h"
+#include "scene/perez_sky.h"
 #include "scene/sun_position.h"
 
 namespace lightwell {

@@ -64,7 +64,7 @@ struct Weather {
 constexpr double water = 2.0;  // cm that all vapour above would fill, gendaylit's
 
 DaylightEfficacy efficacy(const Weather& weather, double altitude) {
-  return daylight_efficacy(weather.state, altitude / degree, water);
+  return perez_efficacy(weather.state, altitude / degree, water);
 }
 
 void describe(Weather& weather, double altitude, int day) {

@@ -13,6 +13,7 @@
 #include "scene/errors.h"
 #include "scene/io/pictures/environment_file.h"
 #include "scene/io/read_scene.h"
+#include "scene/perez_sky.h"
 #include "tests/temporary_folder.h"
 
 namespace lightwell::read_sky_test {
