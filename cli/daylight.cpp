@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
-#include <array>
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -37,9 +39,6 @@ struct DaylightArguments {
   Occupancy occupancy{};
 };
 
-constexpr std::array<const char*, 4> result_files = {"sensors.csv", "hours.csv", "year.html",
-                                                     "year.json"};
-
 // Reads "8-18".
 Occupancy parse_occupancy(const std::string& text) {
   Occupancy hours;
@@ -67,7 +66,7 @@ Compass compass_of(const Scene& scene, double north_degrees) {
     frame = *scene.sky;
   } else {
     frame.up = guess_up_axis(scene.cameras, scene_bounds(scene));
-    // On drawings +y is north; where y is up, -z is.
+    // Drawings have north along +y; scenes with y up, along -z.
     frame.north = std::abs(frame.up.y()) > 0.5 ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ())
                                                : Eigen::Vector3d(Eigen::Vector3d::UnitY());
   }
@@ -80,6 +79,7 @@ struct Sensors {
   std::vector<YearRoom> rooms{};
 
   void add(YearRoom room, const std::vector<Probe>& points) {
+    if (points.empty()) return;
     room.first = static_cast<Eigen::Index>(probes.size());
     room.count = static_cast<Eigen::Index>(points.size());
     probes.insert(probes.end(), points.begin(), points.end());
@@ -102,6 +102,11 @@ Sensors sensors_of(const DaylightArguments& arguments, const Scene& scene,
     sensors.add({.name = std::filesystem::path(arguments.points).filename().string()},
                 read_probes(arguments.points, scene.metres_per_unit));
   }
+  if (sensors.probes.empty()) {
+    throw InputError(
+        "there are no sensors; name planes with '--plane floor@0.8' or as [[grids]] in the scene "
+        "file, or a file of points with '--points'");
+  }
   return sensors;
 }
 
@@ -115,7 +120,8 @@ DaylightOptions options_of(const DaylightArguments& arguments, const Scene& scen
 }
 
 std::vector<std::string> conventions_of(const DaylightArguments& arguments, const Weather& weather,
-                                        const SkyPatches& sky) {
+                                        const SkyPatches& sky, bool has_sky) {
+  const Eigen::Vector3d& north = sky.north();
   return {
       "An hour has the mean irradiances of the weather file; the sun stands where it is in the "
       "middle of the hour, standard time, without refraction (Michalsky 1988).",
@@ -132,6 +138,8 @@ std::vector<std::string> conventions_of(const DaylightArguments& arguments, cons
                   arguments.ground),
       "Panes pass light by its angle, with all reflections inside. The sun in mirrors, and through "
       "glass that bends or scatters its light, is left out. There are no blinds.",
+      fmt::format("North is ({:.4g}, {:.4g}, {:.4g}) in the scene's axes, {}.", north.x(),
+                  north.y(), north.z(), has_sky ? "by its sky" : "assumed"),
       "Lamps and emitting surfaces of the scene are off."};
 }
 
@@ -172,6 +180,62 @@ class HourlyFiles {
   NumpyRows total_, sunlight_;
 };
 
+// The files that the command will write.
+std::vector<std::string> files_of(const DaylightArguments& arguments) {
+  std::vector<std::string> files = {"sensors.csv", "hours.csv", "year.html", "year.json"};
+  if (arguments.hourly) files.insert(files.end(), {"illuminance.npy", "sunlight.npy"});
+  return files;
+}
+
+// Goes through the year and fills in the measures of sensors and rooms.
+void go_through_year(const DaylightModel& model, const SkyCoefficients& sky,
+                     std::span<const SkyHour> hours, double ground, HourlyFiles* files,
+                     YearReport& made) {
+  const auto counted = [&](double factor) {
+    return AnnualMetrics(model.sensor_count(), hours, static_cast<int>(made.weather.hours.size()),
+                         made.occupancy, factor);
+  };
+  for (YearRoom& room : made.rooms) room.mean_of_hours.assign(made.weather.hours.size(), 0.0f);
+  AnnualMetrics metrics = counted(1.0), least = counted(1.0 - std::min(1.0, made.error)),
+                most = counted(1.0 + made.error);
+  simulate_year(model, sky, hours, ground, [&](const HourBlock& block) {
+    metrics.add(block);
+    least.add(block);
+    most.add(block);
+    add_means(block, made.rooms);
+    if (files) files->append(block);
+  });
+  made.sensors = metrics.sensors();
+  set_metrics(metrics, made.daylight_factor, &YearRoom::metrics, made.rooms);
+  set_metrics(least, made.daylight_factor, &YearRoom::least, made.rooms);
+  set_metrics(most, made.daylight_factor, &YearRoom::most, made.rooms);
+}
+
+// What is known of a year before it is computed. Notes are those of the scene and of the weather.
+YearReport report_of(const DaylightArguments& arguments, const Scene& scene, const Weather& weather,
+                     const Compass& compass, std::span<const std::string> notes) {
+  YearReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
+                  .version = LIGHTWELL_VERSION,
+                  .weather = weather,
+                  .notes = {notes.begin(), notes.end()},
+                  .occupancy = arguments.occupancy,
+                  .north = compass.north,
+                  .metres_per_unit = scene.metres_per_unit,
+                  .unit_name = scene.unit_name};
+  made.notes.insert(made.notes.end(), scene.notes.begin(), scene.notes.end());
+  return made;
+}
+
+// Notes on the weather, said on the console too.
+std::vector<std::string> weather_notes(const Weather& weather, const std::vector<SkyHour>& hours,
+                                       Console& console) {
+  std::vector<std::string> notes = weather.notes;
+  const std::string dark = note_on_dark_hours(weather, hours);
+  if (!dark.empty()) notes.push_back(dark);
+  for (const std::string& note : notes) console.say("note: " + note);
+  return notes;
+}
+
 int daylight(const DaylightArguments& arguments, Console& console) {
   Report report(console.options());
   note_input(arguments.weather);
@@ -179,34 +243,21 @@ int daylight(const DaylightArguments& arguments, Console& console) {
   const Weather weather = read_weather(arguments.weather);
   CleanUpReport clean_up;
   const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
-  for (const std::string& note : weather.notes) console.say("note: " + note);
-  const auto [up, north] = compass_of(scene, arguments.north_degrees);
-  const std::vector<SkyHour> hours = sky_hours(weather, up, north);
+  const Compass compass = compass_of(scene, arguments.north_degrees);
+  const std::vector<SkyHour> hours = sky_hours(weather, compass.up, compass.north);
+  YearReport made =
+      report_of(arguments, scene, weather, compass, weather_notes(weather, hours, console));
   const OutputFolder folder(arguments.output);
-  for (const char* file : result_files) require_writable(folder / file);
+  for (const std::string& file : files_of(arguments)) require_writable(folder / file);
 
   Stopwatch watch;
-  DaylightModel model(scene, up, north, options_of(arguments, scene, console));
-  Sensors sensors = sensors_of(arguments, scene, clean_up, model.caster(), up);
-  if (sensors.probes.empty()) {
-    throw InputError(
-        "there are no sensors; name planes with '--plane floor@0.8' or as [[grids]] in the scene "
-        "file, or a file of points with '--points'");
-  }
+  DaylightModel model(scene, compass.up, compass.north, options_of(arguments, scene, console));
+  Sensors sensors = sensors_of(arguments, scene, clean_up, model.caster(), compass.up);
   model.set_sensors(probe_points(model.caster(), sensors.probes));
   const SkyCoefficients sky = model.sky_coefficients().sum();
   report.add_phase("sky", watch.lap());
-
-  YearReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
-                  .version = LIGHTWELL_VERSION,
-                  .weather = weather,
-                  .conventions = conventions_of(arguments, weather, model.sky()),
-                  .notes = weather.notes,
-                  .occupancy = arguments.occupancy,
-                  .north = north,
-                  .metres_per_unit = scene.metres_per_unit,
-                  .unit_name = scene.unit_name,
-                  .rooms = std::move(sensors.rooms)};
+  made.rooms = std::move(sensors.rooms);
+  made.conventions = conventions_of(arguments, weather, model.sky(), scene.sky.has_value());
   made.error = year_error(model, sky, hours, arguments.ground);
   report.add_phase("error", watch.lap());
   made.daylight_factor = daylight_factors(model, sky, arguments.ground);
@@ -215,45 +266,24 @@ int daylight(const DaylightArguments& arguments, Console& console) {
         "No daylight reaches any sensor: the scene has no opening, or its windows are opaque.");
     console.say("warning: " + made.notes.back());
   }
-  const auto year_hours = static_cast<int>(weather.hours.size());
-  for (YearRoom& room : made.rooms) room.mean_of_hours.assign(weather.hours.size(), 0.0f);
-  const auto counted = [&](double factor) {
-    return AnnualMetrics(model.sensor_count(), hours, year_hours, arguments.occupancy, factor);
-  };
-  AnnualMetrics metrics = counted(1.0), least = counted(1.0 - std::min(1.0, made.error)),
-                most = counted(1.0 + made.error);
   std::optional<HourlyFiles> files;
   if (arguments.hourly) files.emplace(folder, model.sensor_count());
-  simulate_year(model, sky, hours, arguments.ground, [&](const HourBlock& block) {
-    metrics.add(block);
-    least.add(block);
-    most.add(block);
-    add_means(block, made.rooms);
-    if (files) files->append(block);
-  });
+  go_through_year(model, sky, hours, arguments.ground, files ? &*files : nullptr, made);
   console.finish_phase();
   stop_if_interrupted();
   report.add_phase("year", watch.lap());
-  made.sensors = metrics.sensors();
-  set_metrics(metrics, made.daylight_factor, &YearRoom::metrics, made.rooms);
-  set_metrics(least, made.daylight_factor, &YearRoom::least, made.rooms);
-  set_metrics(most, made.daylight_factor, &YearRoom::most, made.rooms);
 
   write_sensors(folder / "sensors.csv", sensors.probes, made.sensors, made.daylight_factor,
                 scene.metres_per_unit);
   write_hours(folder / "hours.csv", hours, weather.is_leap_year);
   write_whole(folder / "year.html", {year_page(made)});
-  write_json(folder / "year.json", year_json(made));
-  for (const char* file : result_files) report.add_file(folder / file);
-  if (files) {
-    files->commit();
-    report.add_file(folder / "illuminance.npy");
-    report.add_file(folder / "sunlight.npy");
-  }
+  const Json figures = year_json(made);
+  write_json(folder / "year.json", figures);
+  if (files) files->commit();
+  for (const std::string& file : files_of(arguments)) report.add_file(folder / file);
   report.add("patches", model.mesh().patch_count());
   report.add("sensors", sensors.probes.size());
   report.add("hours_with_light", hours.size());
-  const Json figures = year_json(made);
   for (const char* key : {"relative_error", "rooms"}) report.add(key, figures[key]);
   if (!console.options().json && !console.options().quiet) fmt::print("{}", year_text(made));
   report.print();
@@ -304,7 +334,7 @@ Action add_daylight(CLI::App& command) {
       ->type_name("FROM-TO");
   command
       .add_option("--sky", arguments->sky,
-                  "subdivision of Tregenza's 145 sky patches, each way (default 2)")
+                  "subdivision of Tregenza's 145 sky patches, each way (default 4)")
       ->type_name("N")
       ->check(whole_number(1, 8));
   command

@@ -23,9 +23,10 @@ fault_packages=(python3 strace)
 # A second browser (0.3 GB), and hands for the window: without them the tests with them are skipped.
 extra_packages=(firefox-esr xdotool)
 
-# What the package for Python and its tests need: Debian's names, and those of PyPI.
+# Packages for the Python package and its tests: Debian's names, and those of PyPI.
 python_packages=(python3-dev python3-venv)
 python_modules=(nanobind numpy scipy)
+python_requirements=("nanobind>=3.1" "numpy>=1.22" "scipy>=1.8")
 
 # use_preset NAME: builds with another preset of CMakePresets.json, in build/NAME.
 use_preset() {
@@ -89,10 +90,14 @@ job_count() {
 python_options=()
 make_python() {
   local python=build/python/bin/python
+  python3 -c 'import os, sysconfig; raise SystemExit(not os.path.exists(os.path.join(sysconfig.get_path("include"), "Python.h")))' || {
+    say "Python.h is missing (package python3-dev)."
+    return 1
+  }
   if ! "$python" -c "import ${python_modules[*]/%/,} sys" 2>/dev/null; then
     mkdir -p build
     say "Making an environment for the Python package in build/python (0.1 GB to download)"
-    { python3 -m venv build/python && "$python" -m pip install --retries 1 "${python_modules[@]}"; } >build/python.log 2>&1 || {
+    { python3 -m venv build/python && "$python" -m pip install --retries 1 --timeout 10 "${python_requirements[@]}"; } >build/python.log 2>&1 || {
       tail -n 5 build/python.log >&2
       return 1
     }

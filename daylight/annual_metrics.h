@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,7 +17,7 @@ struct Occupancy {
 
 /// Measures of a year, one value for each sensor.
 struct SensorMetrics {
-  // Of the occupied hours, %.
+  // Shares of the occupied hours, %.
   Eigen::ArrayXd autonomy{};             ///< DA300: 300 lx or more (Reinhart & Walkenhorst 2001)
   Eigen::ArrayXd continuous_autonomy{};  ///< cDA300: mean of min(E / 300 lx, 1) (Rogers 2006)
   /// Useful daylight illuminance, %: below 100 lx, from 100 to below 300, 300 to 3000, above 3000
@@ -27,7 +28,7 @@ struct SensorMetrics {
   // EN 17037:2018, annex A, method 2: over half of the hours of the year, those with most light of
   // the dome.
   Eigen::ArrayXd en_above_100{}, en_above_300{}, en_above_500{}, en_above_750{};  ///< % of them
-  Eigen::ArrayXd en_median_lux{};  ///< what half of them reach, to half a percent
+  Eigen::ArrayXd en_median_lux{};  ///< what half of them reach, to 1.6 %
 };
 
 /// Measures of a room, whose sensors have equal weight.

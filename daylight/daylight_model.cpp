@@ -13,7 +13,7 @@
 namespace lightwell {
 namespace {
 
-// What a key of random numbers belongs to.
+// Owners of random keys.
 constexpr std::uint64_t of_patch = 0, of_sensor = 1;
 
 // The scene without light of its own: daylight is that of sun and sky alone.
@@ -27,13 +27,6 @@ Scene without_light(Scene scene) {
   return scene;
 }
 
-// True for mirrors and for glass other than clear panes, behind which light goes on by paths.
-bool goes_on(const Material& material) {
-  const bool is_clear_pane =
-      material.dielectric && material.dielectric->thin && material.dielectric->roughness == 0.0f;
-  return material.is_specular() && !material.is_diffuse() && !is_clear_pane;
-}
-
 // Share of each band in the illuminance of white light.
 Eigen::ArrayXf luminous_weights(const Bands& bands) {
   Eigen::ArrayXf weights(bands.count());
@@ -43,6 +36,10 @@ Eigen::ArrayXf luminous_weights(const Bands& bands) {
     weights[k] = static_cast<float>(luminous(bands, one));
   }
   return weights / weights.sum();
+}
+
+SurfacePoint surface_point(const GatherPoint& at) {
+  return {.position = at.position, .normal = at.normal, .facet = at.facet};
 }
 
 // Calls `body` for each index in parallel, in pieces between which progress is told.
@@ -70,7 +67,7 @@ DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen
   caster_.emplace(mesh_);
   direct_light_.emplace(scene_, mesh_);
   panes_.emplace(scene_);
-  if (std::ranges::any_of(scene_.materials, goes_on)) {
+  if (std::ranges::any_of(scene_.materials, &Material::is_specular)) {
     paths_.emplace(scene_, *caster_, options.form_factors.max_specular_depth, PathDetail::points);
   }
   weights_ = luminous_weights(scene_.bands);
@@ -122,8 +119,7 @@ void DaylightModel::set_sensors(std::span<const GatherPoint> sensors) {
   sensors_.assign(sensors.begin(), sensors.end());
   sensor_views_.resize(sensors_.size());
   for_each_index(sensor_count(), "sky at sensors", options_.progress, [&](int i) {
-    const GatherPoint& at = sensors_[static_cast<std::size_t>(i)];
-    const SurfacePoint point{.position = at.position, .normal = at.normal, .facet = at.facet};
+    const SurfacePoint point = surface_point(sensors_[static_cast<std::size_t>(i)]);
     sensor_views_[static_cast<std::size_t>(i)] =
         view_of_dome(around(), sky_, {&point, 1}, options_.points, sensor_key(i));
   });
@@ -174,8 +170,7 @@ SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const
   });
   SensorLight light{.direct = Eigen::ArrayXXf(sensor_count(), count)};
   for_each_index(sensor_count(), "sun at sensors", options_.progress, [&](int i) {
-    const GatherPoint& at = sensors_[static_cast<std::size_t>(i)];
-    const SurfacePoint point{.position = at.position, .normal = at.normal, .facet = at.facet};
+    const SurfacePoint point = surface_point(sensors_[static_cast<std::size_t>(i)]);
     light.direct.row(i) = luminous_sum(sunlight(around(), sky_, {&point, 1},
                                                 sensor_views_[static_cast<std::size_t>(i)], suns,
                                                 options_.sun_rays, sensor_key(i)))

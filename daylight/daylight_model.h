@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -16,10 +17,12 @@ namespace lightwell {
 
 /// Effort of a DaylightModel.
 struct DaylightOptions {
-  int sky_subdivision = 2;  ///< of SkyPatches
+  int sky_subdivision = 4;  ///< of SkyPatches: 2305 patches
   MeshOptions mesh{.auto_patch_count = 3200};
   FormFactorOptions form_factors{};
-  double tolerance = 1e-4;  ///< of the equations (see solve_columns)
+  /// Of the equations (see solve_columns). Relative to the brightest patch, which lies outdoors: a
+  /// room behind a window may have a thousandth of its light.
+  double tolerance = 1e-6;
   DomeEffort points{.search = 4, .rays = 4096};
   DomeEffort patches{.search = 1, .rays = 1024};
   int points_of_patch = 16;   ///< points of a patch whose view is averaged
@@ -92,7 +95,7 @@ class DaylightModel {
   std::optional<ElementCaster> caster_{};
   std::optional<DirectLight> direct_light_{};
   std::optional<ClearPanes> panes_{};
-  std::optional<LightPaths> paths_{};  // empty where all that mirrors and refracts is clear panes
+  std::optional<LightPaths> paths_{};  // empty where nothing mirrors or refracts
   Eigen::ArrayXf weights_{};           // of bands in illuminance, of sum 1
   FormFactorReport report_{};
   std::unique_ptr<FormFactors> form_factors_{};

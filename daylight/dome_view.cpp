@@ -14,7 +14,7 @@ namespace lightwell {
 namespace {
 
 // Rounds of random numbers of one receiver.
-constexpr std::uint64_t search_round = 1, cell_round = 2, sun_round = 3;
+constexpr std::uint64_t search_round = 1, cell_round = 2, sun_round = 3, path_round = 4;
 
 std::uint64_t round_key(std::uint64_t key, std::uint64_t round) {
   return random_key(key, RandomPurpose::sky_point_rays, round);
@@ -24,18 +24,23 @@ double random_of(std::uint64_t key, std::uint64_t number) {
   return random_uniform(random_key(key, number));
 }
 
+// The point that a random number in [0,1) draws.
+std::size_t point_of(double random, std::size_t count) {
+  return std::min(static_cast<std::size_t>(random * static_cast<double>(count)), count - 1);
+}
+
 // Rays to be cast together, and the share of light that each lets pass.
 class RayBatch {
  public:
   RayBatch(const Surroundings& around, ReceiverPoints points) : around_(around), points_(points) {}
 
-  // Adds a ray of the receiver's point `number`, modulo the number of points.
+  // Adds a ray of the receiver's point `number`.
   void add(std::size_t number, const Eigen::Vector3d& direction) {
-    const SurfacePoint& from = point(number);
+    const SurfacePoint& from = points_[number];
     rays_.push_back({.origin = from.position, .direction = direction, .origin_group = from.facet});
     from_.push_back(&from);
   }
-  const SurfacePoint& point(std::size_t number) const { return points_[number % points_.size()]; }
+  std::size_t point_count() const { return points_.size(); }
   std::size_t size() const { return rays_.size(); }
   const Eigen::Vector3d& direction(std::size_t ray) const { return rays_[ray].direction; }
   // Cosine to the normal of the ray's point; 0 below the horizon.
@@ -47,8 +52,8 @@ class RayBatch {
     blocked_.assign(rays_.size(), 0);
     around_.caster.occluded(rays_, blocked_);
   }
-  // Where the light of a ray goes that something other than clear panes stops: the direction in
-  // which the light leaves the scene, and its share per band.
+  // Direction in which the light of a ray leaves the scene by way of mirrors and glass, and its
+  // share per band.
   struct Exit {
     Eigen::Vector3d direction;
     Spectrum share;
@@ -57,11 +62,7 @@ class RayBatch {
     if (!around_.paths || blocked_[ray] == 0) return std::nullopt;
     ElementHit hit;
     around_.caster.closest_hits({&rays_[ray], 1}, {&hit, 1});
-    // What a diffuse surface mirrors besides is light of that surface.
-    if (hit.facet < 0 || !around_.paths->is_specular(hit.facet) ||
-        around_.paths->is_diffuse(hit.facet)) {
-      return std::nullopt;
-    }
+    if (hit.facet < 0 || !around_.paths->is_specular(hit.facet)) return std::nullopt;
     const PathLosses losses =
         around_.paths->follow(rays_[ray], hit, random_key(key, static_cast<std::uint64_t>(ray)),
                               std::function<void(const LightArrival&)>([](const LightArrival&) {}));
@@ -69,7 +70,7 @@ class RayBatch {
     return Exit{losses.exit, losses.escaped};
   }
 
-  // The share that ray `number` lets pass, per band.
+  // The share of a ray that arrives through clear panes alone, per band.
   Spectrum passed(std::size_t ray) const {
     if (blocked_[ray] == 0) return Spectrum::Ones(around_.bands);
     if (around_.panes.empty()) return Spectrum::Zero(around_.bands);
@@ -94,8 +95,7 @@ void add_rays(const SkyPatches& sky, int cell, int count, std::uint64_t key, Ray
     const auto number = static_cast<std::uint64_t>(cell) << 32 | static_cast<std::uint64_t>(i) * 3;
     const double u = (i % across + random_of(key, number)) / in_row,
                  v = (row + random_of(key, number + 1)) / rows;
-    const auto point = static_cast<std::size_t>(1e6 * random_of(key, number + 2));
-    batch.add(point + static_cast<std::size_t>(i), sky.direction(cell, u, v));
+    batch.add(point_of(random_of(key, number + 2), batch.point_count()), sky.direction(cell, u, v));
   }
 }
 
@@ -190,42 +190,65 @@ DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, Receive
   return view;
 }
 
+namespace {
+
+// Rays of a receiver to suns, with the sun and the weight of each.
+struct SunRays {
+  RayBatch batch;
+  std::vector<std::size_t> sun{};
+  std::vector<float> weight{};
+
+  // Adds a ray of a point to a place (r, phi) of a disc that (u, v) in [0,1)^2 give.
+  void add(std::size_t point, std::size_t number, const SunDisc& disc, float share, double u,
+           double v) {
+    Eigen::Vector3d a, b;
+    tangent_frame(disc.direction, a, b);
+    const double r = std::sqrt(u) * std::tan(0.5 * disc.angle_degrees * degree),
+                 phi = 2.0 * std::numbers::pi * v;
+    batch.add(point, (disc.direction + r * (std::cos(phi) * a + std::sin(phi) * b)).normalized());
+    sun.push_back(number);
+    weight.push_back(share);
+  }
+};
+
+}  // namespace
+
 Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
                          const DomeView& view, std::span<const SunDisc> suns, int rays,
                          std::uint64_t key) {
-  Eigen::ArrayXXf E = Eigen::ArrayXXf::Zero(static_cast<Eigen::Index>(suns.size()), around.bands);
-  RayBatch batch(around, points);
+  SunRays cast{.batch = RayBatch(around, points)};
   const std::uint64_t sun_key = round_key(key, sun_round);
-  std::vector<std::size_t> sun_of_ray;
   for (std::size_t s = 0; s < suns.size(); ++s) {
-    const Eigen::Vector3d& towards = suns[s].direction;
-    if (view.open[static_cast<std::size_t>(sky.cell_of(towards))] == 0) continue;
-    const double radius = std::tan(0.5 * suns[s].angle_degrees * degree);
-    Eigen::Vector3d a, b;
-    tangent_frame(towards, a, b);
+    const std::uint64_t of_sun = random_key(sun_key, s);
+    const auto random = [&](std::uint64_t number) { return random_of(of_sun, number); };
+    if (view.open[static_cast<std::size_t>(sky.cell_of(suns[s].direction))] == 0) {
+      const std::size_t p = point_of(random(0), points.size());
+      if (points[p].normal.dot(suns[s].direction) > 0.0) {
+        cast.add(p, s, suns[s], 1.0f, random(1), random(2));
+      }
+      continue;
+    }
+    const float share = 1.0f / (static_cast<float>(points.size()) * static_cast<float>(rays));
     for (std::size_t p = 0; p < points.size(); ++p) {
-      if (!(points[p].normal.dot(towards) > 0.0)) continue;
+      if (!(points[p].normal.dot(suns[s].direction) > 0.0)) continue;
       for (int i = 0; i < rays; ++i) {
         const std::uint64_t number =
-            (s * points.size() + p) * static_cast<std::size_t>(rays) + static_cast<std::size_t>(i);
-        const double r = std::sqrt((i + random_of(sun_key, 2 * number)) / rays) * radius,
-                     phi = 2.0 * std::numbers::pi * random_of(sun_key, 2 * number + 1);
-        batch.add(p, (towards + r * (std::cos(phi) * a + std::sin(phi) * b)).normalized());
-        sun_of_ray.push_back(s);
+            3 + 2 * (p * static_cast<std::size_t>(rays) + static_cast<std::size_t>(i));
+        cast.add(p, s, suns[s], share, (i + random(number)) / rays, random(number + 1));
       }
     }
   }
-  batch.cast();
-  const float share = 1.0f / (static_cast<float>(points.size()) * static_cast<float>(rays));
-  for (std::size_t r = 0; r < batch.size(); ++r) {
-    const SunDisc& sun = suns[sun_of_ray[r]];
-    Spectrum passed = batch.passed(r);
-    if (const auto exit = batch.exit(r, sun_key)) {
+  cast.batch.cast();
+  Eigen::ArrayXXf E = Eigen::ArrayXXf::Zero(static_cast<Eigen::Index>(suns.size()), around.bands);
+  for (std::size_t r = 0; r < cast.batch.size(); ++r) {
+    const SunDisc& sun = suns[cast.sun[r]];
+    Spectrum passed = cast.batch.passed(r);
+    if (const auto exit = cast.batch.exit(r, sun_key)) {
       const double edge = std::cos(0.5 * sun.angle_degrees * degree);
       if (exit->direction.dot(sun.direction) >= edge) passed += exit->share;
     }
-    E.row(static_cast<Eigen::Index>(sun_of_ray[r])) +=
-        share * static_cast<float>(batch.cosine(r)) * passed.transpose();
+    E.row(static_cast<Eigen::Index>(cast.sun[r])) +=
+        cast.weight[r] * static_cast<float>(cast.batch.cosine(r)) * passed.transpose();
   }
   return E;
 }

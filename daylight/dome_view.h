@@ -9,6 +9,7 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/visibility/clear_panes.h"
+#include "scene/sky.h"
 #include "scene/surface_point.h"
 
 namespace lightwell {
@@ -17,7 +18,7 @@ namespace lightwell {
 struct Surroundings {
   const ElementCaster& caster;
   const ClearPanes& panes;
-  /// Paths by way of mirrors and glass that are no clear panes; null: there are none.
+  /// Paths by way of mirrors and glass; null: there are none.
   const LightPaths* paths = nullptr;
   int bands = 3;
 };
@@ -31,7 +32,7 @@ struct DomeEffort {
   int rays = 2048;  ///< rays spread over these cells and those around them
 };
 
-/// What a receiver sees of dome and ground.
+/// View of dome and ground from a receiver.
 struct DomeView {
   /// Irradiance straight from each column's sky patch of radiance 1, columns x bands, sr.
   Eigen::ArrayXXf coefficient{};
@@ -41,14 +42,17 @@ struct DomeView {
 
 /// The view of a receiver, whose points' results are averaged.
 ///
-/// 1. Rays through all cells find those through which the sky is seen. They serve no other purpose,
+/// 1. Rays through all cells find those through which the sky is seen. These rays serve no other
+/// purpose,
 ///    so that what follows has no bias.
 /// 2. Open cells and their neighbours get stratified rays in proportion to their irradiance; all
 ///    other cells get one ray each, which finds what the search has missed.
 /// 3. A cell's coefficient is the irradiance of the unobstructed cell times the share of the rays'
 ///    cosines that arrives: exact for an unobstructed receiver.
-/// 4. Rays that meet mirrors, solid or frosted glass go on, and count for the patch in whose
+/// 4. Rays that meet mirrors, coats, solid or frosted glass go on, and count for the patch in whose
 ///    direction they leave.
+///
+/// Cells that the horizon of an inclined receiver cuts have the bias of a ratio of few rays.
 ///
 /// `key` decides the directions. Panes dim the light that passes through them.
 DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
@@ -57,13 +61,14 @@ DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, Receive
 /// The sun as receivers see it.
 struct SunDisc {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, to the middle of the disc
-  double angle_degrees = 0.533;                          ///< across
+  double angle_degrees = Sun{}.angle_degrees;            ///< across
 };
 
 /// Irradiance of a receiver straight from each sun of irradiance 1 across its rays: suns x bands.
-/// Each point sends `rays` rays to points of the disc. Suns in cells that the view holds closed
-/// give nothing. Solid glass counts where light leaves it towards the disc, as it leaves slabs; the
-/// sun in mirrors, and through glass that bends or scatters its light, is left out.
+/// Each point sends `rays` rays to points of the disc. Suns in cells that the view holds closed get
+/// one ray each, so that openings which the search has missed are noise and no bias. Solid glass
+/// counts where light leaves it towards the disc, as it leaves slabs; the sun in mirrors, and
+/// through glass that bends or scatters its light, is left out.
 Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
                          const DomeView& view, std::span<const SunDisc> suns, int rays,
                          std::uint64_t key);

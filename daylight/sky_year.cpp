@@ -1,5 +1,7 @@
 #include "daylight/sky_year.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -74,10 +76,30 @@ std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up
                      .altitude_degrees = altitude,
                      .azimuth_degrees = sun.azimuth_degrees,
                      .sun_lux = light.direct_normal * efficacy.direct,
-                     .dome_lux = light.diffuse_horizontal * std::max(0.0, efficacy.diffuse),
+                     .dome_lux = light.diffuse_horizontal * efficacy.diffuse,
                      .gradation = perez_sky(state, altitude)});
   }
   return hours;
+}
+
+std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour>& hours) {
+  double all = 0.0, kept = 0.0;
+  int with_light = 0;
+  for (const WeatherHour& hour : weather.hours) {
+    const double light = hour.direct_normal + hour.diffuse_horizontal;
+    with_light += light > 0.0 ? 1 : 0;
+    all += light;
+  }
+  for (const SkyHour& hour : hours) {
+    const WeatherHour& light = weather.hours[static_cast<std::size_t>(hour.number)];
+    kept += light.direct_normal + light.diffuse_horizontal;
+  }
+  const int dark = with_light - static_cast<int>(hours.size());
+  if (dark <= 0) return {};
+  return fmt::format(
+      "{} hours of the file with light, {:.2g} % of the year's irradiance, have the sun below the "
+      "horizon in their middle, or no light of the dome; they count as dark",
+      dark, 100.0 * (all - kept) / all);
 }
 
 Eigen::ArrayXf column_luminances(const SkyPatches& patches, const SkyHour& hour,

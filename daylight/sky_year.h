@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "daylight/sky_patches.h"
@@ -18,7 +19,7 @@ struct SkyHour {
   double dome_lux = 0.0;  ///< on open level ground, from the dome
   SkyGradation gradation{};
 
-  /// On open level ground, from sun and dome.
+  /// Illuminance of open level ground by sun and dome, lx.
   double horizontal_lux(const Eigen::Vector3d& up) const;
 };
 
@@ -34,6 +35,9 @@ struct SkyHour {
 ///   hour's dew point.
 std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up,
                                const Eigen::Vector3d& north);
+
+/// A sentence on hours that have light in the file and are dark in `hours`; empty: there are none.
+std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour>& hours);
 
 /// Mean luminance of each column, cd/m^2: the dome's patches, scaled so that they light open level
 /// ground with the hour's dome_lux, and the ground, which sun and dome light.

@@ -13,9 +13,11 @@ namespace lightwell {
 ///
 /// A second computation, with a quarter of the patches, half of the rays and other random numbers,
 /// differs from the first at each sensor, in the mean over `samples` hours all over the year. Its
-/// error is at least twice as large: that of patches falls with their area, noise with about the
-/// 3/4th power of the rays. So the root mean square d of the differences is at least twice the
-/// error of the first, and d bounds that error.
+/// error is four times as large where patches decide (their error falls with their area), and 1.7
+/// times where rays do (noise falls with about the 3/4th power of their number). The root mean
+/// square d of the differences over the sensors is thus three times, or sqrt(1.7^2 + 1) = 2 times,
+/// the error of the first: two standard errors. Few sensors know d badly, so d is widened by
+/// Student's distribution. The subdivision of the sky is not in d.
 ///
 /// Throws Interrupted when the model's progress says stop.
 double year_error(const DaylightModel& model, const SkyCoefficients& sky,

@@ -166,11 +166,12 @@ SkyState within_data(SkyState state) {
 DaylightEfficacy perez_efficacy(const SkyState& state, double sun_altitude_degrees,
                                 double water_cm) {
   const double Z = (90.0 - sun_altitude_degrees) * degree;
-  const auto at = std::ranges::find_if(efficacy_classes, [&](const EfficacyClass& c) {
-    return state.clearness < c.clearness_below;
-  });
+  const auto at =
+      std::find_if(efficacy_classes.begin(), efficacy_classes.end() - 1,
+                   [&](const EfficacyClass& c) { return state.clearness < c.clearness_below; });
   const auto &f = at->diffuse, &n = at->direct;
-  return {f[0] + f[1] * water_cm + f[2] * std::cos(Z) + f[3] * std::log(state.brightness),
+  return {std::max(0.0,
+                   f[0] + f[1] * water_cm + f[2] * std::cos(Z) + f[3] * std::log(state.brightness)),
           std::max(0.0, n[0] + n[1] * water_cm + n[2] * std::exp(5.73 * Z - 5.0) +
                             n[3] * state.brightness)};
 }

@@ -15,6 +15,13 @@ double positive(const char* option, double value) {
   throw InputError(fmt::format("{} is {:g}; a number above 0 is needed", option, value));
 }
 
+std::int64_t bytes_of_memory(double value) {
+  constexpr double least = 0x1p20, most = 0x1p62;
+  if (value >= least && value <= most) return static_cast<std::int64_t>(value);
+  throw InputError(
+      fmt::format("memory is {:g}; a number of bytes from 2^20 (1 MiB) to 2^62 is needed", value));
+}
+
 int whole_number(const char* option, int value, int least, int most) {
   if (value >= least && value <= most) return value;
   throw InputError(

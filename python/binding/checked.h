@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 // Checks of numbers that Python hands over. Each throws InputError with a sentence that names the
@@ -8,6 +9,9 @@ namespace lightwell::python {
 
 /// A finite number above 0.
 double positive(const char* option, double value);
+
+/// A limit of memory in bytes, from 2^20 to 2^62, rounded down.
+std::int64_t bytes_of_memory(double value);
 
 /// A whole number from `least` to `most`.
 int whole_number(const char* option, int value, int least, int most);

@@ -85,9 +85,7 @@ void add_options(nb::module_& module) {
       .def_rw("two_sided", &Options::two_sided)
       .def_prop_rw(
           "memory", [](const Options& o) { return o.memory.limit; },
-          [](Options& o, double bytes) {
-            o.memory.limit = static_cast<std::int64_t>(positive("memory", bytes));
-          });
+          [](Options& o, double bytes) { o.memory.limit = bytes_of_memory(bytes); });
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ struct PhaseShare {
   double share = 0.0;
 };
 
-/// What the working thread and the waiting thread tell each other.
+/// Messages between the working thread and the waiting thread.
 class Exchange {
  public:
   /// Called by the working thread: notes progress, and returns whether the work is to go on.
@@ -93,9 +93,14 @@ class WaitingThreads {
   std::atomic<bool> is_ending_ = false;
 };
 
+// Daemon threads outlive static objects, so the threads that wait are never destroyed.
+WaitingThreads*& current_threads() {
+  static auto* threads = new WaitingThreads;
+  return threads;
+}
+
 WaitingThreads& waiting_threads() {
-  static auto* const threads = new WaitingThreads;  // daemon threads outlive static objects
-  return *threads;
+  return *current_threads();
 }
 
 /// Counts the thread among those that wait, as long as the object lives.
@@ -175,6 +180,11 @@ void run_long(const nb::object& callback, const std::function<void(const Progres
 void end_long_work() {
   const nb::gil_scoped_release others_may_finish;
   waiting_threads().end();
+}
+
+void forget_long_work() {
+  // A thread of the parent may have held the mutex, so the object is left as it is.
+  current_threads() = new WaitingThreads;
 }
 
 }  // namespace lightwell::python

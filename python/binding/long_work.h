@@ -31,4 +31,7 @@ auto result_of_long(const nanobind::object& callback, Work&& work) {
 /// the interpreter is about to end. Must be called with Python's lock held.
 void end_long_work();
 
+/// Forgets the work of other threads: to be called in the child of a fork, where they do not exist.
+void forget_long_work();
+
 }  // namespace lightwell::python

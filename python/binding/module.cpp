@@ -44,6 +44,10 @@ NB_MODULE(_lightwell, module) {
   module.def("thread_count", &lightwell::thread_count);
   module.attr("version") = LIGHTWELL_VERSION;
   nb::module_::import_("atexit").attr("register")(nb::cpp_function(end_long_work));
+  const nb::module_ os = nb::module_::import_("os");
+  if (nb::hasattr(os, "register_at_fork")) {  // Windows has no fork
+    os.attr("register_at_fork")(nb::arg("after_in_child") = nb::cpp_function(forget_long_work));
+  }
 #ifdef NDEBUG
   nb::set_leak_warnings(false);  // daemon threads keep what they work on until the process ends
 #endif

@@ -91,7 +91,7 @@ std::vector<Probe> probes_from(const PointsIn& points, const PointsIn& normals) 
   const std::vector<Eigen::Vector3d> places = points_from(points), ways = points_from(normals);
   std::vector<Probe> probes;
   for (std::size_t i = 0; i < places.size(); ++i)
-    probes.push_back({places[i], ways[i].normalized()});
+    probes.push_back({places[i], ways[i].stableNormalized()});
   return probes;
 }
 

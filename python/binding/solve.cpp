@@ -152,9 +152,7 @@ void add_method_options(Class& settings) {
       .def_rw("start", &SolveSettings::start)
       .def_prop_rw(
           "memory", [](const SolveSettings& s) { return s.memory.limit; },
-          [](SolveSettings& s, double v) {
-            s.memory.limit = static_cast<std::int64_t>(positive("memory", v));
-          })
+          [](SolveSettings& s, double v) { s.memory.limit = bytes_of_memory(v); })
       .def_rw("text", &SolveSettings::text)
       .def("add_channel", [](SolveSettings& s, const std::string& name, const std::string& glob) {
         s.patterns.push_back({name, glob});

@@ -12,8 +12,9 @@ Lengths are metres, irradiance and radiosity W/m^2 per band, and angles degrees,
 a scene's file. Exceptions are sentences: `InputError` for wrong input, `Interrupted` where a progress
 callback said stop, and `Error`, the base of both, for everything else.
 
-Functions that take long let other Python threads run, and end within about a second after Ctrl-C.
-Several may run at once in several threads. Results have the same bits for any number of threads.
+Functions that take long let other Python threads run, and several may run at once in several threads.
+Those that take `progress`, except `read`, end within about a second after Ctrl-C. Results have the
+same bits for any number of threads.
 """
 
 from ._errors import Error, InputError, Interrupted  # isort: skip  (the compiled module needs it)

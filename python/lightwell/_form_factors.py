@@ -7,7 +7,7 @@ import numpy as np
 from . import _lightwell
 from ._arrays import checked_progress, set_options
 from ._errors import Error, InputError
-from ._scene import Progress, Scene
+from ._scene import Progress, Scene, fixed
 
 
 class FormFactors:
@@ -18,19 +18,19 @@ class FormFactors:
     """
 
     def __init__(self, found: "_lightwell.FoundFormFactors", target_error: float):
-        self.areas: np.ndarray = found.area
+        self.areas: np.ndarray = fixed(found.area)
         """(n,) float64: area of each row, m^2; 0 for a face without area."""
-        self.open: np.ndarray = found.open
+        self.open: np.ndarray = fixed(found.open)
         """(n,) float64: share of each row that leaves the scene or meets a black back."""
-        self.blocked: np.ndarray = found.blocked
+        self.blocked: np.ndarray = fixed(found.blocked)
         """(n,) float64: share of each row that meets faces without a row."""
         self.names: List[str] = found.name
         """Name of the surface of each row."""
-        self.face: np.ndarray = found.facet - 1
+        self.face: np.ndarray = fixed(found.facet - 1)
         """(n,) int32: face of each row, counted from 0 in the order of the file or the arrays."""
-        self.is_back: np.ndarray = found.is_back.astype(bool)
+        self.is_back: np.ndarray = fixed(found.is_back.astype(bool))
         """(n,) bool: the row is the back of its face (two_sided)."""
-        self.emittance: np.ndarray = found.emittance
+        self.emittance: np.ndarray = fixed(found.emittance)
         """(n,) float64: emittance that a View3D file gives the face, 0 to 1; else 1."""
         self.notes: List[str] = found.notes
         """Findings on the faces, a sentence each."""

@@ -9,13 +9,17 @@ from . import _lightwell
 from ._arrays import array_of, real_number
 from ._errors import InputError
 from ._form_factors import FormFactors
+from ._scene import fixed
 
 PerSurface = Union[float, Mapping[str, float], Any]
 """One value for all rows, (n,) values, or values by the name of the surface."""
 
 
 class Radiation:
-    """Net radiant exchange of an enclosure; made by `radiation`. n is the number of rows."""
+    """Net radiant exchange of an enclosure; made by `radiation`. n is the number of rows.
+
+    Arrays are read-only.
+    """
 
     def __init__(
         self,
@@ -27,17 +31,17 @@ class Radiation:
     ):
         self._areas = areas
         self._factors = factors
-        self.emissivity = emissivity
+        self.emissivity = fixed(emissivity.copy())
         """(n,) float64, 0 to 1."""
         self.surroundings = surroundings
         """Temperature of the surroundings, K."""
-        self.temperature: np.ndarray = exchange.kelvin
+        self.temperature: np.ndarray = fixed(exchange.kelvin)
         """(n,) float64, K; NaN where nothing decides it."""
-        self.radiosity: np.ndarray = exchange.radiosity
+        self.radiosity: np.ndarray = fixed(exchange.radiosity)
         """(n,) float64, W/m^2, emitted and reflected."""
-        self.irradiation: np.ndarray = exchange.irradiation
+        self.irradiation: np.ndarray = fixed(exchange.irradiation)
         """(n,) float64, W/m^2."""
-        self.heat: np.ndarray = exchange.heat
+        self.heat: np.ndarray = fixed(exchange.heat)
         """(n,) float64, W, net, away from each row. Adds up to `to_surroundings`."""
         self.to_surroundings: float = exchange.to_surroundings
         """W, net, out of the openings."""
@@ -45,25 +49,27 @@ class Radiation:
     @property
     def areas(self) -> np.ndarray:
         """(n,) float64, m^2."""
-        return self._areas.area
+        return fixed(self._areas.area)
 
     @cached_property
     def gebhart(self) -> np.ndarray:
         """(n, n + 1) float64: share of what row i emits that row j absorbs, directly or after
         reflections; the last column is the surroundings. Rows add up to 1."""
-        return _lightwell.gebhart_factors(self._areas, self.emissivity)
+        return fixed(_lightwell.gebhart_factors(self._areas, self.emissivity))
 
     @cached_property
     def script_f(self) -> np.ndarray:
         """(n, n + 1) float64: transfer factors of Hottel & Sarofim, emissivity times `gebhart`."""
-        return _lightwell.transfer_factors(self._areas, self.emissivity)
+        return fixed(_lightwell.transfer_factors(self._areas, self.emissivity))
 
     @cached_property
     def exchange(self) -> np.ndarray:
         """(n, n + 1) float64, W: net exchange of row i with row j, A_i script_f_ij sigma (T_i^4 -
         T_j^4), and with the surroundings."""
-        power = _lightwell.stefan_boltzmann * np.append(self.temperature, self.surroundings) ** 4
-        return self.areas[:, None] * self.script_f * (power[:-1, None] - power[None, :])
+        # A row whose temperature nothing decides exchanges nothing: its factors are 0.
+        kelvin = np.append(np.nan_to_num(self.temperature), self.surroundings)
+        power = _lightwell.stefan_boltzmann * kelvin**4
+        return fixed(self.areas[:, None] * self.script_f * (power[:-1, None] - power[None, :]))
 
     @property
     def heat_by_surface(self) -> Dict[str, float]:

@@ -15,6 +15,12 @@ Values = Union[float, Sequence[float]]
 """One value for all bands, or one each for red, green and blue."""
 
 
+def fixed(array: np.ndarray) -> np.ndarray:
+    """The array, which is read-only from now on."""
+    array.setflags(write=False)
+    return array
+
+
 def _values(name: str, values: Any) -> List[float]:
     if np.ndim(values) == 0:
         return [real_number(name, values)]
@@ -194,8 +200,8 @@ class Scene:
         """The triangles as a `trimesh.Trimesh`; face attribute `surface`. Needs trimesh."""
         import trimesh  # type: ignore
 
-        mesh = trimesh.Trimesh(self.vertices, self.faces, process=False)
-        mesh.face_attributes["surface"] = self.surface
+        mesh = trimesh.Trimesh(self.vertices.copy(), self.faces.copy(), process=False)
+        mesh.face_attributes["surface"] = self.surface.copy()
         return mesh
 
     def to_pyvista(self) -> Any:
@@ -204,12 +210,13 @@ class Scene:
 
         faces = np.column_stack([np.full(len(self.faces), 3), self.faces])
         mesh = pyvista.PolyData(np.array(self.vertices), faces.reshape(-1))
-        mesh.cell_data["surface"] = self.surface
+        mesh.cell_data["surface"] = self.surface.copy()
         return mesh
 
     def _geometry(self) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
         if self._triangles is None:
-            self._triangles = self._data.triangles()
+            vertices, faces, surface = self._data.triangles()
+            self._triangles = fixed(vertices), fixed(faces), fixed(surface)
         return self._triangles
 
     @property

@@ -19,7 +19,7 @@ from ._arrays import (
     whole_number,
 )
 from ._errors import InputError
-from ._scene import Camera, Progress, Scene
+from ._scene import Camera, Progress, Scene, fixed
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -38,8 +38,8 @@ class Readings(NamedTuple):
 class Solution:
     """The light of a scene, view-independent, on a mesh of triangles and quadrilaterals.
 
-    Made by `solve` and `load`; never changed afterwards. Arrays named as views are read-only and
-    share the solution's memory, which lives as long as any of them.
+    Made by `solve` and `load`; never changed afterwards. Its arrays are read-only. Those named as
+    views share the solution's memory, which lives as long as any of them.
     """
 
     def __init__(self, data: "_lightwell.SolutionData"):
@@ -68,13 +68,13 @@ class Solution:
     def triangle_element(self) -> np.ndarray:
         """(k,) int32: the element that each of `triangles` is of."""
         quads = np.flatnonzero(self.elements[:, 3] >= 0).astype(np.int32)
-        return np.concatenate([np.arange(len(self.elements), dtype=np.int32), quads])
+        return fixed(np.concatenate([np.arange(len(self.elements), dtype=np.int32), quads]))
 
     @cached_property
     def triangles(self) -> np.ndarray:
         """(k, 3) int32: the elements as triangles; second halves of quadrilaterals come last."""
         quads = self.elements[self.elements[:, 3] >= 0]
-        return np.concatenate([self.elements[:, :3], quads[:, [0, 2, 3]]])
+        return fixed(np.concatenate([self.elements[:, :3], quads[:, [0, 2, 3]]]))
 
     @property
     def element_area(self) -> np.ndarray:
@@ -101,7 +101,7 @@ class Solution:
     @cached_property
     def irradiance(self) -> np.ndarray:
         """(n, bands) float32, W/m^2 at the vertices: direct and indirect light together."""
-        return self._data.irradiance
+        return fixed(self._data.irradiance)
 
     @property
     def direct_irradiance(self) -> np.ndarray:
@@ -116,7 +116,7 @@ class Solution:
     @cached_property
     def radiosity(self) -> np.ndarray:
         """(n, bands) float32, W/m^2 at the vertices: B = M + rho E."""
-        return self._data.radiosity
+        return fixed(self._data.radiosity)
 
     @property
     def patch_radiosity(self) -> np.ndarray:
@@ -136,9 +136,9 @@ class Solution:
     @cached_property
     def lux(self) -> np.ndarray:
         """(n,) float64, lx at the vertices."""
-        return self._data.lux
+        return fixed(self._data.lux)
 
-    # How sure it is.
+    # Estimated errors.
 
     @property
     def error(self) -> float:
@@ -148,7 +148,7 @@ class Solution:
     @cached_property
     def element_error(self) -> np.ndarray:
         """(m,) float32: bound of the error anywhere in each element, relative, odds of 19 to 1."""
-        return self._data.element_error
+        return fixed(self._data.element_error)
 
     @property
     def energy(self) -> Dict[str, float]:

@@ -130,6 +130,12 @@ class Methods(unittest.TestCase):
         self.assertEqual(F.format, "csr")
         self.assertEqual(report["rows"], 2)
 
+    def test_arrays_of_rows_are_read_only(self):
+        found = lw.form_factors(plates(1, 1, 1))
+        for name in ("areas", "open", "blocked", "face", "is_back", "emittance"):
+            with self.subTest(name), self.assertRaises(ValueError):
+                getattr(found, name)[0] = 0
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -70,6 +70,27 @@ class Laws(unittest.TestCase):
         np.testing.assert_allclose(found.exchange.sum(axis=1), found.heat, atol=1e-11 * scale)
         np.testing.assert_allclose(found.gebhart.sum(axis=1), 1, atol=ROUNDING)
 
+    def test_a_row_whose_temperature_nothing_decides_exchanges_nothing(self):
+        found = lw.radiation(
+            (np.ones((3, 3)) - np.eye(3)) / 2,
+            areas=[1, 1, 1],
+            emissivity=[0.5, 0, 0.8],
+            temperature=[400, np.nan, 300],
+        )
+        self.assertTrue(np.isnan(found.temperature[1]))
+        np.testing.assert_array_equal(found.exchange[1], 0)
+        scale = abs(found.heat).sum()
+        np.testing.assert_allclose(found.exchange.sum(axis=1), found.heat, atol=ROUNDING * scale)
+
+    def test_arrays_are_read_only(self):
+        eps = self.eps.copy()
+        found = lw.radiation(self.closed, emissivity=eps, temperature=300)
+        for name in ("emissivity", "temperature", "heat", "gebhart", "script_f", "exchange"):
+            with self.subTest(name), self.assertRaises(ValueError):
+                getattr(found, name)[0] = 0
+        eps[0] = 0  # that of the caller stays writable
+        self.assertEqual(found.emissivity[0], self.eps[0])
+
     def test_openings_lead_to_the_surroundings(self):
         found = lw.radiation(self.open, emissivity=self.eps[:5], temperature=400, surroundings=300)
         self.assertGreater(found.to_surroundings, 0)

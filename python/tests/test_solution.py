@@ -67,7 +67,7 @@ class Arrays(unittest.TestCase):
         a, b, c = (s.vertices[s.triangles[:, k]] for k in range(3))
         areas = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
         sums = np.bincount(s.triangle_element, areas, len(s.elements))
-        # Each is a sum of two products of a few roundings of 2^-53 of coordinates below 4.
+        # Areas are sums of two products, with a few roundings of 2^-53 of coordinates below 4.
         np.testing.assert_allclose(sums, s.element_area, atol=1e-13)
 
     def test_irradiance_is_direct_and_indirect(self):
@@ -89,6 +89,15 @@ class Arrays(unittest.TestCase):
             with self.assertRaises(ValueError):
                 one[0] = 0
 
+    def test_other_arrays_are_read_only(self):
+        s = self.solution
+        names = ("triangles", "triangle_element", "irradiance", "radiosity", "lux", "element_error")
+        arrays = [(name, getattr(s, name)) for name in names]
+        arrays += [(name, getattr(s.scene, name)) for name in ("vertices", "faces", "surface")]
+        for name, array in arrays:
+            with self.subTest(name), self.assertRaises(ValueError):
+                array[0] = 0
+
     def test_views_outlive_the_solution(self):
         solution = lw.solve(lit_room(), refine="off", gather_rays=16)
         view, copy = solution.direct_irradiance, solution.direct_irradiance.copy()
@@ -106,6 +115,12 @@ class Readings(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.solution = lw.solve(furnace(0.5, 1.0), refine="off")
+
+    def test_directions_may_have_any_length(self):
+        unit = self.solution.probe([[1, 1, 1]], [0, 0, 1])
+        with np.errstate(over="ignore"):  # of the square of 1e200
+            long = self.solution.probe([[1, 1, 1]], [0, 0, 1e200])
+        self.assertEqual(long.tobytes(), unit.tobytes())
 
     def test_probes_in_a_furnace(self):
         # E = M / (1 - rho) = 2 W/m^2 on any side of any point; 683 lm/W.

@@ -130,6 +130,58 @@ class DaemonThreads(unittest.TestCase):
         self.assertEqual(done.returncode, 0)
 
 
+FORKED = """
+import os
+import sys
+import threading
+import lightwell as lw
+
+scene = lw.read(sys.argv[1])
+is_working = threading.Event()
+stops = threading.Event()
+
+def progress(phase, share):
+    is_working.set()
+    return not stops.is_set()
+
+def work():
+    try:
+        lw.solve(scene, max_patch_size=0.004, gather_rays=4096, progress=progress)
+    except lw.Interrupted:
+        pass
+
+thread = threading.Thread(target=work)
+thread.start()
+is_working.wait()
+child = os.fork()
+if child == 0:
+    sys.exit(7)
+_, status = os.waitpid(child, 0)
+stops.set()
+thread.join()
+print(os.WEXITSTATUS(status), flush=True)
+"""
+
+
+class Forks(unittest.TestCase):
+    @unittest.skipUnless(hasattr(os, "fork"), "this system has no fork")
+    def test_end_though_another_thread_works(self):
+        options = ["-W", "ignore::DeprecationWarning"]  # Python 3.12 warns of forks with threads
+        child = subprocess.Popen(
+            [sys.executable, *options, "-c", FORKED, CORNELL],
+            stdout=subprocess.PIPE,
+            text=True,
+            start_new_session=True,
+        )
+        try:
+            said, _ = child.communicate(timeout=60)
+        except subprocess.TimeoutExpired:
+            os.killpg(child.pid, signal.SIGKILL)  # the child's child too
+            child.communicate()
+            raise
+        self.assertEqual(said, "7\n")
+
+
 INTERRUPTED = """
 import sys
 import lightwell as lw

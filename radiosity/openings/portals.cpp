@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// What is seen through one side of an opening.
+// View through one side of an opening.
 struct Sight {
   double brightness = 0.0;  // sum over paths
   int paths = 0;            // that ended on this side
@@ -247,7 +247,7 @@ Portals::Aim Portals::draw(const View& view, const Vector3d& from, double which,
   return {(at - from).normalized(), found->portal};
 }
 
-// Where a ray passes a portal, metres from its origin; infinite if it does not.
+// Distance to where a ray passes a portal, metres from its origin; infinite if it does not.
 double Portals::distance_to(const Portal& portal, const Vector3d& from, const Vector3d& direction) {
   constexpr double never = std::numeric_limits<double>::infinity();
   const Vector3d to = portal.shape.center - from;

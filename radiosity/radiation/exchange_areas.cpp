@@ -11,6 +11,8 @@ namespace lightwell {
 namespace {
 
 constexpr double most_deviation = 0.01;
+// Change of S_ii as a share of A_i: most_deviation for closure, and as much for symmetry.
+constexpr double most_change = 2.0 * most_deviation;
 
 void check_size(Eigen::Index rows) {
   if (rows == 0) throw InputError("there are no surfaces, so there is no radiant exchange");
@@ -43,9 +45,8 @@ void check_numbers(const Eigen::ArrayXd& area, const Eigen::MatrixXd& F,
 void check_laws(const Eigen::ArrayXd& area, const Eigen::MatrixXd& F, const Eigen::ArrayXd& open) {
   const Eigen::Index n = area.size();
   for (Eigen::Index i = 0; i < n; ++i) {
-    if (!(area[i] > 0.0)) continue;
     const double sum = F.row(i).sum() + open[i];
-    if (!(std::abs(sum - 1.0) <= most_deviation)) {
+    if (area[i] > 0.0 && !(std::abs(sum - 1.0) <= most_deviation)) {
       throw InputError(
           fmt::format("row {} of the view factors and its open share add up to {:.6g}; they must "
                       "add up to 1, so give what leaves through openings as the open share",
@@ -81,6 +82,13 @@ ExchangeAreas exchange_areas(const Eigen::ArrayXd& area, const Eigen::MatrixXd& 
   for (Eigen::Index i = 0; i < area.size(); ++i) {
     areas.between(i, i) = 0.0;
     areas.between(i, i) = area[i] - areas.open[i] - areas.between.row(i).sum();
+    const double change = areas.between(i, i) - S(i, i);
+    if (std::abs(change) <= most_change * area[i]) continue;
+    throw InputError(
+        fmt::format("row {} of the view factors is not reciprocal with the others: its factor to "
+                    "itself would have to change by {:.3g}; check that the areas are in the order "
+                    "of the rows",
+                    i, change / area[i]));
   }
   return areas;
 }

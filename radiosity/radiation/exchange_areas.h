@@ -30,7 +30,9 @@ struct ExchangeAreas {
 ///   - for sizes that differ, for no rows or more than most_radiating_surfaces, and for
 ///     numbers that are not finite or below 0;
 ///   - if A_i F_ij and A_j F_ji differ by more than 1 % of the smaller area, or a row and its open
-///     share do not add up to 1 within 1 %.
+///     share do not add up to 1 within 1 %;
+///   - if symmetry and closure together move S_ii by more than 2 % of A_i from A_i F_ii: many small
+///     differences between A_i F_ij and A_j F_ji add up.
 ExchangeAreas exchange_areas(const Eigen::ArrayXd& area, const Eigen::MatrixXd& F,
                              const Eigen::ArrayXd& open);
 

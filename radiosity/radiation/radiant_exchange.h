@@ -32,11 +32,12 @@ struct RadiantExchange {
 /// Net radiant exchange of gray, diffuse surfaces (network method, Oppenheim 1956; Hottel & Sarofim
 /// 1967, "Radiative Transfer"):
 ///
-///     A_i J_i = A_i eps_i sigma T_i^4 + (1 - eps_i) A_i G_i,   A_i G_i = sum_j S_ij J_j + open_i
-///     sigma T_0^4 Q_i = sum_j S_ij (J_i - J_j) + open_i (J_i - sigma T_0^4)
+///     A_i J_i = A_i eps_i sigma T_i^4 + (1 - eps_i) A_i G_i
+///     A_i G_i = sum_j S_ij J_j + open_i sigma T_0^4
+///     Q_i = sum_j S_ij (J_i - J_j) + open_i (J_i - sigma T_0^4)
 ///
-/// The heats and that to the surroundings add up to zero to rounding, since each exchange enters
-/// twice with opposite signs. `surroundings`: T_0 in K; black.
+/// The heats add up to `to_surroundings` to rounding, since each exchange between two surfaces
+/// enters twice with opposite signs. `surroundings`: T_0 in K; black.
 ///
 /// Throws InputError that names the surface
 ///   - for numbers out of range, and if there are not as many surfaces as areas;

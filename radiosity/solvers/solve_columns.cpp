@@ -1,6 +1,9 @@
 #include "radiosity/solvers/solve_columns.h"
 
 #include <algorithm>
+#include <stdexcept>
+
+#include "mesh/patches/translucency.h"
 
 namespace lightwell {
 namespace {
@@ -37,14 +40,20 @@ BandArray solve_columns(const PatchMesh& mesh, const FormFactors& form_factors,
       return !progress || progress(phase, done);
     };
     options.arriving = arriving.middleCols(first * bands, n * bands);
-    // Solvers compare errors with the brightest patch of all columns, so all are made as bright.
-    Eigen::Array<float, 1, Eigen::Dynamic> brightest = options.arriving.colwise().maxCoeff();
+    // Solvers compare errors with the brightest patch of all columns, so all are made as bright at
+    // their first reflection.
+    Eigen::Array<float, 1, Eigen::Dynamic> brightest =
+        scattered_by_patches(patches, options.arriving).colwise().maxCoeff();
     brightest = (brightest > 0.0f).select(brightest, 1.0f);
     options.arriving.rowwise() /= brightest;
-    BandArray solved =
-        solve_radiosity(SolverMethod::automatic, patches, form_factors, options).patch_radiosity;
-    solved.rowwise() *= brightest;
-    B.middleCols(first * bands, n * bands) = solved;
+    RadiositySolution solved =
+        solve_radiosity(SolverMethod::automatic, patches, form_factors, options);
+    if (solved.outcome != Outcome::converged) {
+      throw std::runtime_error(
+          "The equations of many columns of light did not converge; please report the scene.");
+    }
+    solved.patch_radiosity.rowwise() *= brightest;
+    B.middleCols(first * bands, n * bands) = solved.patch_radiosity;
   }
   return B;
 }

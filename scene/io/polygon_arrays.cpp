@@ -128,16 +128,16 @@ NumberedScene scene_of_polygons(Scene scene, const PolygonArrays& polygons) {
   std::vector<Surface> kept;
   Remarks remarks;
   clean_names(scene);
+  for (std::size_t p = 0; p < numbered.rows.size(); ++p) {
+    numbered.rows[p].name = scene.surfaces[static_cast<std::size_t>(polygons.surface[p])].name;
+  }
   for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
     Surface& surface = scene.surfaces[s];
     if (built.meshes[s].empty()) {
       remarks.add("Surfaces without a face that has an area were left out", surface.name);
       continue;
     }
-    for (const int p : built.polygon[s]) {
-      numbered.row_of_facet.push_back(p);
-      numbered.rows[static_cast<std::size_t>(p)].name = surface.name;
-    }
+    for (const int p : built.polygon[s]) numbered.row_of_facet.push_back(p);
     surface.shape = built.meshes[s].mesh();
     kept.push_back(std::move(surface));
   }

@@ -67,7 +67,7 @@ TEST(AnnualMetrics, CountHoursOfTheDay) {
   EXPECT_NEAR(year.en_median_lux[3], 300.0, 0.016 * 300.0);
 }
 
-// 300 lx from 8 to 12 h and more light by a quarter: 240 lx are enough.
+// 240 lx in every hour, and a quarter more: 300 lx.
 TEST(AnnualMetrics, FactorScalesLightButSun) {
   const std::vector<SkyHour> hours = days();
   const HourBlock light = block(hours, 1, [](int, int) { return 240.0; });

@@ -73,7 +73,7 @@ TEST(SkyPatches, NeighboursAreMutual) {
   }
 }
 
-// Of a dome of radiance 1, level ground gets pi, a wall pi / 2; the rest of the wall's sphere gives
+// A dome of radiance 1 gives level ground pi, a wall pi / 2; the rest of the wall's sphere gives
 // as much. The midpoint rule has 36 points a cell, so that cells which the wall's horizon cuts are
 // known to some percent each, and their sum to 1e-4.
 TEST(SkyPatches, EvenSkyGivesPi) {

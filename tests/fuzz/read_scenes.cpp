@@ -4,6 +4,7 @@
 #include "scene/io/mesh_file.h"
 #include "scene/io/mitsuba/mitsuba_serialized.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/weather/weather_file.h"
 #include "scene/scene.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/fuzz/target.h"
@@ -15,6 +16,10 @@ Scene read_scene_file(const std::string& name, std::string_view bytes) {
   validate(scene);
   scene_hash(scene);
   return scene;
+}
+
+void read_weather_file(const std::string& name, std::string_view bytes) {
+  read_weather(input_file(name, bytes));
 }
 
 void read_toml_scene(std::string_view bytes) {

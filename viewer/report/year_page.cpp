@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 
@@ -54,7 +55,8 @@ void add_table(const YearReport& report, std::string& page) {
         is_sure ? "" : " <small>too close to tell</small>");
   }
   fmt::format_to(out,
-                 "</table>\n<p>Light without direct sunlight is within ±{:.1f}\u202f% at a sensor "
+                 "</table>\n<p>Light without direct sunlight, in the mean of the year, is within "
+                 "±{:.1f}\u202f% at a sensor "
                  "(odds of 19 to 1); the smaller figures say what that does to a measure. "
                  "sDA and ASE are those of IES LM-83 without blinds; EN 17037 by its second "
                  "method.</p>\n",
@@ -78,7 +80,7 @@ struct Plan {
   std::string unit{};
 };
 
-// The plans of a room. Scales begin at 0, so that rooms can be compared.
+// The plans of a room.
 std::vector<Plan> plans_of(const YearReport& report, const YearRoom& room) {
   const auto part = [&](const Eigen::ArrayXd& all) -> Eigen::ArrayXd {
     return all.segment(room.first, room.count);

@@ -2,7 +2,7 @@
 // Auxiliary Programs, "EnergyPlus Weather File (EPW) Data Dictionary").
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <cmath>
 #include <string>
 
 #include "scene/io/weather/weather_rows.h"
@@ -13,7 +13,7 @@ namespace {
 constexpr std::size_t fields_needed = 16;  // up to the diffuse irradiance
 constexpr std::size_t month_field = 1, day_field = 2, hour_field = 3;
 constexpr std::size_t dew_point_field = 7, direct_field = 14, diffuse_field = 15;
-constexpr double missing_dew_point = 99.9;
+constexpr double highest_dew_point = 70.0;  // of the data dictionary; 99.9: missing
 
 double heading_number(const TextFile& file, int line, std::string_view field, const char* name) {
   const auto value = parse_finite(field);
@@ -39,7 +39,7 @@ void read_location(const TextFile& file, int line, std::string_view text, Weathe
 
 int whole(const TextFile& file, int line, std::string_view field, const char* name) {
   const auto value = parse_finite(field);
-  if (!value || *value < 0.0 || *value > 9999.0) {
+  if (!value || *value < 0.0 || *value > 9999.0 || *value != std::floor(*value)) {
     file.fail(line, fmt::format("the {} '{}' is no whole number", name, excerpt(field)));
   }
   return static_cast<int>(*value);
@@ -69,7 +69,8 @@ Rows rows_of(const TextFile& file, Weather& weather) {
                                   "cut short",
                                   fields.size()));
     }
-    found.has_leap_day |= fields[month_field] == "2" && fields[day_field] == "29";
+    found.has_leap_day |=
+        parse_finite(fields[month_field]) == 2.0 && parse_finite(fields[day_field]) == 29.0;
     found.rows.emplace_back(line, std::move(fields));
   });
   if (!has_location) file.fail(1, "has no LOCATION line, so it is no EPW file");
@@ -92,10 +93,10 @@ Weather read_epw(const std::filesystem::path& path) {
                           .hour = whole(file, line, fields[hour_field], "hour") - 1};
     rows.set(line, hour, fields[direct_field], fields[diffuse_field]);
     const auto dew_point = parse_finite(fields[dew_point_field]);
-    const bool is_known = dew_point && *dew_point < missing_dew_point;
+    const bool is_known = dew_point && std::abs(*dew_point) <= highest_dew_point;
     without_dew_point += is_known ? 0 : 1;
     weather.hours[static_cast<std::size_t>(rows.last())].dew_point =
-        is_known ? std::max(*dew_point, -100.0) : usual_dew_point;
+        is_known ? *dew_point : usual_dew_point;
   }
   const auto expected = static_cast<int>(weather.hours.size());
   if (rows.count() != expected) {

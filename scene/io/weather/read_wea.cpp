@@ -68,10 +68,10 @@ Weather read_wea(const std::filesystem::path& path) {
   Heading heading;
   file.for_each_line([&](int, std::string_view text) {
     const auto words = words_of(text);
-    weather.is_leap_year |= words.size() >= 2 && words[0] == "2" && words[1] == "29";
+    weather.is_leap_year |=
+        words.size() >= 2 && parse_finite(words[0]) == 2.0 && parse_finite(words[1]) == 29.0;
   });
   WeatherRows rows(file, weather);
-  for (WeatherHour& hour : weather.hours) hour.dew_point = usual_dew_point;
   file.for_each_line([&](int line, std::string_view text) {
     const auto words = words_of(text);
     if (words.empty() || words.front().starts_with('#')) return;
@@ -89,9 +89,9 @@ Weather read_wea(const std::filesystem::path& path) {
     }
     const auto month = parse_finite(words[0]), day = parse_finite(words[1]),
                hour = parse_finite(words[2]);
-    if (!month || !day || !hour || std::abs(*month) > 12 || std::abs(*day) > 31 ||
-        std::abs(*hour) > 24) {
-      file.fail(line, "has no month, day and hour");
+    if (!month || !day || !hour || *month != std::floor(*month) || *day != std::floor(*day) ||
+        std::abs(*month) > 12 || std::abs(*day) > 31 || std::abs(*hour) > 24) {
+      file.fail(line, "has no month, day and hour; the middle of the first hour is '1 1 0.5'");
     }
     rows.set(line,
              {.month = static_cast<int>(*month),

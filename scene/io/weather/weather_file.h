@@ -6,11 +6,15 @@
 
 namespace lightwell {
 
+/// The dew point where a file has none, degrees Celsius: 2 cm of water in the air, as RADIANCE's
+/// gendaymtx has.
+inline constexpr double usual_dew_point = 11.0;
+
 /// Sunlight and sky light of an hour, means over the hour.
 struct WeatherHour {
-  double direct_normal = 0.0;       ///< W/m^2 across the sun's rays, >= 0
-  double diffuse_horizontal = 0.0;  ///< W/m^2 of the dome on open level ground, >= 0
-  double dew_point = 11.0;          ///< degrees Celsius
+  double direct_normal = 0.0;          ///< W/m^2 across the sun's rays, >= 0
+  double diffuse_horizontal = 0.0;     ///< W/m^2 of the dome on open level ground, >= 0
+  double dew_point = usual_dew_point;  ///< degrees Celsius
 };
 
 /// A place, and the light there in every hour of a year.
@@ -26,10 +30,6 @@ struct Weather {
   std::vector<WeatherHour> hours{};
   std::vector<std::string> notes{};  ///< what was missing and what is assumed, one sentence each
 };
-
-/// The dew point where a file has none, degrees Celsius: 2 cm of water in the air, as RADIANCE's
-/// gendaymtx has.
-inline constexpr double usual_dew_point = 11.0;
 
 /// Date and hour of the day of an hour of the year.
 struct HourOfYear {

@@ -12,7 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-using test::B0, test::between_long_plates, test::desk, test::Plates;
+using test::B0, test::between_long_plates, test::desk_facet, test::Plates;
 constexpr double width = test::plate_width;
 
 TEST(GapLight, BetweenLongPlatesIsThatOfTheIntegralEquation) {
@@ -54,7 +54,8 @@ TEST(GapLight, DeepInAGapIsKnownByAFewHundredRays) {
 TEST(GapLight, IsNotLookedForBetweenPlatesFarApart) {
   // Elements of 0.2 x 1 m have a size of 0.447 m, a fifth of which is 0.089 m.
   const Plates plates(0.1);
-  const Ray ray{.origin = {0.1, 0.0, 0.0}, .direction = {0.0, 0.0, 1.0}, .origin_group = desk};
+  const Ray ray{
+      .origin = {0.1, 0.0, 0.0}, .direction = {0.0, 0.0, 1.0}, .origin_group = desk_facet};
   ElementHit hit;
   plates.caster.closest_hits({&ray, 1}, {&hit, 1});
   ASSERT_GE(hit.element, 0);

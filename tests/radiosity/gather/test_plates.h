@@ -12,7 +12,7 @@ namespace lightwell::test {
 
 inline constexpr double plate_width = 0.2, plate_length = 4.0;
 inline constexpr float B0 = 3.0f, plate_rho = 0.5f;
-inline constexpr int desk = 6;  // facet, after the six walls
+inline constexpr int desk_facet = 6;  // facet, after the six walls
 
 // Two plates that face each other across `gap`, in the middle of a wide room whose walls emit B0.
 // The light of the plates' vertices is that of plates in the open, as coarse meshes have it.
@@ -37,7 +37,7 @@ struct Plates {
   }
 
   double gathered(double x, int rays, std::uint64_t replica = 0) const {
-    const std::vector<GatherPoint> points = {{.position = {x, 0.0, 0.0}, .facet = desk}};
+    const std::vector<GatherPoint> points = {{.position = {x, 0.0, 0.0}, .facet = desk_facet}};
     const GatherOptions options{.rays = rays, .replica = replica, .aims_out_of_gaps = true};
     return gather_irradiance({scene, caster, light}, radiosity, points, options).indirect(0, 0);
   }

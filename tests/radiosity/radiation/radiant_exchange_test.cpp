@@ -87,6 +87,27 @@ TEST(ExchangeAreas, RefuseWhatCannotBe) {
             std::string::npos);
 }
 
+// Pieces of a sphere have F_ij = A_j / sum A. With areas in another order, any two rows differ by
+// less than 1 %, since each of 300 factors is small.
+TEST(ExchangeAreas, RefuseManyRowsThatAreNotReciprocal) {
+  constexpr int n = 300;
+  const Eigen::ArrayXd area = Eigen::ArrayXd::LinSpaced(n, 1.0, 2.0);
+  const Eigen::MatrixXd F = Eigen::VectorXd::Ones(n) * (area / area.sum()).matrix().transpose();
+  EXPECT_EQ(refusal([&] { closed(area, F); }), "");
+  // |A_i F_ij - A_j F_ji| is 3 |A_i - A_j| / 450 then, 0.67 % of the smaller area at most. S_00
+  // would change by (2 - 1) / 2, 25 % of the area of 2.
+  const Eigen::ArrayXd reversed = area.reverse();
+  EXPECT_NE(refusal([&] { closed(reversed, F); }).find("row 0 of the view factors is not recipr"),
+            std::string::npos);
+}
+
+TEST(ExchangeAreas, RefuseFactorsToSurfacesWithoutArea) {
+  const Eigen::Matrix3d F =
+      (Eigen::Matrix3d() << 0.0, 0.5, 0.5, 0.5, 0.5, 0.0, 0.0, 0.0, 0.0).finished();
+  EXPECT_NE(refusal([&] { closed(Eigen::Array3d(1, 1, 0), F); }).find("view factors 2 to 0"),
+            std::string::npos);
+}
+
 TEST(TransferFactors, OfInfiniteParallelPlates) {
   for (const double e1 : {0.05, 0.5, 1.0}) {
     for (const double e2 : {0.1, 0.8, 1.0}) {

@@ -10,7 +10,7 @@
 namespace lightwell::pixel_gather_test {
 namespace {
 
-// A pixel that looks into the gap below a monitor is no lottery.
+// Irradiance deep in a gap has a small deviation with a few hundred rays.
 TEST(PixelGather, DeepInAGapIsKnownByAFewHundredRays) {
   constexpr double gap = 0.002, x = 0.4 * test::plate_width;
   const test::Plates plates(gap);

@@ -56,7 +56,7 @@ TEST(SceneOfPolygons, NumbersFacetsByFaces) {
   ASSERT_EQ(numbered.rows.size(), 3u);
   EXPECT_EQ(numbered.row_of_facet, (std::vector<int>{0, 2}));
   EXPECT_EQ(numbered.rows[0].name, "floor");
-  EXPECT_EQ(numbered.rows[1].name, "");  // without area
+  EXPECT_EQ(numbered.rows[1].name, "floor");  // without area
   EXPECT_EQ(numbered.rows[2].name, "wall");
   EXPECT_EQ(numbered.scene.notes.size(), 1u);
   EXPECT_EQ(surface_area(numbered.scene.surfaces[0]), 6.0);  // 2 by 3, exact in floats
