@@ -22,7 +22,7 @@ TEST(PixelGather, DeepInAGapIsKnownByAFewHundredRays) {
   const ShadingPoint at{.position = {x, 0.0, 0.0},
                         .normal = Eigen::Vector3d::UnitZ(),
                         .smooth_normal = Eigen::Vector3d::UnitZ(),
-                        .facet = test::desk};
+                        .facet = test::desk_facet};
   Eigen::ArrayXd found(replicas);
   for (int i = 0; i < replicas; ++i) {
     found[i] = double{
