@@ -173,34 +173,31 @@ void GapLight::add_end(const ElementCaster& caster, const Ray& ray, const Elemen
 // The gap that a point lies in, if few rays get out of it by themselves.
 std::optional<GapLight::GapSize> GapLight::gap_around(const ElementCaster& caster,
                                                       const SurfacePoint& at,
-                                                      std::span<const Ray> rays,
-                                                      std::span<const ElementHit> hits) const {
-  // The steepest ray tells most places from gaps without a further ray.
-  const auto steepest = std::ranges::max_element(
-      rays, {}, [&](const Ray& ray) { return ray.direction.dot(at.normal); });
-  if (steepest == rays.end() ||
-      !is_gap(at.normal, *steepest, hits[static_cast<std::size_t>(steepest - rays.begin())])) {
-    return std::nullopt;
-  }
-  // Near the brink of a gap many rays get out by themselves.
-  constexpr std::size_t many = 8;
-  std::size_t out = 0;
-  for (std::size_t i = 0; i < rays.size(); ++i) out += is_gap(at.normal, rays[i], hits[i]) ? 0 : 1;
-  if (many * out > rays.size()) return std::nullopt;
+                                                      std::uint64_t key) const {
   const Ray across{.origin = at.position, .direction = at.normal, .origin_group = at.facet};
   ElementHit hit;
   caster.closest_hits({&across, 1}, {&hit, 1});
   if (!is_gap(at.normal, across, hit)) return std::nullopt;
+  // Near the brink of a gap many rays get out by themselves. The rays that decide have no part in
+  // the light: a gather that aims where few of its own rays got out would be too bright.
+  constexpr std::size_t deciding = 16, many = 8;
+  std::array<Ray, deciding> rays;
+  std::array<ElementHit, deciding> hits;
+  for (std::size_t i = 0; i < deciding; ++i) rays[i] = scattered(at, random_key(key, i));
+  caster.closest_hits(rays, hits);
+  std::size_t out = 0;
+  for (std::size_t i = 0; i < deciding; ++i) out += is_gap(at.normal, rays[i], hits[i]) ? 0 : 1;
+  if (many * out > deciding) return std::nullopt;
   const PatchMesh& mesh = lit_.mesh();
   return GapSize{.width = hit.t,
                  .reach = patches_wide * std::sqrt(mesh.area[mesh.patch[hit.element]])};
 }
 
 std::optional<GapExits> GapLight::exits(const ElementCaster& caster, const SurfacePoint& at,
-                                        std::span<const Ray> rays, std::span<const ElementHit> hits,
                                         int count, std::uint64_t key) const {
   if (count < GapExits::fewest_rays) return std::nullopt;
-  const auto gap = gap_around(caster, at, rays, hits);
+  constexpr std::uint64_t deciding = 1;
+  const auto gap = gap_around(caster, at, random_key(key, deciding));
   if (!gap) return std::nullopt;
   return GapExits(caster, at, gap->width, gap->reach, key,
                   [&](const Ray& ray, const ElementHit& end) {
@@ -210,12 +207,8 @@ std::optional<GapExits> GapLight::exits(const ElementCaster& caster, const Surfa
 }
 
 std::optional<GapExits> GapLight::even_exits(const ElementCaster& caster, const SurfacePoint& at,
-                                             std::span<const Ray> rays,
-                                             std::span<const ElementHit> hits) const {
-  // Deep in a gap seven rays in eight end in it; two of them tell most places from gaps.
-  const auto is_inside = [&](std::size_t i) { return is_gap(at.normal, rays[i], hits[i]); };
-  if (rays.size() < 2 || (!is_inside(0) && !is_inside(1))) return std::nullopt;
-  const auto gap = gap_around(caster, at, rays, hits);
+                                             std::uint64_t key) const {
+  const auto gap = gap_around(caster, at, key);
   if (!gap) return std::nullopt;
   return GapExits(at, gap->width, gap->reach);
 }

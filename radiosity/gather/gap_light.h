@@ -51,17 +51,15 @@ class GapLight {
   /// and its frame: as is_gap(), but for the surface that faces the one that was hit.
   bool is_narrow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit) const;
 
-  /// The directions out of the gap that a point lies in; empty if it lies in none. `rays` are the
-  /// first of a gather's rays from there, and `hits` their ends; `count` is the number of all, and
-  /// fewer than GapExits::fewest_rays are not worth the search.
-  std::optional<GapExits> exits(const ElementCaster& caster, const SurfacePoint& at,
-                                std::span<const Ray> rays, std::span<const ElementHit> hits,
-                                int count, std::uint64_t key) const;
+  /// The directions out of the gap that a point lies in; empty if it lies in none. `count` is the
+  /// number of the gather's rays, of which fewer than GapExits::fewest_rays are not worth the
+  /// search. `key` decides the rays of the search, which differ from those of the gather.
+  std::optional<GapExits> exits(const ElementCaster& caster, const SurfacePoint& at, int count,
+                                std::uint64_t key) const;
 
-  /// The same without a search: directions that are even over the scales of the gap.
+  /// exits() without pilot rays: directions that are even over the scales of the gap.
   std::optional<GapExits> even_exits(const ElementCaster& caster, const SurfacePoint& at,
-                                     std::span<const Ray> rays,
-                                     std::span<const ElementHit> hits) const;
+                                     std::uint64_t key) const;
 
   /// True if a ray from a point of unit normal `normal` ends in a gap. In the gap of `exits` (null:
   /// not known) that is also where the gap is closed, such as on the floor between a cupboard and
@@ -108,8 +106,7 @@ class GapLight {
     double width = 0.0, reach = 0.0;  // metres
   };
   std::optional<GapSize> gap_around(const ElementCaster& caster, const SurfacePoint& at,
-                                    std::span<const Ray> rays,
-                                    std::span<const ElementHit> hits) const;
+                                    std::uint64_t key) const;
   void add_direct(const ElementCaster& caster, const LightQuery& query, const Spectrum& share,
                   Eigen::ArrayXd& sum) const;
   double next_ray(const ElementCaster& caster, const GapAims& aims, const Portals::View& view,

@@ -70,8 +70,8 @@ void HemisphereGather::gather(const GatherPoint& at, std::uint64_t key, float* i
     caster_.closest_hits({ray.data(), n}, {hit.data(), n});
     if (begin == 0 && options_.aims_out_of_gaps && at.facet >= 0) {
       const SurfacePoint here{.position = at.position, .normal = at.normal, .facet = at.facet};
-      place.exits = gaps_.exits(caster_, here, {ray.data(), n}, {hit.data(), n}, count,
-                                random_key(key, RandomPurpose::gap_rays, pilots));
+      place.exits =
+          gaps_.exits(caster_, here, count, random_key(key, RandomPurpose::gap_rays, pilots));
     }
     for (std::size_t r = 0; r < n; ++r) {
       const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;

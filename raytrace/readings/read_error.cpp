@@ -51,7 +51,7 @@ class ReadErrors {
         .position = point.position, .normal = point.normal, .facet = point.facet};
     std::optional<GapExits> exits;
     if (point.facet >= 0) {
-      exits = gaps_.exits(caster_, here, rays, hits, rays_of_set_,
+      exits = gaps_.exits(caster_, here, rays_of_set_,
                           random_key(key, RandomPurpose::gap_rays, own_key));
     }
     double sum = 0.0;

@@ -13,6 +13,8 @@ namespace lightwell {
 namespace {
 
 constexpr int batch = 64;
+// Number of a key of gap rays that no ray has.
+constexpr std::uint64_t deciding = 1ULL << 40;
 
 // Returns the direction, mirrored at the facet if it points below. The hemisphere of a smooth
 // normal reaches below the facet, where a ray would meet the facet's own neighbourhood; the
@@ -77,7 +79,8 @@ Spectrum PixelGather::indirect_irradiance(const ElementCaster& caster, const Sha
     caster.closest_hits({rays.data(), n}, {hits.data(), n});
     if (begin == 0 && at.facet >= 0) {
       const SurfacePoint here{.position = at.position, .normal = at.normal, .facet = at.facet};
-      place.exits = gaps_.even_exits(caster, here, {rays.data(), n}, {hits.data(), n});
+      place.exits =
+          gaps_.even_exits(caster, here, random_key(key, RandomPurpose::gap_rays, deciding));
     }
     for (std::size_t r = 0; r < n; ++r) {
       add(place, rays[r], hits[r], begin + r, aimed_density(place, rays[r], hits[r]), sum);
