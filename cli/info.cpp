@@ -15,6 +15,7 @@
 #include "cli/report.h"
 #include "cli/scene_hints.h"
 #include "cli/steps.h"
+#include "cli/weather_facts.h"
 #include "mesh/cleaning/mesh_quality.h"
 #include "mesh/cleaning/planar_regions.h"
 #include "radiosity/solution/solution_file.h"
@@ -374,6 +375,7 @@ Json describe(const std::string& file, bool with_surfaces, const CommonOptions& 
   if (extension == ".vtp") return solution_json(read_solution(file));
   if (extension == ".exr") return picture_json(read_exr(file));
   if (is_luminaire_file(file)) return luminaire_json(read_luminaire(file));
+  if (is_weather_file(file)) return weather_json(read_weather(file));
   Scene scene = [&] {
     const InterruptEndsAtOnce at_once;
     return read_scene(file, allowed_references(options));
@@ -427,8 +429,8 @@ Action add_info(CLI::App& command) {
   };
   const auto arguments = std::make_shared<Arguments>();
   command.description(
-      fmt::format("Describes a scene ({}), a solution (.vtp), a picture (.exr) or a luminaire "
-                  "(.ies, .ldt).",
+      fmt::format("Describes a scene ({}), a solution (.vtp), a picture (.exr), a luminaire "
+                  "(.ies, .ldt) or a year's weather (.epw, .wea).",
                   scene_extensions));
   command.add_option("file", arguments->file, "the file")->required()->type_name("FILE");
   command.add_flag("--ugr", arguments->ugr,

@@ -114,6 +114,19 @@ TEST_F(DaylightCommand, HoursAreThoseOfTheWeather) {
   }
 }
 
+// The sums are those of the file's three hours.
+TEST_F(DaylightCommand, InfoDescribesWeather) {
+  const Json json = run_json({"info", "year.wea"});
+  EXPECT_EQ(json["kind"], "weather");
+  EXPECT_EQ(json["place"], "Testville");
+  EXPECT_EQ(json["hours"], 8760);
+  EXPECT_EQ(json["hours_with_light"], 3);
+  EXPECT_NEAR(json["direct_normal_kWh_m2"].get<double>(), 1.2, 1e-12);
+  EXPECT_NEAR(json["diffuse_horizontal_kWh_m2"].get<double>(), 0.35, 1e-12);
+  EXPECT_GT(json["brightest_hour_klx"].get<double>(), 0.0);
+  EXPECT_EQ(json["notes"].size(), 1u);
+}
+
 TEST_F(DaylightCommand, WrongInputIsASentence) {
   const auto expect = [&](const Words& more, int code, const std::string& sentence) {
     const Ended ended = run(command(more));
