@@ -21,7 +21,7 @@ using Json = nlohmann::json;
 // closes it.
 std::string court(bool roof = false) {
   std::string text =
-      "unit = \"m\"\n[materials.grey]\nreflectance = 0.5\ntwo_sided = true\n"
+      "unit = \"m\"\n[materials.grey]\nreflectance = 0.5\n"
       "[sky]\nkind = \"cie-overcast\"\nilluminance = 1\nup = [0, 0, 1]\n";
   const auto add = [&](const std::string& name, const std::string& polygon) {
     text +=
