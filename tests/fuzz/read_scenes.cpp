@@ -1,4 +1,6 @@
 // Targets of scenes and of the meshes that scenes name.
+#include <fmt/format.h>
+
 #include "scene/errors.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/mesh_file.h"
@@ -18,8 +20,19 @@ Scene read_scene_file(const std::string& name, std::string_view bytes) {
   return scene;
 }
 
-void read_weather_file(const std::string& name, std::string_view bytes) {
-  read_weather(input_file(name, bytes));
+void read_wea_year(std::string_view bytes) {
+  read_weather(input_file("year.wea", bytes));
+}
+
+// One input is the heading and the first two hours; the other hours of the year follow.
+void read_epw_year(std::string_view bytes) {
+  constexpr int first = 2, hours = 8760;
+  std::string text(bytes);
+  for (int n = first; n < hours; ++n) {
+    const auto [month, day, hour] = hour_of_year(n, false);
+    text += fmt::format("1999,{},{},{},0,,,,,,,,,,0,0\n", month, day, hour + 1);
+  }
+  read_weather(input_file("year.epw", text));
 }
 
 void read_toml_scene(std::string_view bytes) {

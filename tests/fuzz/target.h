@@ -32,8 +32,8 @@ std::span<const Target> targets();
 // The readers.
 /// Reads a scene from a file called `name`, and walks over all of the scene as its hash does.
 Scene read_scene_file(const std::string& name, std::string_view bytes);
-/// Reads a file of hourly weather with these bytes.
-void read_weather_file(const std::string& name, std::string_view bytes);
+void read_epw_year(std::string_view bytes);
+void read_wea_year(std::string_view bytes);
 void read_toml_scene(std::string_view bytes);
 void read_obj_and_mtl(std::string_view bytes);
 void read_serialized(std::string_view bytes);
