@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <optional>
 #include <span>
 
@@ -211,7 +210,8 @@ void go_through_year(const DaylightModel& model, const SkyCoefficients& sky,
   set_metrics(most, made.daylight_factor, &YearRoom::most, made.rooms);
 }
 
-// What is known of a year before it is computed. Notes are those of the scene and of the weather.
+// The report of a year before the year is computed, with `notes` on the weather and those of the
+// scene.
 YearReport report_of(const DaylightArguments& arguments, const Scene& scene, const Weather& weather,
                      const Compass& compass, std::span<const std::string> notes) {
   YearReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,

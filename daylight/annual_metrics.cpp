@@ -34,10 +34,10 @@ double bin_edge(int bin, int bins) {
 }
 
 // Adds 1 to each counter whose condition an illuminance meets.
-void count_occupied(float E, float sunlight, Eigen::ArrayXXf& count, Eigen::Index i) {
+void count_occupied(float E, float sunlight, Eigen::ArrayXXd& count, Eigen::Index i) {
   constexpr float target = 300.0f, useful = 100.0f, too_much = 3000.0f, direct = 1000.0f;
   count(i, reached) += E >= target;
-  count(i, continuous) += std::min(E / target, 1.0f);
+  count(i, continuous) += double{std::min(E / target, 1.0f)};
   count(i, below_100) += E < useful;
   count(i, from_100) += E >= useful && E < target;
   count(i, from_300) += E >= target && E <= too_much;
@@ -82,10 +82,10 @@ AnnualMetrics::AnnualMetrics(int sensors, std::span<const SkyHour> hours, int ye
     : occupancy_(occupancy),
       factor_(static_cast<float>(factor)),
       year_hours_(year_hours),
-      occupied_hours_(year_hours / 24 * (occupancy.to - occupancy.from)),
+      occupied_hours_(year_hours / hours_a_day * (occupancy.to - occupancy.from)),
       bright_hours_(year_hours / 2),
       is_bright_(static_cast<std::size_t>(year_hours), 0),
-      count_(Eigen::ArrayXXf::Zero(sensors, counter_count)) {
+      count_(Eigen::ArrayXXd::Zero(sensors, counter_count)) {
   histogram_.setZero(sensors, bins);
   std::vector<int> by_light(hours.size());
   for (std::size_t i = 0; i < hours.size(); ++i) by_light[i] = static_cast<int>(i);
@@ -107,11 +107,11 @@ void AnnualMetrics::add(const HourBlock& block) {
 void AnnualMetrics::add(const HourBlock& block, Eigen::Index i) {
   const float bins_of_logarithm = static_cast<float>(bins) / std::log(most_lux / least_lux);
   for (std::size_t h = 0; h < block.hours.size(); ++h) {
-    const int number = block.hours[h].number, hour = number % 24;
+    const int number = block.hours[h].number, hour = number % hours_a_day;
     const auto column = static_cast<Eigen::Index>(h);
     const float sunlight = block.sunlight(i, column);
     const float E = sunlight + factor_ * (block.total(i, column) - sunlight);
-    count_(i, lux) += E;
+    count_(i, lux) += double{E};
     if (hour >= occupancy_.from && hour < occupancy_.to) count_occupied(E, sunlight, count_, i);
     if (is_bright_[static_cast<std::size_t>(number)] == 0) continue;
     count_(i, en_100) += E >= 100.0f;
@@ -140,7 +140,7 @@ double AnnualMetrics::median(Eigen::Index sensor) const {
 
 SensorMetrics AnnualMetrics::sensors() const {
   const auto share = [&](Counter counter, int hours) -> Eigen::ArrayXd {
-    return count_.col(counter).cast<double>() * (100.0 / hours);
+    return count_.col(counter) * (100.0 / hours);
   };
   SensorMetrics metrics;
   metrics.autonomy = share(reached, occupied_hours_);
@@ -151,8 +151,8 @@ SensorMetrics AnnualMetrics::sensors() const {
   // Hours without light are no hours of `hours`, and are below 100 lx.
   metrics.below_100 =
       100.0 - metrics.from_100_to_300 - metrics.from_300_to_3000 - metrics.above_3000;
-  metrics.sun_hours = count_.col(sun).cast<double>();
-  metrics.mean_lux = count_.col(lux).cast<double>() / year_hours_;
+  metrics.sun_hours = count_.col(sun);
+  metrics.mean_lux = count_.col(lux) / year_hours_;
   metrics.en_above_100 = share(en_100, bright_hours_);
   metrics.en_above_300 = share(en_300, bright_hours_);
   metrics.en_above_500 = share(en_500, bright_hours_);

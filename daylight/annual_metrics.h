@@ -52,7 +52,6 @@ class AnnualMetrics {
 
   void add(const HourBlock& block);
   SensorMetrics sensors() const;
-  const Occupancy& occupancy() const { return occupancy_; }
   int occupied_hours() const { return occupied_hours_; }
 
  private:
@@ -65,7 +64,7 @@ class AnnualMetrics {
   float factor_ = 1.0f;
   int year_hours_ = 0, occupied_hours_ = 0, bright_hours_ = 0;
   std::vector<char> is_bright_{};  // per hour of the year
-  Eigen::ArrayXXf count_;          // sensors x counters
+  Eigen::ArrayXXd count_;          // sensors x counters
   Eigen::Array<std::uint16_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> histogram_;
 };
 

@@ -73,7 +73,7 @@ DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen
   weights_ = luminous_weights(scene_.bands);
   FormFactorOptions rows = options.form_factors;
   rows.run.progress = options.progress;
-  form_factors_ = compute_form_factors({scene_, *caster_, *direct_light_}, rows, &report_);
+  form_factors_ = compute_form_factors({scene_, *caster_, *direct_light_}, rows);
   view_patches();
 }
 

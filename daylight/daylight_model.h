@@ -20,8 +20,8 @@ struct DaylightOptions {
   int sky_subdivision = 4;  ///< of SkyPatches: 2305 patches
   MeshOptions mesh{.auto_patch_count = 3200};
   FormFactorOptions form_factors{};
-  /// Of the equations (see solve_columns). Relative to the brightest patch, which lies outdoors: a
-  /// room behind a window may have a thousandth of its light.
+  /// Error of the equations (see solve_columns), relative to the brightest patch. That patch lies
+  /// outdoors, and a room behind a window may have a thousandth of its light.
   double tolerance = 1e-6;
   DomeEffort points{.search = 4, .rays = 4096};
   DomeEffort patches{.search = 1, .rays = 1024};
@@ -67,7 +67,6 @@ class DaylightModel {
   const ElementCaster& caster() const { return *caster_; }
   const SkyPatches& sky() const { return sky_; }
   const DaylightOptions& options() const { return options_; }
-  const FormFactorReport& form_factor_report() const { return report_; }
 
   /// Sets the sensors; keeps a copy.
   void set_sensors(std::span<const GatherPoint> sensors);
@@ -97,7 +96,6 @@ class DaylightModel {
   std::optional<ClearPanes> panes_{};
   std::optional<LightPaths> paths_{};  // empty where nothing mirrors or refracts
   Eigen::ArrayXf weights_{};           // of bands in illuminance, of sum 1
-  FormFactorReport report_{};
   std::unique_ptr<FormFactors> form_factors_{};
   std::vector<DomeView> patch_views_{};
   std::vector<GatherPoint> sensors_{};

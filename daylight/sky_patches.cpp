@@ -30,20 +30,22 @@ double wrapped_turn(double turns) {
 }  // namespace
 
 SkyPatches::SkyPatches(int subdivision, const Eigen::Vector3d& up, const Eigen::Vector3d& north)
-    : subdivision_(subdivision), up_(up), north_(north), east_(north.cross(up)) {
+    : row_height_(90.0 / (static_cast<double>(patches_of_rows.size()) * subdivision + 0.5) *
+                  degree),
+      up_(up),
+      north_(north),
+      east_(north.cross(up)) {
   if (subdivision < 1 || subdivision > most_subdivision) {
     throw std::invalid_argument(
         fmt::format("the sky's patches are divided by {}; give 1 (145 patches) to {} ({} patches)",
                     subdivision, most_subdivision, 144 * most_subdivision * most_subdivision + 1));
   }
   const int rows = static_cast<int>(patches_of_rows.size()) * subdivision;
-  // The cap about the zenith is as wide as a row is high.
-  const double height = 90.0 / (rows + 0.5) * degree;
   for (int row = 0; row < rows; ++row) {
     const int count = subdivision * patches_of_rows[static_cast<std::size_t>(row / subdivision)];
-    add_row(row, count, std::sin(row * height), std::sin((row + 1) * height));
+    add_row(row, count, std::sin(row * row_height_), std::sin((row + 1) * row_height_));
   }
-  add_row(rows, 1, std::sin(rows * height), 1.0);
+  add_row(rows, 1, std::sin(rows * row_height_), 1.0);
   first_of_row_.push_back(static_cast<int>(cells_.size()));
   const std::size_t dome = cells_.size();
   for (std::size_t i = 0; i < dome; ++i) {
@@ -97,8 +99,7 @@ int SkyPatches::cell_of(const Eigen::Vector3d& direction) const {
   const double sine = direction.dot(up_);
   const double altitude = std::asin(std::clamp(std::abs(sine), 0.0, 1.0));
   const int rows = static_cast<int>(first_of_row_.size()) - 2;  // less the cap
-  const double height = 90.0 / (rows + 0.5) * degree;
-  const int row = std::min(static_cast<int>(altitude / height), rows);
+  const int row = std::min(static_cast<int>(altitude / row_height_), rows);
   const auto first = first_of_row_[static_cast<std::size_t>(row)];
   const int count = first_of_row_[static_cast<std::size_t>(row) + 1] - first;
   const double turns =

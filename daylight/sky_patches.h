@@ -22,7 +22,6 @@ class SkyPatches {
   /// std::invalid_argument for another m.
   SkyPatches(int subdivision, const Eigen::Vector3d& up, const Eigen::Vector3d& north);
 
-  int subdivision() const { return subdivision_; }
   int dome_count() const { return static_cast<int>(cells_.size()) / 2; }
   int cell_count() const { return static_cast<int>(cells_.size()); }
   int column_count() const { return dome_count() + 1; }
@@ -57,7 +56,7 @@ class SkyPatches {
   void find_neighbours();
   Eigen::Vector3d direction(const Cell& cell, double u, double v) const;
 
-  int subdivision_;
+  double row_height_;  // radians; the cap about the zenith is as wide as a row is high
   Eigen::Vector3d up_, north_, east_;
   std::vector<Cell> cells_{};        // the dome's, then those below the horizon in the same order
   std::vector<int> first_of_row_{};  // of the dome, and the number of its cells

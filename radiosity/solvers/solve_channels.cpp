@@ -4,23 +4,13 @@
 
 #include "mesh/patches/translucency.h"
 #include "radiosity/solvers/mirrored_shares.h"
+#include "radiosity/solvers/patches_alone.h"
 
 namespace lightwell {
 namespace {
 
 // Limit of solvers, because form factors are floats.
 constexpr double least_tolerance = 1e-7;
-
-// The patches without their elements, which is all that solvers need.
-PatchMesh patches_of(const PatchMesh& mesh) {
-  PatchMesh patches;
-  patches.area = mesh.area;
-  patches.reflectance = mesh.reflectance;
-  patches.transmittance = mesh.transmittance;
-  patches.behind = mesh.behind;
-  patches.material = mesh.material;
-  return patches;
-}
 
 BandArray emission_of(const PatchMesh& mesh, const std::vector<int>& patch_channel, int channel) {
   BandArray M = mesh.emission;
@@ -96,7 +86,7 @@ void solve_channels(const Scene& scene, const PatchMesh& mesh, const FormFactors
       std::max(options.tolerance / count, std::min(options.tolerance, least_tolerance));
   part.observer = {};
   double residual = 0.0;  // upper bound of the sum's residual, W/m^2
-  PatchMesh lit = patches_of(mesh);
+  PatchMesh lit = patches_alone(mesh);
   for (int c = 0; c < count; ++c) {
     lit.emission = emission_of(mesh, solution.patch_channel, c);
     const FreeLight arriving = of_channel(free_light, c, static_cast<int>(bands));

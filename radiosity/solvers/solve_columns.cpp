@@ -4,20 +4,18 @@
 #include <stdexcept>
 
 #include "mesh/patches/translucency.h"
+#include "radiosity/solvers/patches_alone.h"
 
 namespace lightwell {
 namespace {
 
 // Patches whose reflectances repeat for every column of a block.
 PatchMesh repeated(const PatchMesh& mesh, Eigen::Index columns) {
-  PatchMesh patches;
-  patches.area = mesh.area;
+  PatchMesh patches = patches_alone(mesh);
   patches.reflectance = mesh.reflectance.replicate(1, columns);
   if (mesh.transmittance.size() > 0) {
     patches.transmittance = mesh.transmittance.replicate(1, columns);
   }
-  patches.behind = mesh.behind;
-  patches.material = mesh.material;
   patches.emission = BandArray::Zero(mesh.patch_count(), columns * mesh.reflectance.cols());
   return patches;
 }

@@ -248,6 +248,14 @@ double relative_bound(const LuxField& field) {
 
 }  // namespace
 
+LuxField field_of(const Eigen::ArrayXd& lux) {
+  LuxField field{
+      .lux = lux,
+      .lux_within = Eigen::ArrayXd::Constant(lux.size(), std::numeric_limits<double>::quiet_NaN())};
+  summarise(field);
+  return field;
+}
+
 double bound_at(const LuxField& field, double lux) {
   Eigen::Index at = 0;
   (field.lux - lux).abs().minCoeff(&at);

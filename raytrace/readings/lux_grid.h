@@ -63,6 +63,9 @@ struct LuxField {
   double point_within = 0.0, mean_within = 0.0;
 };
 
+/// The field of values at points whose bounds are not known (NaN). There is at least one point.
+LuxField field_of(const Eigen::ArrayXd& lux);
+
 /// Bound of the error of the point whose illuminance is nearest to `lux`, lx; NaN where nothing is
 /// known. The field has at least one point.
 double bound_at(const LuxField& field, double lux);

@@ -146,19 +146,14 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   std::vector<GatherPoint> points;
   points.reserve(probes.size());
   for (const Probe& probe : probes) {
-    GatherPoint point{.position = probe.position, .normal = probe.normal};
-    if (const auto point_on_surface = surface.find(probe)) {
-      point.position = point_on_surface->position;
-      point.facet = point_on_surface->hit.facet;
-      if (has_caustics && point_on_surface->hit.element >= 0) {
-        const auto row = static_cast<Eigen::Index>(points.size());
-        caustics.irradiance.row(row) =
-            interpolate(caster.mesh(), solution.caustic_irradiance, point_on_surface->hit)
-                .transpose();
-        caustics.lux_within[row] = caustic_bound(caster.mesh(), solution, point_on_surface->hit);
-      }
+    const auto found = surface.find(probe);
+    if (found && has_caustics && found->hit.element >= 0) {
+      const auto row = static_cast<Eigen::Index>(points.size());
+      caustics.irradiance.row(row) =
+          interpolate(caster.mesh(), solution.caustic_irradiance, found->hit).transpose();
+      caustics.lux_within[row] = caustic_bound(caster.mesh(), solution, found->hit);
     }
-    points.push_back(point);
+    points.push_back(probe_point(probe, found));
   }
   const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution);
   const LitScene lit{scene, caster, direct_light};

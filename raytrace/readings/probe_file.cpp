@@ -11,29 +11,14 @@
 #include "raytrace/readings/probe.h"
 #include "scene/atomic_file.h"
 #include "scene/errors.h"
+#include "scene/io/comma_fields.h"
+#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace {
 
 constexpr std::array<std::string_view, 6> column_names = {"x", "y", "z", "nx", "ny", "nz"};
 using Columns = std::array<int, 6>;
-
-std::string_view trimmed_cell(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r";
-  const auto first = text.find_first_not_of(blanks);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
-}
-
-std::vector<std::string_view> cells_of(std::string_view line) {
-  std::vector<std::string_view> cells;
-  for (std::size_t begin = 0;;) {
-    const auto comma = line.find(',', begin);
-    cells.push_back(trimmed_cell(line.substr(begin, comma - begin)));
-    if (comma == std::string_view::npos) return cells;
-    begin = comma + 1;
-  }
-}
 
 // Position of an error, which precedes every message.
 struct FileLocation {
@@ -108,9 +93,9 @@ std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_p
     constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
     std::string_view text = line;
     if (location.line == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(3);
-    text = trimmed_cell(text);
+    text = trimmed(text);
     if (text.empty() || text.starts_with('#')) continue;
-    const auto cells = cells_of(text);
+    const auto cells = comma_fields(text);
     if (!columns) {
       columns = read_header(cells, location);
     } else {

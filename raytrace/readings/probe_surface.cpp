@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "mesh/patches/mesh_bounds.h"
 #include "mesh/patches/round_grid.h"
 #include "scene/sampling.h"
 
@@ -11,12 +12,6 @@ namespace {
 
 // Greatest distance of a probe from its surface, as a share of the scene's diagonal.
 constexpr double reach_share = 1e-4;
-
-double diagonal(const PatchMesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (int v = 0; v < mesh.vertex_count(); ++v) box.extend(mesh.position(v));
-  return box.isEmpty() ? 0.0 : box.diagonal().norm();
-}
 
 // Unit normal at a hit, on the side of the probe or the opposite one. The back of a one-sided
 // surface has no element, so the normal is that of its front.
@@ -33,15 +28,15 @@ Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
 }  // namespace
 
 ProbeSurface::ProbeSurface(const ElementCaster& caster)
-    : caster_(caster), reach_(reach_share * diagonal(caster.mesh())) {}
+    : caster_(caster), reach_(reach_share * mesh_bounds(caster.mesh()).diagonal()) {}
 
-std::optional<ProbeSurface::SurfacePoint> ProbeSurface::find(const Probe& probe) const {
+std::optional<ProbeSurface::Found> ProbeSurface::find(const Probe& probe) const {
   Frame frame{.normal = probe.normal};
   tangent_frame(probe.normal, frame.a, frame.b);
   const double hair = 0.1 * reach_;
   auto straight = below(probe.position, probe.normal);
   if (straight && is_inside(*straight, probe.position, frame, hair)) return straight;
-  std::optional<SurfacePoint> behind;
+  std::optional<Found> behind;
   const Eigen::Vector3d &a = frame.a, &b = frame.b;
   for (const Eigen::Vector3d& step :
        {a, b, Eigen::Vector3d(-a), Eigen::Vector3d(-b), Eigen::Vector3d(a + b),
@@ -57,11 +52,11 @@ std::optional<ProbeSurface::SurfacePoint> ProbeSurface::find(const Probe& probe)
 
 // Returns the nearest point of the surfaces within reach above or below `position` that face
 // along `normal` or against it. Surfaces with an element come before black backs.
-std::optional<ProbeSurface::SurfacePoint> ProbeSurface::below(const Eigen::Vector3d& position,
-                                                              const Eigen::Vector3d& normal) const {
+std::optional<ProbeSurface::Found> ProbeSurface::below(const Eigen::Vector3d& position,
+                                                       const Eigen::Vector3d& normal) const {
   constexpr double min_facing = 0.9;  // cosine; excludes a wall touched from the side
   constexpr int max_layers = 8;
-  std::optional<SurfacePoint> best;
+  std::optional<Found> best;
   double best_distance = 0.0;
   const Eigen::Vector3d top = position + reach_ * normal;
   Ray ray{.origin = top, .direction = -normal, .t_max = 2.0 * reach_};
@@ -76,7 +71,7 @@ std::optional<ProbeSurface::SurfacePoint> ProbeSurface::below(const Eigen::Vecto
         !best || (hit.element >= 0 && best->hit.element < 0) ||
         ((hit.element >= 0) == (best->hit.element >= 0) && distance < best_distance);
     if (faces && is_better) {
-      best = SurfacePoint{.hit = hit, .position = at};
+      best = Found{.hit = hit, .position = at};
       best_distance = distance;
     }
     // The next ray starts a little before this surface, since another may lie in the same plane.
@@ -90,7 +85,7 @@ std::optional<ProbeSurface::SurfacePoint> ProbeSurface::below(const Eigen::Vecto
 // Returns whether the facet continues for `radius` around the point and nothing stands on it
 // there. A neighbour in nearly the same plane ends the facet, since the neighbour would shade the
 // probe at their common edge.
-bool ProbeSurface::is_inside(const SurfacePoint& point_on_surface, const Eigen::Vector3d& position,
+bool ProbeSurface::is_inside(const Found& point_on_surface, const Eigen::Vector3d& position,
                              const Frame& frame, double radius) const {
   const auto continues = [&](const Eigen::Vector3d& at) {
     const auto other = below(at, frame.normal);
@@ -119,17 +114,20 @@ bool ProbeSurface::is_behind(const Eigen::Vector3d& position, const Eigen::Vecto
   return hit.facet >= 0 && hit.from_back;
 }
 
+GatherPoint probe_point(const Probe& probe, const std::optional<ProbeSurface::Found>& found) {
+  GatherPoint point{.position = probe.position, .normal = probe.normal};
+  if (found) {
+    point.position = found->position;
+    point.facet = found->hit.facet;
+  }
+  return point;
+}
+
 std::vector<GatherPoint> probe_points(const ElementCaster& caster, std::span<const Probe> probes) {
   const ProbeSurface surface(caster);
   std::vector<GatherPoint> points;
   points.reserve(probes.size());
-  for (const Probe& probe : probes) {
-    points.push_back({.position = probe.position, .normal = probe.normal});
-    const auto found = surface.find(probe);
-    if (!found) continue;
-    points.back().position = found->position;
-    points.back().facet = found->hit.facet;
-  }
+  for (const Probe& probe : probes) points.push_back(probe_point(probe, surface.find(probe)));
   return points;
 }
 

@@ -14,7 +14,7 @@ namespace lightwell {
 /// Search for the surface that a probe lies on: within 1e-4 of the scene's diagonal.
 class ProbeSurface {
  public:
-  struct SurfacePoint {
+  struct Found {
     ElementHit hit{};
     Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< on the surface
   };
@@ -25,23 +25,25 @@ class ProbeSurface {
   /// The surface point of a probe; empty if there is none. A probe on an edge, or where another
   /// surface stands on its own surface, is moved by a tenth of the reach to a point that lies
   /// clearly within its facet and in front of what stands there.
-  std::optional<SurfacePoint> find(const Probe& probe) const;
+  std::optional<Found> find(const Probe& probe) const;
 
  private:
   struct Frame {
     Eigen::Vector3d normal, a{}, b{};  // a and b are tangent to the surface
   };
 
-  std::optional<SurfacePoint> below(const Eigen::Vector3d& position,
-                                    const Eigen::Vector3d& normal) const;
-  bool is_inside(const SurfacePoint& point_on_surface, const Eigen::Vector3d& position,
-                 const Frame& frame, double radius) const;
+  std::optional<Found> below(const Eigen::Vector3d& position, const Eigen::Vector3d& normal) const;
+  bool is_inside(const Found& point_on_surface, const Eigen::Vector3d& position, const Frame& frame,
+                 double radius) const;
   bool is_behind(const Eigen::Vector3d& position, const Eigen::Vector3d& way,
                  const Frame& frame) const;
 
   const ElementCaster& caster_;
   double reach_;  // m
 };
+
+/// The point at which a probe gathers light: on the surface that was found, or in the air.
+GatherPoint probe_point(const Probe& probe, const std::optional<ProbeSurface::Found>& found);
 
 /// The points at which probes gather light: on the surface that a probe lies on, or in the air.
 std::vector<GatherPoint> probe_points(const ElementCaster& caster, std::span<const Probe> probes);

@@ -15,7 +15,7 @@
 namespace lightwell {
 namespace {
 
-constexpr int hours_a_day = 24, days_of_a_leap_year = 366;
+constexpr int days_of_a_leap_year = 366;
 constexpr double map_width = 146.0, map_height = 48.0;  // mm, of the map
 
 constexpr std::array<const char*, 12> months = {"Jan", "Feb", "Mar", "Apr", "May", "Jun",

@@ -13,7 +13,7 @@
 
 namespace lightwell {
 
-/// What a lighting report is asked for, besides the calculation grids of the scene file. Lengths in
+/// Request for a lighting report, besides the calculation grids of the scene file. Lengths in
 /// metres.
 struct ReportRequest {
   GridRequest grids{};                   ///< measured on

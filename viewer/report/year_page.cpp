@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 
 #include "viewer/export/page_data.h"
 #include "viewer/report/heat_map.h"
@@ -61,16 +60,6 @@ void add_table(const YearReport& report, std::string& page) {
                  "sDA and ASE are those of IES LM-83 without blinds; EN 17037 by its second "
                  "method.</p>\n",
                  100.0 * report.error);
-}
-
-LuxField field_of(const Eigen::ArrayXd& values) {
-  LuxField field{.lux = values,
-                 .lux_within = Eigen::ArrayXd::Constant(values.size(),
-                                                        std::numeric_limits<double>::quiet_NaN())};
-  field.mean = values.mean();
-  field.least = values.minCoeff();
-  field.greatest = values.maxCoeff();
-  return field;
 }
 
 struct Plan {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "scene/io/comma_fields.h"
 #include "scene/io/weather/weather_rows.h"
 
 namespace lightwell {
@@ -22,7 +23,7 @@ double heading_number(const TextFile& file, int line, std::string_view field, co
 }
 
 void read_location(const TextFile& file, int line, std::string_view text, Weather& weather) {
-  const auto fields = fields_of(text);
+  const auto fields = comma_fields(text);
   constexpr std::size_t latitude = 6, longitude = 7, zone = 8;
   if (fields.size() <= zone) {
     file.fail(line,
@@ -63,7 +64,7 @@ Rows rows_of(const TextFile& file, Weather& weather) {
     if (text.empty() || text.front() < '0' || text.front() > '9') return;
     if (!has_location)
       file.fail(line, "comes before the LOCATION line that an EPW file begins with");
-    auto fields = fields_of(text);
+    auto fields = comma_fields(text);
     if (fields.size() < fields_needed) {
       file.fail(line, fmt::format("has {} fields; a row of an EPW file has 35, and the file may be "
                                   "cut short",

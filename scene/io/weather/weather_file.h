@@ -31,6 +31,8 @@ struct Weather {
   std::vector<std::string> notes{};  ///< what was missing and what is assumed, one sentence each
 };
 
+inline constexpr int hours_a_day = 24;
+
 /// Date and hour of the day of an hour of the year.
 struct HourOfYear {
   int month = 1, day = 1, hour = 0;

@@ -19,27 +19,17 @@ int days_of(int month, bool is_leap_year) {
 }  // namespace
 
 HourOfYear hour_of_year(int number, bool is_leap_year) {
-  int day = number / 24 + 1, month = 1;
+  int day = number / hours_a_day + 1, month = 1;
   while (month < 12 && day > days_of(month, is_leap_year)) day -= days_of(month++, is_leap_year);
-  return {.month = month, .day = day, .hour = number % 24};
+  return {.month = month, .day = day, .hour = number % hours_a_day};
 }
 
 int number_of(const HourOfYear& hour, bool is_leap_year) {
-  if (hour.month < 1 || hour.month > 12 || hour.hour < 0 || hour.hour > 23) return -1;
+  if (hour.month < 1 || hour.month > 12 || hour.hour < 0 || hour.hour >= hours_a_day) return -1;
   if (hour.day < 1 || hour.day > days_of(hour.month, is_leap_year)) return -1;
   int days = hour.day - 1;
   for (int month = 1; month < hour.month; ++month) days += days_of(month, is_leap_year);
-  return 24 * days + hour.hour;
-}
-
-std::vector<std::string_view> fields_of(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (std::size_t begin = 0; begin <= line.size();) {
-    const std::size_t end = std::min(line.find(',', begin), line.size());
-    fields.push_back(trimmed(line.substr(begin, end - begin)));
-    begin = end + 1;
-  }
-  return fields;
+  return hours_a_day * days + hour.hour;
 }
 
 WeatherRows::WeatherRows(const TextFile& file, Weather& weather)

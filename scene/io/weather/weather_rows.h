@@ -8,9 +8,6 @@
 
 namespace lightwell {
 
-/// The fields of a line between commas, without blanks around them.
-std::vector<std::string_view> fields_of(std::string_view line);
-
 /// Puts the rows of a weather file into the hours of a year, and counts what is missing.
 class WeatherRows {
  public:

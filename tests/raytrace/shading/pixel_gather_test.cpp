@@ -65,8 +65,8 @@ TEST(PixelGather, DeepInAGapIsKnownByAFewHundredRays) {
 }
 
 // An eighth and a thirtieth of the rays get out 2.3 and 5.2 mm behind the brink, so that chance
-// decides whether a gather of 8 rays aims. The light has no part in that, or it would be a tenth
-// too bright.
+// decides whether a gather of 8 rays aims. The light has no part in that, or it would be 4 % too
+// bright at the first place.
 TEST(PixelGather, NearTheBrinkOfAGapHasNoBias) {
   constexpr int replicas = 8192;
   const BetweenPlates plates;
