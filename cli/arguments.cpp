@@ -95,14 +95,33 @@ CLI::Validator power_of_two() {
       std::string{});
 }
 
+namespace {
+
+// Beginning of the name of a validator of one_of(), which goes on with the names that it accepts.
+constexpr std::string_view accepts = "accepts ";
+
+}  // namespace
+
 CLI::Validator one_of(std::string what, std::vector<std::string> known) {
+  const std::string name = fmt::format("{}{}", accepts, fmt::join(known, " "));
   return CLI::Validator(
       [what, known](std::string& given) -> std::string {
         if (std::find(known.begin(), known.end(), given) != known.end()) return {};
         return fmt::format("there is no {} '{}'; choose from: {}.{}", what, given,
                            fmt::join(known, ", "), did_you_mean(given, known));
       },
-      std::string{});
+      std::string{}, name);
+}
+
+std::vector<std::string> accepted_names(CLI::Option& option) {
+  try {
+    for (int i = 0;; ++i) {
+      const std::string& name = option.get_validator(i)->get_name();
+      if (name.starts_with(accepts)) return CLI::detail::split(name.substr(accepts.size()), ' ');
+    }
+  } catch (const CLI::OptionNotFound&) {  // CLI11 has no number of validators
+    return {};
+  }
 }
 
 void add_scene(CLI::App& command, std::string& scene) {

@@ -112,6 +112,10 @@ CLI::Validator power_of_two();
 /// Accepts the `known` names; `what` ("solver") is their kind in the error message.
 CLI::Validator one_of(std::string what, std::vector<std::string> known);
 
+/// The names that a validator of one_of() accepts; empty for any other validator of the option, and
+/// for none.
+std::vector<std::string> accepted_names(CLI::Option& option);
+
 /// Names of scene files end in one of these.
 inline constexpr const char* scene_extensions =
     ".toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, .mgf, .pov, .vs3";

@@ -36,5 +36,8 @@ Action add_compare(CLI::App& command);
 Action add_daylight(CLI::App& command);
 Action add_form_factors(CLI::App& command);
 Action add_info(CLI::App& command);
+Action add_demo(CLI::App& command);
+Action add_completion(CLI::App& command);
+Action add_manual(CLI::App& command);
 
 }  // namespace lightwell

@@ -29,6 +29,7 @@ namespace {
 constexpr const char* recipes =
     R"(lightwell computes the light in a room once, and shows it from everywhere.
 
+  lightwell demo                                         a Cornell box, and a walk through it
   lightwell run cornell/cornell.toml                     solve, and render every camera of the scene
   lightwell solve room.toml -o room.vtp                  solve, and keep the light on all surfaces
   lightwell mesh room.toml -o mesh.vtp                   the patches and elements of 'solve'
@@ -59,7 +60,7 @@ struct NamedCommand {
   Action (*add)(CLI::App&);
   bool reads_scene = true;
 };
-constexpr std::array<NamedCommand, 13> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 16> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight, false},
@@ -71,7 +72,10 @@ constexpr std::array<NamedCommand, 13> commands = {{{"run", add_run},
                                                     {"daylight", add_daylight},
                                                     {"compare", add_compare, false},
                                                     {"form-factors", add_form_factors},
-                                                    {"info", add_info}}};
+                                                    {"info", add_info},
+                                                    {"demo", add_demo, false},
+                                                    {"completion", add_completion, false},
+                                                    {"manual", add_manual, false}}};
 
 /// Help with one blank line between groups, so that it fits a screen.
 class TightFormatter : public CLI::Formatter {

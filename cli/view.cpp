@@ -13,6 +13,7 @@
 #include "cli/lux_range.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
+#include "cli/scene_of_solution.h"
 #include "cli/steps.h"
 #include "cli/white_balance.h"
 #include "radiosity/solution/relight.h"
@@ -183,7 +184,16 @@ int view_live(const ViewArguments& arguments, const Scene& scene, const ViewOpti
   return exit_done;
 }
 
-int view(const ViewArguments& arguments, Console& console) {
+// The arguments with the scene in place where a solution was given alone.
+ViewArguments with_scene(ViewArguments arguments) {
+  if (!arguments.solution.empty() || lower_extension(arguments.scene) != ".vtp") return arguments;
+  arguments.solution = arguments.scene;
+  arguments.scene = scene_of_solution(arguments.solution).string();
+  return arguments;
+}
+
+int view(const ViewArguments& given, Console& console) {
+  const ViewArguments arguments = with_scene(given);
   Report report(console.options());
   CleanUpReport clean_up;
   const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
@@ -414,7 +424,11 @@ Action add_view(CLI::App& command) {
       "Shows a solved scene in a window: W A S D or arrows to walk, the mouse to look around, H "
       "for\n"
       "all keys, Escape to leave. Without a solution the scene is solved while you walk.");
-  command.add_option("scene", arguments->scene, "the scene file")->required()->type_name("SCENE");
+  command
+      .add_option("scene", arguments->scene,
+                  "the scene file; a solution alone finds its scene where it was, or beside itself")
+      ->required()
+      ->type_name("SCENE");
   command
       .add_option("solution", arguments->solution,
                   "the scene's solution, .vtp (default: solve in the window)")

@@ -113,6 +113,7 @@ function(lightwell_library name)
     lightwell_precompile(${target})
   endif()
   install(TARGETS ${target} EXPORT lightwellTargets
-          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell
+          ARCHIVE COMPONENT development LIBRARY COMPONENT development
+          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell COMPONENT development
           INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell)
 endfunction()
