@@ -35,6 +35,7 @@ Action add_report(CLI::App& command);
 Action add_compare(CLI::App& command);
 Action add_daylight(CLI::App& command);
 Action add_form_factors(CLI::App& command);
+Action add_radiation(CLI::App& command);
 Action add_info(CLI::App& command);
 Action add_demo(CLI::App& command);
 Action add_completion(CLI::App& command);

@@ -48,6 +48,8 @@ constexpr const char* recipes =
                                                          every hour of a year: DA, sDA, EN 17037
   lightwell compare mine.exr reference.exr               how far two pictures are apart
   lightwell form-factors room.stl -o room.mtx            view factors between facets
+  lightwell radiation room.stl --surfaces kelvin.csv -o heats.csv
+                                                         radiant heat between surfaces
   lightwell info room.toml                               what is in a scene, solution or picture
 
 'lightwell help COMMAND' explains a command. A scene is a .toml file (docs/scene-format.md),
@@ -60,7 +62,7 @@ struct NamedCommand {
   Action (*add)(CLI::App&);
   bool reads_scene = true;
 };
-constexpr std::array<NamedCommand, 16> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 17> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight, false},
@@ -72,6 +74,7 @@ constexpr std::array<NamedCommand, 16> commands = {{{"run", add_run},
                                                     {"daylight", add_daylight},
                                                     {"compare", add_compare, false},
                                                     {"form-factors", add_form_factors},
+                                                    {"radiation", add_radiation},
                                                     {"info", add_info},
                                                     {"demo", add_demo, false},
                                                     {"completion", add_completion, false},

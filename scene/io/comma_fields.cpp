@@ -14,4 +14,12 @@ std::vector<std::string_view> comma_fields(std::string_view line) {
   }
 }
 
+std::string quoted_field(std::string name) {
+  for (std::size_t at = 0; (at = name.find('"', at)) != std::string::npos; at += 2) {
+    name.insert(at, 1, '"');
+  }
+  if (name.find_first_of("=+-@") == 0) name.insert(0, 1, '\'');
+  return '"' + name + '"';
+}
+
 }  // namespace lightwell

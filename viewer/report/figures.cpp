@@ -6,6 +6,8 @@
 #include <iterator>
 #include <utility>
 
+#include "scene/io/comma_fields.h"
+
 namespace lightwell {
 namespace {
 
@@ -96,16 +98,6 @@ std::string line_of(const std::string& name, const LuxField& field) {
                      field.uniformity);
 }
 
-// A name as one cell of a CSV file.
-std::string csv_name(std::string name) {
-  for (std::size_t at = 0; (at = name.find('"', at)) != std::string::npos; at += 2) {
-    name.insert(at, 1, '"');
-  }
-  // A spreadsheet would compute a name that begins like a formula.
-  if (name.find_first_of("=+-@") == 0) name.insert(0, 1, '\'');
-  return name;
-}
-
 }  // namespace
 
 nlohmann::ordered_json figures_json(const LightingReport& report) {
@@ -127,13 +119,13 @@ std::string points_csv(const LightingReport& report) {
   std::string csv = "surface,x,y,z,lux,lux_within";
   csv += is_apart ? ",electric_lux,daylight_lux\n" : "\n";
   for (const CalculationSurface& surface : report.surfaces) {
-    const std::string name = csv_name(surface.grid.name);
+    const std::string name = quoted_field(surface.grid.name);
     for (std::size_t i = 0; i < surface.grid.points.size(); ++i) {
       const auto point = static_cast<Eigen::Index>(i);
       const Eigen::Vector3d p = surface.grid.points[i].position / report.metres_per_unit;
       const double within = surface.field.lux_within[point];
       const auto out = std::back_inserter(csv);
-      fmt::format_to(out, "\"{}\",{:.6g},{:.6g},{:.6g},{:.6g},", name, p.x(), p.y(), p.z(),
+      fmt::format_to(out, "{},{:.6g},{:.6g},{:.6g},{:.6g},", name, p.x(), p.y(), p.z(),
                      surface.field.lux[point]);
       if (!std::isnan(within)) fmt::format_to(out, "{:.3g}", within);
       if (is_apart) {

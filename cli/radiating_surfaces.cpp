@@ -1,0 +1,175 @@
+#include "cli/radiating_surfaces.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <fnmatch.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+
+#include "cli/arguments.h"
+#include "scene/errors.h"
+#include "scene/io/comma_fields.h"
+#include "scene/io/nearest_name.h"
+#include "scene/io/text_file.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::array<std::string_view, 5> known_columns{"surface", "emittance", "kelvin", "celsius",
+                                                        "heat"};
+constexpr double zero_celsius = 273.15;  // K
+
+// Number of each named column.
+using Columns = std::map<std::string, std::size_t, std::less<>>;
+
+struct SurfaceLine {
+  int line = 0;
+  std::string pattern{};
+  std::optional<double> emittance{};
+  RadiatingSurface surface{};
+};
+
+Columns read_columns(const TextFile& file, int line, const std::vector<std::string_view>& cells) {
+  Columns columns;
+  for (std::size_t c = 0; c < cells.size(); ++c) {
+    const std::string name(cells[c]);
+    if (std::ranges::count(known_columns, cells[c]) == 0) {
+      file.fail(line, fmt::format("there is no column '{}'; columns are {}", excerpt(name),
+                                  fmt::join(known_columns, ", ")));
+    }
+    if (!columns.emplace(name, c).second) {
+      file.fail(line, fmt::format("two columns are named '{}'", name));
+    }
+  }
+  if (!columns.contains("surface")) file.fail(line, "no column is named 'surface'");
+  return columns;
+}
+
+// The number in a column; empty if the column is missing or the cell is empty.
+std::optional<double> number_in(const TextFile& file, int line, const Columns& columns,
+                                const std::vector<std::string_view>& cells, std::string_view name) {
+  const auto column = columns.find(name);
+  if (column == columns.end() || column->second >= cells.size()) return std::nullopt;
+  const std::string text(cells[column->second]);
+  if (text.empty()) return std::nullopt;
+  const auto value = parsed_number(text);
+  if (!value || !std::isfinite(*value)) {
+    file.fail(line, fmt::format("{} is '{}', which is not a number", name, excerpt(text)));
+  }
+  return value;
+}
+
+SurfaceLine read_line(const TextFile& file, int line, const Columns& columns,
+                      const std::vector<std::string_view>& cells) {
+  const auto number = [&](std::string_view name) {
+    return number_in(file, line, columns, cells, name);
+  };
+  if (cells.size() > columns.size()) {
+    file.fail(line, fmt::format("has {} values; the first line names {} columns", cells.size(),
+                                columns.size()));
+  }
+  SurfaceLine read{.line = line, .emittance = number("emittance")};
+  const std::size_t name = columns.find("surface")->second;
+  if (name < cells.size()) read.pattern = cells[name];
+  if (read.pattern.empty()) file.fail(line, "has no surface");
+  const auto kelvin = number("kelvin"), celsius = number("celsius"), heat = number("heat");
+  if (kelvin.has_value() + celsius.has_value() + heat.has_value() != 1) {
+    file.fail(line, "needs one of kelvin, celsius and heat");
+  }
+  if (kelvin) read.surface.kelvin = kelvin;
+  if (celsius) read.surface.kelvin = *celsius + zero_celsius;
+  if (read.surface.kelvin && *read.surface.kelvin < 0.0) {
+    file.fail(line, fmt::format("the temperature is {:g} K, below zero", *read.surface.kelvin));
+  }
+  if (heat) read.surface.heat = *heat;
+  if (read.emittance && !(*read.emittance >= 0.0 && *read.emittance <= 1.0)) {
+    file.fail(line, fmt::format("the emittance is {:g}; it lies from 0 to 1", *read.emittance));
+  }
+  return read;
+}
+
+std::vector<SurfaceLine> read_lines(const TextFile& file) {
+  std::optional<Columns> columns;
+  std::vector<SurfaceLine> lines;
+  file.for_each_line([&](int line, std::string_view text) {
+    text = trimmed(text);
+    if (text.empty() || text.starts_with('#')) return;
+    const auto cells = comma_fields(text);
+    if (!columns) {
+      columns = read_columns(file, line, cells);
+    } else {
+      lines.push_back(read_line(file, line, *columns, cells));
+    }
+  });
+  if (lines.empty()) {
+    throw InputError(
+        fmt::format("{}: describes no surface; the first line names columns, such as "
+                    "surface,emittance,kelvin",
+                    file.path().string()));
+  }
+  return lines;
+}
+
+// The line that describes each row.
+std::vector<const SurfaceLine*> lines_of_rows(const TextFile& file,
+                                              const std::vector<SurfaceLine>& lines,
+                                              const ViewFactorRows& rows) {
+  std::vector<const SurfaceLine*> of_row;
+  std::set<int> used;
+  std::vector<std::string> left_out;
+  for (const std::string& name : rows.name) {
+    const auto found = std::find_if(lines.rbegin(), lines.rend(), [&](const SurfaceLine& line) {
+      return fnmatch(line.pattern.c_str(), name.c_str(), 0) == 0;
+    });
+    if (found == lines.rend()) {
+      left_out.push_back(name);
+      continue;
+    }
+    of_row.push_back(&*found);
+    used.insert(found->line);
+  }
+  for (const SurfaceLine& line : lines) {
+    if (used.contains(line.line)) continue;
+    file.fail(line.line,
+              fmt::format("describes no surface: none is named '{}', or later lines describe all "
+                          "that are.{}",
+                          excerpt(line.pattern), did_you_mean(line.pattern, rows.name)));
+  }
+  if (!left_out.empty()) {
+    throw InputError(fmt::format(
+        "{}: {} of {} rows have no line, the first of them of surface '{}'; a first line with the "
+        "surface '*' describes all that no other line does",
+        file.path().string(), left_out.size(), rows.name.size(), left_out.front()));
+  }
+  return of_row;
+}
+
+}  // namespace
+
+std::vector<RadiatingSurface> read_radiating_surfaces(const std::filesystem::path& csv,
+                                                      const ViewFactorRows& rows,
+                                                      const std::vector<double>& area) {
+  const TextFile file(csv);
+  const std::vector<SurfaceLine> lines = read_lines(file);
+  const std::vector<const SurfaceLine*> of_row = lines_of_rows(file, lines, rows);
+  std::map<const SurfaceLine*, double> area_of;
+  for (std::size_t i = 0; i < of_row.size(); ++i) area_of[of_row[i]] += area[i];
+  std::vector<RadiatingSurface> surfaces;
+  for (std::size_t i = 0; i < of_row.size(); ++i) {
+    const SurfaceLine& line = *of_row[i];
+    RadiatingSurface surface = line.surface;
+    surface.emittance = line.emittance.value_or(rows.emittance[i]);
+    const double all = area_of[&line];
+    if (all > 0.0) surface.heat *= area[i] / all;
+    surfaces.push_back(surface);
+  }
+  return surfaces;
+}
+
+}  // namespace lightwell
