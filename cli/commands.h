@@ -40,5 +40,6 @@ Action add_info(CLI::App& command);
 Action add_demo(CLI::App& command);
 Action add_completion(CLI::App& command);
 Action add_manual(CLI::App& command);
+Action add_validate(CLI::App& command);
 
 }  // namespace lightwell

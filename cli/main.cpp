@@ -51,6 +51,7 @@ constexpr const char* recipes =
   lightwell radiation room.stl --surfaces kelvin.csv -o heats.csv
                                                          radiant heat between surfaces
   lightwell info room.toml                               what is in a scene, solution or picture
+  lightwell validate                                     known answers, computed on this machine
 
 'lightwell help COMMAND' explains a command. A scene is a .toml file (docs/scene-format.md),
 .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, Mitsuba's .xml, RADIANCE's .rad and .rif,
@@ -62,7 +63,7 @@ struct NamedCommand {
   Action (*add)(CLI::App&);
   bool reads_scene = true;
 };
-constexpr std::array<NamedCommand, 17> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 18> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight, false},
@@ -76,6 +77,7 @@ constexpr std::array<NamedCommand, 17> commands = {{{"run", add_run},
                                                     {"form-factors", add_form_factors},
                                                     {"radiation", add_radiation},
                                                     {"info", add_info},
+                                                    {"validate", add_validate, false},
                                                     {"demo", add_demo, false},
                                                     {"completion", add_completion, false},
                                                     {"manual", add_manual, false}}};

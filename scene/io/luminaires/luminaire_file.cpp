@@ -105,7 +105,13 @@ double beam_angle(const PhotometricWeb& web, double plane, double share) {
     last = i;
     any = true;
   }
-  return (last - first) * step;
+  // Between two steps the value is taken as linear.
+  const auto beyond = [&](int inner, int outer) {
+    if (std::abs(outer) > steps) return 0.0;
+    const double above = value(inner) - share * most, below = share * most - value(outer);
+    return above + below > 0.0 ? above / (above + below) : 0.0;
+  };
+  return (last - first + beyond(first, first - 1) + beyond(last, last + 1)) * step;
 }
 
 }  // namespace lightwell
