@@ -77,10 +77,8 @@ int validate_program(const ValidateArguments& arguments, Console& console) {
 Action add_validate(CLI::App& command) {
   const auto arguments = std::make_shared<ValidateArguments>();
   command.description(
-      "Compares the program with known answers: closed forms of form factors, enclosures, optics "
-      "and "
-      "photometry, CIE 171:2006, UGR tables, skies, the Cornell box. Takes about a minute and no "
-      "file. The exit code is 4 if a case fails.");
+      "Known answers beside what this program computes, in about a minute. Exit code 4: one "
+      "fails.");
   command
       .add_option("--only", arguments->only,
                   "run the cases whose name or group contains this; * stands for any characters")

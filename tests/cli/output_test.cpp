@@ -219,7 +219,7 @@ TEST_F(Output, InfoTellsHowASolutionWasMade) {
 TEST_F(Output, HelpAndVersionEverywhere) {
   for (const Words& command :
        {Words{}, Words{"run"}, Words{"solve"}, Words{"mesh"}, Words{"relight"}, Words{"render"},
-        Words{"probe"}, Words{"view"}, Words{"compare"}, Words{"info"}}) {
+        Words{"probe"}, Words{"view"}, Words{"compare"}, Words{"info"}, Words{"validate"}}) {
     const Ended help = run(command + Words{"--help"});
     EXPECT_EQ(help.code, 0);
     EXPECT_EQ(help.err, "");

@@ -241,13 +241,15 @@ void add_indirect_light(const ReferenceValue& c, const std::string& rho, const P
   const ReferenceValue& direct = e.at("direct_lux");
   const double mean = e.at("mean_indirect_lux").at(rho);
   // The power of all patches is exact but for floats and the solver's 1e-5 of the largest B.
-  values.push_back({fmt::format("mean, rho {}", rho), mean,
+  values.push_back({fmt::format("mean of a wall, rho {}", rho), mean,
                     mean_B / reflectance - direct.at("mean").get<double>(),
                     5e-4 * (mean + direct.at("mean").get<double>())});
 
   const std::array<Probe, 3> probes = {
       {{{2, 2, 0}, {0, 0, 1}}, {{2, 0.5, 0}, {0, 0, 1}}, {{0.5, 0.5, 0}, {0, 0, 1}}}};
   const std::array<const char*, 3> names = {"centre", "at_u2_v0p5", "at_u0p5_v0p5"};
+  const std::array<const char*, 3> places = {"middle of a wall", "0.5 m off an edge",
+                                             "0.5 m off two edges"};
   const ElementCaster caster(mesh);
   const DirectLight direct_light(scene, mesh);
   const BandArray E = probe_irradiance(scene, caster, direct_light, solved.solution, probes,
@@ -259,7 +261,7 @@ void add_indirect_light(const ReferenceValue& c, const std::string& rho, const P
     const double found =
         static_cast<double>(E(static_cast<Eigen::Index>(i), 0)) - direct.at(names[i]).get<double>();
     values.push_back(
-        {fmt::format("{}, rho {}", names[i], rho), expected, found, 3e-3 * expected + bound});
+        {fmt::format("{}, rho {}", places[i], rho), expected, found, 3e-3 * expected + bound});
   }
 }
 

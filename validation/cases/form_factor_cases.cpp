@@ -264,6 +264,18 @@ std::string form_factor_reason(const std::string& type) {
   return "three times n^-0.75, the usual error of 2^17 stratified rays";
 }
 
+// Figures that manuals of other programs print for the same pair.
+std::vector<PublishedValue> published_form_factors(const std::string& id) {
+  const std::string place = "form-factors", view3d = "View3D",
+                    manual = "manual of View3D (G. N. Walton, NIST)";
+  if (id == "par-unit-squares") return {{place, view3d, 0.199824896, manual}};
+  if (id == "perp-unit-common-edge") return {{place, view3d, 0.200043776, manual}};
+  if (id == "par-ees-0.1-0.05") {
+    return {{place, "EES", 0.4153, "the heat-transfer library of EES, function f3d_14"}};
+  }
+  return {};
+}
+
 }  // namespace
 
 std::vector<ValidationCase> form_factor_cases() {
@@ -273,7 +285,8 @@ std::vector<ValidationCase> form_factor_cases() {
                        .group = "form factors",
                        .title = c.at("title"),
                        .source = c.at("method"),
-                       .reason = form_factor_reason(c.at("geometry").at("type"))};
+                       .reason = form_factor_reason(c.at("geometry").at("type")),
+                       .published = published_form_factors(c.at("id"))};
     if (c.contains("check")) {
       one.source += "; checked by " + c.at("check").at("method").get<std::string>();
     }

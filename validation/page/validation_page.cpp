@@ -76,8 +76,8 @@ std::string group_part(const ValidationRun& run, const std::string& group) {
     const std::string plot = has_plot ? values_plot(one) : "";
     if (plot.empty()) continue;
     plots += fmt::format(
-        "<figure>{}<figcaption><code>{}</code>: {}{}. Lines: expected; dots: "
-        "computed.</figcaption></figure>\n",
+        "<figure>{}<figcaption><code>{}</code>: {}{}. Lines: expected; dots: computed. Below: "
+        "errors in units of the tolerance.</figcaption></figure>\n",
         plot, html_text(one.about.id), html_text(one.about.title),
         one.about.unit.empty() ? "" : ", " + html_text(one.about.unit));
   }

@@ -67,8 +67,10 @@ std::vector<PlotSeries> plot_series(const CaseResult& result) {
   return some;
 }
 
+// Two panels: values above, and below them errors from -1 to 1 of the tolerance.
 struct PlotFrame {
-  double width = 170.0, height = 62.0, left = 16.0, top = 4.0, right = 6.0, bottom = 12.0;
+  double width = 170.0, height = 84.0, left = 16.0, top = 4.0, right = 6.0, bottom = 34.0;
+  double strip_middle = 68.0, strip_half = 7.0;
   double least = 0.0, greatest = 1.0;
   std::size_t places = 1;
 
@@ -79,6 +81,12 @@ struct PlotFrame {
   }
   double y(double value) const {
     return top + (height - top - bottom) * (greatest - value) / (greatest - least);
+  }
+  /// Place of a signed error, which ends a little beyond its tolerance.
+  double y_of_error(const ComparedValue& value) const {
+    constexpr double most = 1.3;
+    const double share = std::min(value.share(), most);
+    return strip_middle - strip_half * (value.computed < value.expected ? -share : share);
   }
 };
 
@@ -103,6 +111,14 @@ std::string axes_of(const PlotFrame& frame, const PlotSeries& first) {
         frame.left, frame.y(value), frame.width - frame.right, frame.left - 1.0,
         frame.y(value) + 1.0, shown);
   }
+  for (const double share : {-1.0, 0.0, 1.0}) {
+    const double y = frame.strip_middle - frame.strip_half * share;
+    svg += fmt::format(
+        "<path class='ring' style='{}' d='M{:.2f} {:.2f}H{:.2f}'/><text class='axis left' "
+        "x='{:.2f}' y='{:.2f}'>{:g}</text>",
+        share == 0.0 ? "" : "stroke:#d2380b", frame.left, y, frame.width - frame.right,
+        frame.left - 1.0, y + 1.0, share);
+  }
   const std::size_t every = (first.values.size() + 15) / 16;
   for (std::size_t i = 0; i < first.values.size(); i += every) {
     std::string place = parted_place(first.values[i]->place).second;
@@ -116,7 +132,7 @@ std::string axes_of(const PlotFrame& frame, const PlotSeries& first) {
 }
 
 std::string series_of(const PlotFrame& frame, const PlotSeries& series, const char* color) {
-  std::string path, dots;
+  std::string path, dots, errors;
   for (std::size_t i = 0; i < series.values.size(); ++i) {
     const ComparedValue& value = *series.values[i];
     path += fmt::format("{}{:.2f} {:.2f}", i == 0 ? "M" : "L", frame.x(i), frame.y(value.expected));
@@ -125,9 +141,11 @@ std::string series_of(const PlotFrame& frame, const PlotSeries& series, const ch
         "{:.6g}</title></circle>",
         frame.x(i), frame.y(value.computed), color, html_text(value.place), value.expected,
         value.computed);
+    errors += fmt::format("<circle cx='{:.2f}' cy='{:.2f}' r='.6' fill='{}'/>", frame.x(i),
+                          frame.y_of_error(value), color);
   }
-  return fmt::format("<path d='{}' style='stroke:{};stroke-width:.3;fill:none'/>{}", path, color,
-                     dots);
+  return fmt::format("<path d='{}' style='stroke:{};stroke-width:.3;fill:none'/>{}{}", path, color,
+                     dots, errors);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@ namespace lightwell {
 std::string share_plot(const ValidationRun& run);
 
 /// SVG of expected values (lines) and computed ones (dots) of a case with at least five values,
-/// over the places in their order. Values whose places are "name, place" make a line for each name,
-/// at most four. Empty for other cases.
+/// over the places in their order, above their errors in units of the tolerance. Values whose
+/// places are "name, place" make a line for each name, at most four. Empty for other cases.
 std::string values_plot(const CaseResult& result);
 
 }  // namespace lightwell

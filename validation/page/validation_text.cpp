@@ -214,7 +214,8 @@ std::string validation_json(const ValidationRun& run) {
 std::string validation_markdown(const ValidationRun& run) {
   std::string text =
       "# Validation\n\n"
-      "After this page you know how far Lightwell is from known answers: closed forms, stored numbers "
+      "After this page you know how far Lightwell is from known answers: closed forms, stored "
+      "numbers "
       "of other methods, and figures of other programs. `lightwell validate` repeats all of it on "
       "your own machine in about a minute, from an installation alone; `--html FILE` writes a page "
       "with plots, and `--only PATTERN` runs some of the cases. The exit code is 4 if a case "
