@@ -345,7 +345,9 @@ ElectricCase electric_case(const ReferenceValue& c) {
                 errata + ")"};
   }
   return {
-      "5e-4 of mean and direct light for the mean; 0.3 % and the stored bound for places",
+      "5e-4 of mean and direct light for the mean, half of N^-0.5 of the lamp's 2^20 rays; 0.3 % "
+      "for "
+      "places, three times N^-0.75 of the 2^13 rays of a gather, and the stored bound",
       "lx",
       [](const ReferenceValue& of, const Progress& progress) { return closed_cube(of, progress); },
       {},

@@ -99,6 +99,17 @@ double tick_step(double range) {
   return 2.0 * power;
 }
 
+// The place without the words that all places of a line share.
+std::string place_label(const std::string& place) {
+  std::string label = parted_place(place).second;
+  for (const std::string_view word : {"point ", "type ", "rho ", "x = "}) {
+    if (label.starts_with(word)) label.erase(0, word.size());
+  }
+  if (label.ends_with(" m")) label.resize(label.size() - 2);
+  constexpr std::size_t most = 12;
+  return label.substr(0, most);
+}
+
 std::string axes_of(const PlotFrame& frame, const PlotSeries& first) {
   std::string svg;
   const double step = tick_step(frame.greatest - frame.least);
@@ -119,14 +130,20 @@ std::string axes_of(const PlotFrame& frame, const PlotSeries& first) {
         share == 0.0 ? "" : "stroke:#d2380b", frame.left, y, frame.width - frame.right,
         frame.left - 1.0, y + 1.0, share);
   }
-  const std::size_t every = (first.values.size() + 15) / 16;
-  for (std::size_t i = 0; i < first.values.size(); i += every) {
-    std::string place = parted_place(first.values[i]->place).second;
-    for (const std::string_view word : {"point ", "type ", "rho ", "x = "}) {
-      if (place.starts_with(word)) place.erase(0, word.size());
-    }
+  std::vector<std::string> labels;
+  std::size_t longest = 1;
+  for (const ComparedValue* const value : first.values) {
+    labels.push_back(place_label(value->place));
+    longest = std::max(longest, labels.back().size());
+  }
+  // A character is about 1.7 wide; labels have gaps of two.
+  const double room =
+      (frame.width - frame.left - frame.right) / (1.7 * static_cast<double>(longest) + 3.4);
+  const auto every =
+      static_cast<std::size_t>(std::ceil(static_cast<double>(labels.size()) / std::max(1.0, room)));
+  for (std::size_t i = 0; i < labels.size(); i += every) {
     svg += fmt::format("<text class='axis' x='{:.2f}' y='{:.2f}'>{}</text>", frame.x(i),
-                       frame.height - frame.bottom + 4.0, html_text(place.substr(0, 9)));
+                       frame.height - frame.bottom + 4.0, html_text(labels[i]));
   }
   return svg;
 }
