@@ -228,6 +228,15 @@ ComparedValues element_to_round_shape(const ReferenceValue& c) {
                       .computed = point_to_sphere(element.position, element.normal, sphere.center,
                                                   sphere.radius),
                       .tolerance = closed_form_error * expected});
+    // The direct light of a sphere that emits 1 is its form factor; exitances are floats.
+    Scene scene;
+    scene.surfaces.push_back({.name = "lamp", .material = add_paint(scene, {.exitance = 1.0f})});
+    set_shape(scene.surfaces.back(), sphere);
+    values.push_back(
+        {.place = "direct light",
+         .expected = expected,
+         .computed = LitCase(std::move(scene)).direct(element.position, element.normal),
+         .tolerance = 1e-6 * expected});
   }
   values.push_back({.place = "rays",
                     .expected = expected,
@@ -250,7 +259,9 @@ ComparedValues form_factors_of(const ReferenceValue& c, const Progress& progress
 std::string form_factor_reason(const std::string& type) {
   if (type == "element-polygon") return "1e-9 of the value: Lambert's contour sum in doubles";
   if (type == "element-sphere") {
-    return "1e-9 of the value for the closed form; three times n^-0.75 of 2^17 stratified rays";
+    return "1e-9 of the value for the closed form; 1e-6 for direct light, in floats; three times "
+           "n^-0.75 of "
+           "2^17 stratified rays";
   }
   if (type == "polygon-polygon") {
     return "1e-9 for the closed form; four standard errors of 1e-4 for the command 'form-factors'";
