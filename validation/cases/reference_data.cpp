@@ -25,7 +25,13 @@ std::vector<Eigen::Vector3d> reference_polygon(const ReferenceValue& value) {
 }
 
 EmbeddedFile::EmbeddedFile(std::string_view name, std::string_view text) {
-  const std::filesystem::path parent = std::filesystem::temp_directory_path();
+  std::error_code failure;
+  const std::filesystem::path parent = std::filesystem::temp_directory_path(failure);
+  if (failure) {
+    throw std::runtime_error(
+        "there is no folder for the files of the cases; set TMPDIR to a folder that can be "
+        "written");
+  }
   std::string made = (parent / "lightwell-validate-XXXXXX").string();
   if (mkdtemp(made.data()) == nullptr) {
     throw std::runtime_error(fmt::format(
