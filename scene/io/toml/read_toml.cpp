@@ -19,6 +19,7 @@
 #include "scene/io/toml/toml_sky.h"
 #include "scene/io/toml/toml_surfaces.h"
 #include "scene/io/toml/toml_value.h"
+#include "scene/io/toml/toml_windows.h"
 #include "scene/limits.h"
 
 namespace lightwell {
@@ -45,14 +46,29 @@ std::vector<TomlMaterial> read_toml_materials(const TomlTable& document, const T
   return materials;
 }
 
+// Materials of the states of windows. States change no solution; reading them reports their errors
+// early.
+std::vector<int> materials_of_windows(const TomlTable& document, const Scene& scene) {
+  std::vector<int> used;
+  const auto windows = document.find("windows");
+  if (!windows) return used;
+  for (const WindowGroup& group : read_toml_windows(*windows, scene, scene.materials).groups) {
+    for (const WindowState& state : group.states) {
+      if (state.material) used.push_back(*state.material);
+    }
+  }
+  return used;
+}
+
 }  // namespace
 
 Scene read_toml(const std::filesystem::path& path) {
   const TextFile file(path);
   const toml::table root = parse_toml(file);
   const TomlValue all(file.path(), root, "");
-  const TomlTable document = all.table({"title", "unit", "bands", "materials", "motions",
-                                        "surfaces", "lamps", "sky", "cameras", "grids", "report"});
+  const TomlTable document =
+      all.table({"title", "unit", "bands", "materials", "motions", "surfaces", "lamps", "sky",
+                 "cameras", "grids", "report", "windows"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
@@ -78,7 +94,7 @@ Scene read_toml(const std::filesystem::path& path) {
   if (scene.surfaces.empty()) {
     surfaces->fail("have no area, so that no light can fall on them: " + scene.losses.front());
   }
-  spread_power(materials, scene);
+  spread_power(materials, materials_of_windows(document, scene), scene);
   drop_unused_uv(scene);
   Remarks remarks;
   remark_pictures_without_uv(scene, remarks);

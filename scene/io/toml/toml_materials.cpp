@@ -356,7 +356,8 @@ void scale_picture(const TomlMaterial& given, const Bands& bands, const Eigen::A
 
 }  // namespace
 
-void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene) {
+void spread_power(const std::vector<TomlMaterial>& materials, std::span<const int> others,
+                  Scene& scene) {
   std::vector<double> areas(scene.materials.size(), 0.0);
   std::vector<Eigen::ArrayXd> sent(scene.materials.size());  // W, of pictures at a factor of 1
   std::vector<char> used(scene.materials.size(), 0);
@@ -372,7 +373,8 @@ void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene) {
   }
   for (std::size_t i = 0; i < materials.size(); ++i) {
     Material& material = scene.materials[i];
-    if (!used[i]) {
+    const bool is_other = std::ranges::find(others, static_cast<int>(i)) != others.end();
+    if (!used[i] && !is_other) {
       scene.notes.push_back(fmt::format("No surface uses material '{}'.", material.name));
     }
     if (!used[i] || !materials[i].power) continue;

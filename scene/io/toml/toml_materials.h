@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,8 +25,9 @@ TomlMaterial read_toml_material(const TomlValue& value, const std::string& name,
                                 const TomlBands& bands, PictureFiles& pictures);
 
 /// Sets the emission of every material given by its power: M = power / area, with both sides
-/// counted where both emit. `materials` correspond to the first materials of the scene. Unused
-/// materials add a note.
-void spread_power(const std::vector<TomlMaterial>& materials, Scene& scene);
+/// counted where both emit. `materials` correspond to the first materials of the scene. Materials
+/// that neither a surface nor `others` uses add a note.
+void spread_power(const std::vector<TomlMaterial>& materials, std::span<const int> others,
+                  Scene& scene);
 
 }  // namespace lightwell
