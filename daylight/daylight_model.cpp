@@ -71,6 +71,7 @@ DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen
     paths_.emplace(scene_, *caster_, options.form_factors.max_specular_depth, PathDetail::points);
   }
   weights_ = luminous_weights(scene_.bands);
+  if (options_.direct_only) return;
   FormFactorOptions rows = options.form_factors;
   rows.run.progress = options.progress;
   form_factors_ = compute_form_factors({scene_, *caster_, *direct_light_}, rows);
@@ -144,37 +145,46 @@ Eigen::ArrayXXf DaylightModel::reflected(const BandArray& arriving) const {
 
 SensorLight DaylightModel::sky_coefficients() const {
   const Eigen::Index bands = scene_.bands.count(), columns = sky_.column_count();
+  SensorLight light{.direct = Eigen::ArrayXXf(sensor_count(), columns),
+                    .reflected = Eigen::ArrayXXf::Zero(sensor_count(), columns)};
+  for (int i = 0; i < sensor_count(); ++i) {
+    light.direct.row(i) =
+        luminous_sum(sensor_views_[static_cast<std::size_t>(i)].coefficient).transpose();
+  }
+  if (options_.direct_only) return light;
   BandArray arriving(mesh_.patch_count(), columns * bands);
   for (int p = 0; p < mesh_.patch_count(); ++p) {
     const Eigen::ArrayXXf& E0 = patch_views_[static_cast<std::size_t>(p)].coefficient;
     for (Eigen::Index c = 0; c < columns; ++c)
       arriving.row(p).segment(c * bands, bands) = E0.row(c);
   }
-  SensorLight light{.direct = Eigen::ArrayXXf(sensor_count(), columns)};
-  for (int i = 0; i < sensor_count(); ++i) {
-    light.direct.row(i) =
-        luminous_sum(sensor_views_[static_cast<std::size_t>(i)].coefficient).transpose();
-  }
   light.reflected = reflected(arriving);
   return light;
 }
 
+Eigen::ArrayXXf DaylightModel::direct_sun(std::span<const SunDisc> suns) const {
+  Eigen::ArrayXXf direct(sensor_count(), static_cast<Eigen::Index>(suns.size()));
+  for_each_index(sensor_count(), "sun at sensors", options_.progress, [&](int i) {
+    const SurfacePoint point = surface_point(sensors_[static_cast<std::size_t>(i)]);
+    direct.row(i) = luminous_sum(sunlight(around(), sky_, {&point, 1},
+                                          sensor_views_[static_cast<std::size_t>(i)], suns,
+                                          options_.sun_rays, sensor_key(i)))
+                        .transpose();
+  });
+  return direct;
+}
+
 SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const {
   const Eigen::Index bands = scene_.bands.count(), count = static_cast<Eigen::Index>(suns.size());
+  SensorLight light{.direct = direct_sun(suns),
+                    .reflected = Eigen::ArrayXXf::Zero(sensor_count(), count)};
+  if (options_.direct_only) return light;
   BandArray arriving(mesh_.patch_count(), count * bands);
   for_each_index(mesh_.patch_count(), "sun at patches", options_.progress, [&](int p) {
     const Eigen::ArrayXXf E0 =
         sunlight(around(), sky_, points_of_patch(p), patch_views_[static_cast<std::size_t>(p)],
                  suns, 1, patch_key(p));
     for (Eigen::Index s = 0; s < count; ++s) arriving.row(p).segment(s * bands, bands) = E0.row(s);
-  });
-  SensorLight light{.direct = Eigen::ArrayXXf(sensor_count(), count)};
-  for_each_index(sensor_count(), "sun at sensors", options_.progress, [&](int i) {
-    const SurfacePoint point = surface_point(sensors_[static_cast<std::size_t>(i)]);
-    light.direct.row(i) = luminous_sum(sunlight(around(), sky_, {&point, 1},
-                                                sensor_views_[static_cast<std::size_t>(i)], suns,
-                                                options_.sun_rays, sensor_key(i)))
-                              .transpose();
   });
   light.reflected = reflected(arriving);
   return light;

@@ -29,6 +29,9 @@ struct DaylightOptions {
   int sun_rays = 16;          ///< of a sensor to the sun's disc
   int gather_rays = 1024;     ///< of a sensor, for light that surfaces reflect
   std::uint64_t replica = 0;  ///< another number gives independent rays
+  /// True for what sensors see of sun, sky and ground alone: surfaces reflect nothing, and no form
+  /// factors are computed.
+  bool direct_only = false;
   Progress progress{};
 };
 
@@ -75,6 +78,8 @@ class DaylightModel {
 
   /// Coefficients of the columns of sky() at the sensors.
   SensorLight sky_coefficients() const;
+  /// Illuminance of the sensors straight from each sun, sensors x suns.
+  Eigen::ArrayXXf direct_sun(std::span<const SunDisc> suns) const;
   /// Illuminance of the sensors by each sun.
   SensorLight sun_coefficients(std::span<const SunDisc> suns) const;
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/errors.h"
 #include "scene/perez_sky.h"
-#include "scene/sun_position.h"
 
 namespace lightwell {
 namespace {
@@ -51,35 +51,60 @@ double SkyHour::horizontal_lux(const Eigen::Vector3d& up) const {
   return dome_lux + sun_lux * std::max(0.0, sun.dot(up));
 }
 
+namespace {
+
+// Sun and sky of the hour `number` of the weather, with the sun where it is at `when`; empty: dark.
+std::optional<SkyHour> sky_at(const Weather& weather, int number, const ClockTime& when,
+                              const Sky& frame) {
+  const WeatherHour& light = weather.hours[static_cast<std::size_t>(number)];
+  const SunPosition sun = sun_position(when, weather.latitude, weather.longitude);
+  const double altitude = sun.altitude_degrees;
+  if (!(altitude > 0.0) || !(light.diffuse_horizontal > 0.0)) return std::nullopt;
+  const int day = day_of_year(when.year, when.month, when.day);
+  const SkyState state =
+      within_data(sky_state(light.direct_normal, light.diffuse_horizontal, altitude, day));
+  const DaylightEfficacy efficacy =
+      perez_efficacy(state, altitude, precipitable_water_cm(light.dew_point));
+  return SkyHour{.number = number,
+                 .sun = sky_direction(frame, sun.azimuth_degrees, altitude),
+                 .altitude_degrees = altitude,
+                 .azimuth_degrees = sun.azimuth_degrees,
+                 .sun_lux = light.direct_normal * efficacy.direct,
+                 .dome_lux = light.diffuse_horizontal * efficacy.diffuse,
+                 .gradation = perez_sky(state, altitude)};
+}
+
+}  // namespace
+
 std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up,
                                const Eigen::Vector3d& north) {
-  const int year = weather.is_leap_year ? leap_year : usual_year;
   const Sky frame{.up = up, .north = north};
   std::vector<SkyHour> hours;
   for (int n = 0; n < static_cast<int>(weather.hours.size()); ++n) {
-    const WeatherHour& light = weather.hours[static_cast<std::size_t>(n)];
     const auto [month, day, hour] = hour_of_year(n, weather.is_leap_year);
-    const SunPosition sun = sun_position({.year = year,
-                                          .month = month,
-                                          .day = day,
-                                          .hour = hour + 0.5,
-                                          .hours_east = weather.hours_east},
-                                         weather.latitude, weather.longitude);
-    const double altitude = sun.altitude_degrees;
-    if (!(altitude > 0.0) || !(light.diffuse_horizontal > 0.0)) continue;
-    const SkyState state = within_data(sky_state(light.direct_normal, light.diffuse_horizontal,
-                                                 altitude, day_of_year(year, month, day)));
-    const DaylightEfficacy efficacy =
-        perez_efficacy(state, altitude, precipitable_water_cm(light.dew_point));
-    hours.push_back({.number = n,
-                     .sun = sky_direction(frame, sun.azimuth_degrees, altitude),
-                     .altitude_degrees = altitude,
-                     .azimuth_degrees = sun.azimuth_degrees,
-                     .sun_lux = light.direct_normal * efficacy.direct,
-                     .dome_lux = light.diffuse_horizontal * efficacy.diffuse,
-                     .gradation = perez_sky(state, altitude)});
+    const ClockTime middle{.year = weather.is_leap_year ? leap_year : usual_year,
+                           .month = month,
+                           .day = day,
+                           .hour = hour + 0.5,
+                           .hours_east = weather.hours_east};
+    if (const auto sky = sky_at(weather, n, middle, frame)) hours.push_back(*sky);
   }
   return hours;
+}
+
+std::optional<SkyHour> sky_instant(const Weather& weather, const ClockTime& when,
+                                   const Eigen::Vector3d& up, const Eigen::Vector3d& north) {
+  const int number =
+      number_of({.month = when.month, .day = when.day, .hour = static_cast<int>(when.hour)},
+                weather.is_leap_year);
+  if (number < 0) {
+    throw InputError(
+        fmt::format("{}: the weather has no hour on day {} of month {}; give another date",
+                    weather.file.string(), when.day, when.month));
+  }
+  ClockTime standard = when;
+  standard.hours_east = weather.hours_east;
+  return sky_at(weather, number, standard, {.up = up, .north = north});
 }
 
 std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour>& hours) {

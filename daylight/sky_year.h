@@ -1,12 +1,14 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "daylight/sky_patches.h"
 #include "scene/io/weather/weather_file.h"
 #include "scene/sky.h"
+#include "scene/sun_position.h"
 
 namespace lightwell {
 
@@ -35,6 +37,13 @@ struct SkyHour {
 ///   hour's dew point.
 std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up,
                                const Eigen::Vector3d& north);
+
+/// Sun and sky of an instant, in the weather's standard time: the irradiances are the means of the
+/// hour that holds the instant, and the sun stands where it is at the instant, in the year of
+/// `when`. `when.hours_east` is not looked at. Empty: the middle of the sun is below the horizon,
+/// or the dome has no light. Throws InputError for a date that the weather's year does not have.
+std::optional<SkyHour> sky_instant(const Weather& weather, const ClockTime& when,
+                                   const Eigen::Vector3d& up, const Eigen::Vector3d& north);
 
 /// A sentence on hours that have light in the file and are dark in `hours`; empty: there are none.
 std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour>& hours);

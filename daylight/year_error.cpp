@@ -5,7 +5,6 @@
 #include <vector>
 
 namespace lightwell {
-namespace {
 
 std::vector<SkyHour> spread_over(std::span<const SkyHour> hours, int samples) {
   std::vector<SkyHour> some;
@@ -15,6 +14,16 @@ std::vector<SkyHour> spread_over(std::span<const SkyHour> hours, int samples) {
   }
   return some;
 }
+
+double relative_difference(const Eigen::ArrayXd& difference, const Eigen::ArrayXd& light) {
+  if (light.size() == 0) return 0.0;
+  if (!(light.mean() > 0.0)) return (difference.abs() > 0.0).any() ? 1.0 : 0.0;
+  constexpr double least_share = 0.25;
+  const Eigen::ArrayXd reference = light.max(least_share * light.mean());
+  return std::sqrt((difference / reference).square().mean());
+}
+
+namespace {
 
 // The sum over hours of each sensor's light but direct sunlight, lx.
 Eigen::ArrayXd diffuse_sum(const DaylightModel& model, const SkyCoefficients& sky,
@@ -60,12 +69,8 @@ double year_error(const DaylightModel& model, const SkyCoefficients& sky,
   const Eigen::ArrayXd fine_sum = diffuse_sum(model, sky, some, ground_reflectance),
                        coarse_sum = diffuse_sum(coarse, coarse.sky_coefficients().sum(), some,
                                                 ground_reflectance);
-  if (fine_sum.size() == 0) return 0.0;
-  if (!(fine_sum.mean() > 0.0)) return (coarse_sum > 0.0).any() ? 1.0 : 0.0;
-  constexpr double least_share = 0.25;
-  const Eigen::ArrayXd reference = fine_sum.max(least_share * fine_sum.mean());
-  const double d = std::sqrt(((coarse_sum - fine_sum) / reference).square().mean());
-  return few_sensors(static_cast<double>(fine_sum.size())) * d;
+  return few_sensors(static_cast<double>(fine_sum.size())) *
+         relative_difference(coarse_sum - fine_sum, fine_sum);
 }
 
 }  // namespace lightwell

@@ -1,10 +1,19 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "daylight/year.h"
 
 namespace lightwell {
+
+/// `samples` of the hours, spread evenly over them; all of them, where there are fewer.
+std::vector<SkyHour> spread_over(std::span<const SkyHour> hours, int samples = 64);
+
+/// Root mean square of differences over sensors, relative to the sensors' `light`, or to a quarter
+/// of its mean where that is more. Without light: 1 where something differs, else 0.
+double relative_difference(const Eigen::ArrayXd& difference, const Eigen::ArrayXd& light);
 
 /// Bound of the error of the sensors' light without direct sunlight, with odds of about 19 to 1:
 /// for the light of a year, one figure for all sensors of the model. Relative to the sensor's own

@@ -14,6 +14,14 @@ constexpr std::size_t header_bytes = 128;
 
 static_assert(std::endian::native == std::endian::little, "'<f4' in NumPy's header");
 
+// A text as a field of CSV (RFC 4180).
+std::string csv_text(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + '"';
+}
+
 }  // namespace
 
 NumpyRows::NumpyRows(const std::filesystem::path& file, int columns)
@@ -74,16 +82,59 @@ void write_sensors(const std::filesystem::path& csv, std::span<const Probe> sens
   file.commit();
 }
 
-void write_hours(const std::filesystem::path& csv, std::span<const SkyHour> hours,
-                 bool is_leap_year) {
+void write_hours(const std::filesystem::path& csv, const HourTable& table) {
   AtomicStream file(csv);
   std::ostream& out = file.stream();
-  fmt::print(out, "hour,month,day,standard_time,sun_altitude,sun_azimuth,sun_lux,dome_lux\n");
-  for (const SkyHour& hour : hours) {
-    const auto [month, day, of_day] = hour_of_year(hour.number, is_leap_year);
-    fmt::print(out, "{},{},{},{:.1f},{:.4f},{:.4f},{:.6g},{:.6g}\n", hour.number, month, day,
+  fmt::print(out, "hour,month,day,standard_time,sun_altitude,sun_azimuth,sun_lux,dome_lux");
+  for (const WindowGroup& group : table.windows.groups)
+    fmt::print(out, ",{}", csv_text(group.name));
+  fmt::print(out, "\n");
+  for (std::size_t h = 0; h < table.hours.size(); ++h) {
+    const SkyHour& hour = table.hours[h];
+    const auto [month, day, of_day] = hour_of_year(hour.number, table.is_leap_year);
+    fmt::print(out, "{},{},{},{:.1f},{:.4f},{:.4f},{:.6g},{:.6g}", hour.number, month, day,
                of_day + 0.5, hour.altitude_degrees, hour.azimuth_degrees, hour.sun_lux,
                hour.dome_lux);
+    for (std::size_t g = 0; g < table.windows.groups.size(); ++g) {
+      const int state = table.states(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(h));
+      const WindowState& named = table.windows.groups[g].states[static_cast<std::size_t>(state)];
+      fmt::print(out, ",{}", csv_text(named.name));
+    }
+    fmt::print(out, "\n");
+  }
+  file.commit();
+}
+
+void write_glare(const std::filesystem::path& csv, std::span<const SkyHour> hours,
+                 std::span<const GlareOfYear> eyes) {
+  AtomicStream file(csv);
+  std::ostream& out = file.stream();
+  fmt::print(out, "hour");
+  for (const GlareOfYear& eye : eyes) {
+    fmt::print(out, ",{},{}", csv_text(eye.name + " lux"), csv_text(eye.name + " DGP"));
+  }
+  fmt::print(out, "\n");
+  for (std::size_t h = 0; h < hours.size(); ++h) {
+    fmt::print(out, "{}", hours[h].number);
+    for (const GlareOfYear& eye : eyes) {
+      fmt::print(out, ",{:.6g},{:.4f}", eye.vertical_lux[h], eye.dgp[h]);
+    }
+    fmt::print(out, "\n");
+  }
+  file.commit();
+}
+
+void write_instant(const std::filesystem::path& csv, std::span<const Probe> sensors,
+                   const Eigen::ArrayXf& total, const Eigen::ArrayXf& sunlight,
+                   double metres_per_unit) {
+  AtomicStream file(csv);
+  std::ostream& out = file.stream();
+  fmt::print(out, "x,y,z,nx,ny,nz,lux,sun_lux\n");
+  for (std::size_t s = 0; s < sensors.size(); ++s) {
+    const Eigen::Vector3d p = sensors[s].position / metres_per_unit, &n = sensors[s].normal;
+    const auto i = static_cast<Eigen::Index>(s);
+    fmt::print(out, "{},{},{},{},{},{},{:.6g},{:.6g}\n", p.x(), p.y(), p.z(), n.x(), n.y(), n.z(),
+               total[i], sunlight[i]);
   }
   file.commit();
 }

@@ -6,8 +6,10 @@
 #include <vector>
 
 #include "daylight/annual_metrics.h"
+#include "daylight/daylight_glare.h"
 #include "raytrace/readings/probe.h"
 #include "scene/atomic_file.h"
+#include "scene/io/window_states.h"
 
 namespace lightwell {
 
@@ -37,9 +39,26 @@ void write_sensors(const std::filesystem::path& csv, std::span<const Probe> sens
                    const SensorMetrics& metrics, const Eigen::ArrayXf& daylight_factor,
                    double metres_per_unit);
 
+/// Hours with light, and the states of operated windows in them.
+struct HourTable {
+  std::span<const SkyHour> hours{};
+  bool is_leap_year = false;
+  const OperatedWindows& windows;
+  const Eigen::ArrayXXi& states;  ///< groups x hours
+};
+
 /// Writes a line for each hour with light: its number, month, day, standard time of its middle, the
-/// sun's altitude and azimuth in degrees, lux across the sun's rays and of the dome on open ground.
-void write_hours(const std::filesystem::path& csv, std::span<const SkyHour> hours,
-                 bool is_leap_year);
+/// sun's altitude and azimuth in degrees, lux across the sun's rays and of the dome on open ground,
+/// and the state of each group of windows.
+void write_hours(const std::filesystem::path& csv, const HourTable& table);
+
+/// Writes a line for each hour with light: its number, and lux and DGP of each eye.
+void write_glare(const std::filesystem::path& csv, std::span<const SkyHour> hours,
+                 std::span<const GlareOfYear> eyes);
+
+/// Writes a line for each sensor: x,y,z,nx,ny,nz in file units, lux, and lux straight from the sun.
+void write_instant(const std::filesystem::path& csv, std::span<const Probe> sensors,
+                   const Eigen::ArrayXf& total, const Eigen::ArrayXf& sunlight,
+                   double metres_per_unit);
 
 }  // namespace lightwell

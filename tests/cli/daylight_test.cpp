@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <nlohmann/json.hpp>
@@ -37,6 +38,22 @@ std::string court(bool roof = false) {
   if (roof) add("roof", "[[0, 0, 2], [0, 4, 2], [4, 4, 2], [4, 0, 2]]");
   return text;
 }
+
+// The court under a roof of clear glass, and `windows`, a group of that roof.
+std::string glazed_court(const std::string& windows = "", const std::string& roof = "clear") {
+  return court() +
+         "[materials.clear]\nglass = { ior = 1.5, thin = true }\n"
+         "[materials.fabric]\ntranslucent = 0.05\nreflectance = 0.5\n"
+         "[[surfaces]]\nname = \"roof\"\nmaterial = \"" +
+         roof +
+         "\"\npolygon = [[0, 0, 2], [0, 4, 2], [4, 4, 2], [4, 0, 2]]\n"
+         "[[grids]]\nsurface = \"floor\"\nheight = 0.8\nspacing = 1\n" +
+         windows;
+}
+
+const std::string roof_states =
+    "[[windows]]\nname = \"skylight\"\nsurfaces = \"roof\"\n"
+    "states = [{ name = \"open\" }, { name = \"blind\", material = \"fabric\" }]\n";
 
 const std::string weather =
     "place Testville\nlatitude 50\nlongitude 0\ntime_zone 0\nsite_elevation 0\n"
@@ -155,6 +172,109 @@ TEST_F(DaylightCommand, InfoDescribesWeather) {
   EXPECT_EQ(json["diffuse_horizontal_kWh_m2"], 0.35);
   EXPECT_GT(json["brightest_hour_klx"].get<double>(), 0.0);
   EXPECT_EQ(json["notes"].size(), 1u);
+}
+
+// A roof that is always closed is one of the blind's material, but for ASE and the daylight factor,
+// which are without blinds.
+TEST_F(DaylightCommand, ABlindThatIsAlwaysClosedIsItsMaterial) {
+  folder.write("court.toml", glazed_court("", "fabric"));
+  const Json fabric = run_json(command({}))["rooms"][0];
+  folder.write("court.toml", glazed_court());
+  const Json open = run_json(command({}))["rooms"][0];
+  folder.write("court.toml",
+               glazed_court(roof_states + "operation = \"always\"\nstate = \"blind\"\n"));
+  const Json json = run_json(command({}));
+  const Json& closed = json["rooms"][0];
+  EXPECT_EQ(closed["mean_lux"]["value"], fabric["mean_lux"]["value"]);
+  EXPECT_LT(closed["mean_lux"]["value"].get<double>(),
+            0.5 * open["mean_lux"]["value"].get<double>());
+  EXPECT_EQ(closed["mean_daylight_factor"], open["mean_daylight_factor"]);
+  EXPECT_EQ(closed["ASE1000_250"], open["ASE1000_250"]);
+  EXPECT_EQ(json["states"].size(), 2u);
+  EXPECT_EQ(json["states"][0]["rooms"][0]["mean_lux"], open["mean_lux"]["value"]);
+  EXPECT_EQ(json["windows"][0]["states"][1]["hours_with_light"], 3);
+  EXPECT_EQ(json["method"], "combinations");
+}
+
+// The sun of noon in June comes through the roof with more than 1000 lx onto all of the floor that
+// walls do not shade; in December there is none.
+TEST_F(DaylightCommand, BlindsCloseByTheSun) {
+  folder.write("court.toml", glazed_court());
+  folder.write("windows.toml", roof_states);
+  const Json json = run_json(command({"--windows", "windows.toml", "--hourly"}));
+  EXPECT_EQ(json["windows"][0]["states"][0]["occupied_hours"], 1);
+  EXPECT_EQ(json["windows"][0]["states"][1]["occupied_hours"], 2);
+  const std::string hours = text_of("hours.csv"), page = text_of("year.html");
+  EXPECT_NE(hours.find("dome_lux,skylight\n"), std::string::npos);
+  EXPECT_NE(hours.find(",blind\n"), std::string::npos);
+  EXPECT_TRUE(hours.ends_with(",open\n"));
+  EXPECT_NE(page.find("IES LM-83-12"), std::string::npos);
+  EXPECT_EQ(Json::parse(text_of("year.json"))["windows"], json["windows"]);
+}
+
+// An eye in the court that looks up at the bright roof, a point above the roof, from which the sun
+// is seen all of a day that is 12 h long, and one close to the south wall, which the walls shade:
+// at the equinox the sun rises in the east and climbs to 40 degrees, below the 45 degrees of the
+// east and west walls' edges.
+TEST_F(DaylightCommand, GlareAndExposureAreReported) {
+  folder.write("court.toml", glazed_court("[[cameras]]\nname = \"visitor\"\nposition = [2, 2, 1]\n"
+                                          "direction = [0, -1, 1]\nup = [0, 0, 1]\n"));
+  folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,3,0,0,1\n2,0.05,0.5,0,0,1\n");
+  const Json json = run_json(command({"--observer", "visitor", "--sun-points", "p.csv"}));
+  const Json& glare = json["glare"][0];
+  EXPECT_EQ(glare["observer"], "visitor");
+  // Three hours of 3650 have light.
+  EXPECT_LE(glare["DGP_above_0.35"].get<double>(), 100.0 * 3 / 3650);
+  EXPECT_EQ(glare["en_17037"], "high");
+  const Json& points = json["exposure_to_sunlight"]["points"];
+  // The equinox at 50 degrees north: the sun is 0.4 degrees north of the equator, which makes the
+  // day 0.4 tan 50 / 7.5 h = 4 minutes longer than half a day.
+  EXPECT_NEAR(points[0]["hours"].get<double>(), 12.0, 0.1);
+  EXPECT_EQ(points[1]["hours"], 0.0);
+  EXPECT_EQ(points[0]["en_17037"], "high");
+  EXPECT_EQ(lines_of(text_of("glare.csv")), 4);
+  EXPECT_NE(text_of("year.html").find("Daylight glare probability"), std::string::npos);
+}
+
+// On level ground above the court the instant has the light of its hour's weather.
+TEST_F(DaylightCommand, AnInstantHasTheLightOfItsHour) {
+  folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,5,0,0,1\n");
+  const Json json = run_json(command({"--points", "p.csv", "--at", "2017-06-21 12:30"}));
+  const double sun = json["sun"]["lux"], dome = json["dome_lux"],
+               altitude = json["sun"]["altitude"];
+  const double expected = dome + sun * std::sin(altitude * 3.14159265358979 / 180.0);
+  // Cosines vary over the disc by half its radius, 0.0047; four standard errors of 16 rays.
+  EXPECT_NEAR(json["rooms"][0]["mean_lux"].get<double>(), expected,
+              4.0 * 0.5 * 0.0047 / 4.0 * sun + 1e-5 * expected);
+  EXPECT_EQ(lines_of(text_of("instant.csv")), 2);
+  EXPECT_NE(text_of("instant.html").find("2017-06-21 12:30"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(folder / "year/year.json"));
+  const auto refused = [&](const std::string& at, int code, const std::string& sentence) {
+    const Ended ended = run(command({"--points", "p.csv", "--at", at}));
+    EXPECT_EQ(ended.code, code) << ended.err;
+    EXPECT_NE(ended.err.find(sentence), std::string::npos) << ended.err;
+  };
+  refused("2017-06-21 23:30", 3, "the sun is below the horizon");
+  refused("2017-02-30 12:30", 2, "is no instant");
+  refused("noon", 2, "is no instant");
+  refused("2016-02-29 12:30", 3, "the weather has no hour on day 29 of month 2");
+}
+
+TEST_F(DaylightCommand, WrongWindowsAreASentence) {
+  const auto expect = [&](const std::string& windows, const std::string& sentence) {
+    folder.write("windows.toml", windows);
+    folder.write("court.toml", glazed_court());
+    const Ended ended = run(command({"--windows", "windows.toml"}));
+    EXPECT_EQ(ended.code, 3) << ended.err;
+    EXPECT_NE(ended.err.find(sentence), std::string::npos) << ended.err;
+  };
+  expect("", "there are no windows");
+  expect("[[windows]]\nsurfaces = \"rof\"\nstates = []\n", "Did you mean 'roof'?");
+  std::string hours;
+  for (int h = 0; h < 8784; ++h) hours += "open\n";
+  folder.write("hours.csv", hours);
+  expect(roof_states + "operation = \"schedule\"\nschedule = \"hours.csv\"\n",
+         "has 8784 hours, and the weather file 8760");
 }
 
 TEST_F(DaylightCommand, WrongInputIsASentence) {

@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <numbers>
 
+#include "scene/errors.h"
 #include "scene/sun_position.h"
 
 namespace lightwell::sky_year_test {
@@ -43,6 +45,30 @@ TEST(SkyYear, TheSunStandsWhereItIsInTheMiddleOfTheHour) {
   }
   // The sun is up for half of the year.
   EXPECT_NEAR(static_cast<double>(hours.size()), 4380.0, 40.0);
+}
+
+// In the middle of an hour of 2017 an instant is that hour of the year; later the sun has moved on,
+// and the irradiances are the same.
+TEST(SkyYear, AnInstantIsOfItsHour) {
+  Weather weather = steady_weather(500.0, 100.0);
+  const std::vector<SkyHour> hours = hours_of(weather);
+  const auto at = [&](double hour) {
+    return sky_instant(weather, {.year = 2017, .month = 6, .day = 21, .hour = hour},
+                       Vector3d::UnitZ(), Vector3d::UnitY());
+  };
+  const auto middle = at(12.5), later = at(12.9);
+  ASSERT_TRUE(middle && later);
+  const auto same = std::ranges::find(hours, middle->number, &SkyHour::number);
+  ASSERT_NE(same, hours.end());
+  EXPECT_EQ(middle->sun, same->sun);
+  EXPECT_EQ(middle->sun_lux, same->sun_lux);
+  EXPECT_EQ(middle->dome_lux, same->dome_lux);
+  EXPECT_EQ(later->number, middle->number);
+  EXPECT_NE(later->sun, middle->sun);
+  EXPECT_FALSE(at(0.5));
+  EXPECT_THROW(sky_instant(weather, {.year = 2016, .month = 2, .day = 29}, Vector3d::UnitZ(),
+                           Vector3d::UnitY()),
+               InputError);
 }
 
 TEST(SkyYear, HoursWithoutLightOfTheDomeAreDark) {

@@ -53,6 +53,15 @@ std::string page_begin(const std::string& title) {
   return fmt::format(fmt::runtime(page_head), html_text(title), for_style(title));
 }
 
+std::string list_section(const char* title, const std::vector<std::string>& sentences) {
+  if (sentences.empty()) return {};
+  std::string section = fmt::format("<h2>{}</h2>\n<ul>", title);
+  for (const std::string& sentence : sentences) {
+    section += "<li>" + html_text(sentence) + "</li>\n";
+  }
+  return section + "</ul>\n";
+}
+
 std::optional<Eigen::Vector2d> north_in(const std::optional<Eigen::Vector3d>& north,
                                         const LuxGrid& grid) {
   if (!north) return {};

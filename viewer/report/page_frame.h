@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "raytrace/readings/lux_grid.h"
 
@@ -11,6 +12,8 @@ namespace lightwell {
 /// The beginning of a page for screens and A4 paper, up to <body>, with the style of tables, plans
 /// and curves.
 std::string page_begin(const std::string& title);
+/// A heading and a list of sentences; empty without sentences.
+std::string list_section(const char* title, const std::vector<std::string>& sentences);
 inline constexpr const char* page_end = "</body></html>\n";
 
 /// North along u and v of a grid that lies level; empty: `north` is not known, or the grid

@@ -8,6 +8,7 @@
 #include "viewer/report/heat_map.h"
 #include "viewer/report/page_frame.h"
 #include "viewer/report/plan_svg.h"
+#include "viewer/report/year_operation.h"
 #include "viewer/report/year_report.h"
 
 namespace lightwell {
@@ -56,10 +57,13 @@ void add_table(const YearReport& report, std::string& page) {
   fmt::format_to(out,
                  "</table>\n<p>Light without direct sunlight, in the mean of the year, is within "
                  "±{:.1f}\u202f% at a sensor "
-                 "(odds of 19 to 1); the smaller figures say what that does to a measure. "
-                 "sDA and ASE are those of IES LM-83 without blinds; EN 17037 by its second "
-                 "method.</p>\n",
-                 100.0 * report.error);
+                 "(odds of 19 to 1); the smaller figures say what that does to a measure. {} "
+                 "EN 17037 by its second method.</p>\n",
+                 100.0 * report.error,
+                 report.windows.empty()
+                     ? "sDA and ASE are those of IES LM-83 without blinds."
+                     : "All are with operated windows, but ASE and the daylight factor, which have "
+                       "all windows in their first state.");
 }
 
 struct Plan {
@@ -121,22 +125,16 @@ void add_rooms(const YearReport& report, std::string& page) {
   }
 }
 
-void add_list(const char* title, const std::vector<std::string>& sentences, std::string& page) {
-  if (sentences.empty()) return;
-  page += fmt::format("<h2>{}</h2>\n<ul>", title);
-  for (const std::string& sentence : sentences) page += "<li>" + html_text(sentence) + "</li>\n";
-  page += "</ul>\n";
-}
-
 }  // namespace
 
 std::string year_page(const YearReport& report) {
   std::string page = page_begin(report.title);
   add_heading(report, page);
   add_table(report, page);
+  page += operation_sections(report);
   add_rooms(report, page);
-  add_list("What is assumed", report.conventions, page);
-  add_list("Notes", report.notes, page);
+  page += list_section("What is assumed", report.conventions);
+  page += list_section("Notes", report.notes);
   return page + page_end;
 }
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "daylight/annual_metrics.h"
+#include "daylight/daylight_glare.h"
+#include "daylight/sun_exposure.h"
 #include "raytrace/readings/lux_grid.h"
 #include "scene/io/weather/weather_file.h"
 #include "viewer/report/plan_lines.h"
@@ -23,6 +25,31 @@ struct YearRoom {
   std::vector<float> mean_of_hours{};  ///< lx, for every hour of the year
 };
 
+/// A group of windows that is operated, and the hours that it spends in its states.
+struct YearWindows {
+  std::string name{};
+  std::string operation{};  ///< the rule, see operation_text()
+  struct State {
+    std::string name{};
+    int occupied_hours = 0, hours = 0;  ///< hours with light
+  };
+  std::vector<State> states{};
+};
+
+/// The year with the windows in the same states in all hours.
+struct YearInStates {
+  std::string states{};  ///< see states_text()
+  double error = 0.0;    ///< see year_error()
+  std::vector<RoomMetrics> rooms{};
+};
+
+/// Hours with the sun in sight on a day, at points where they are asked for.
+struct YearExposure {
+  ExposureDay day{};
+  std::vector<Eigen::Vector3d> points{};  ///< m
+  Eigen::ArrayXd hours{};
+};
+
 /// A year of daylight.
 struct YearReport {
   std::string title{}, version{};
@@ -37,6 +64,13 @@ struct YearReport {
   SensorMetrics sensors{};
   Eigen::ArrayXf daylight_factor{};  ///< [0, 1]
   std::vector<YearRoom> rooms{};
+  std::vector<YearWindows> windows{};  ///< empty: nothing is operated
+  std::vector<YearInStates> states{};  ///< that the year was put together from
+  bool is_superposed = false;          ///< see WindowPlan
+  double superposition = 0.0;          ///< see OperatedYear
+  std::vector<int> hour_numbers{};     ///< of the hours with light, see SkyHour
+  std::vector<GlareOfYear> glare{};    ///< of observers
+  std::optional<YearExposure> exposure{};
 };
 
 /// Measures, bounds and conventions.

@@ -1,0 +1,179 @@
+#include "cli/daylight_inputs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/outputs.h"
+#include "cli/steps.h"
+#include "mesh/cleaning/joined_surfaces.h"
+#include "raytrace/cameras/choose_camera.h"
+#include "scene/errors.h"
+#include "viewer/export/start_view.h"
+
+namespace lightwell {
+namespace {
+
+// Sets zenith and north of the scene: those of its sky, or those that its axes suggest.
+void set_compass(double north_degrees, DaylightInputs& inputs) {
+  Sky frame;
+  const Scene& scene = inputs.scene;
+  inputs.has_north = scene.sky.has_value();
+  if (scene.sky) {
+    frame = *scene.sky;
+  } else {
+    frame.up = guess_up_axis(scene.cameras, scene_bounds(scene));
+    // Drawings have north along +y; scenes with y up, along -z.
+    frame.north = std::abs(frame.up.y()) > 0.5 ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ())
+                                               : Eigen::Vector3d(Eigen::Vector3d::UnitY());
+  }
+  inputs.up = frame.up;
+  inputs.north = sky_direction(frame, north_degrees, 0.0);
+}
+
+void add_room(YearRoom room, const std::vector<Probe>& points, DaylightSensors& sensors) {
+  if (points.empty()) return;
+  room.first = static_cast<Eigen::Index>(sensors.probes.size());
+  room.count = static_cast<Eigen::Index>(points.size());
+  sensors.probes.insert(sensors.probes.end(), points.begin(), points.end());
+  sensors.rooms.push_back(std::move(room));
+}
+
+// Refuses operated surfaces that the clean-up made a part of another, or the other way round.
+void refuse_joined_windows(const DaylightInputs& inputs) {
+  if (!inputs.clean_up.names) return;
+  const Scene apart = inputs.clean_up.names->apart(inputs.scene);
+  for (const WindowGroup& group : inputs.windows.groups) {
+    for (const int number : group.surfaces) {
+      const auto s = static_cast<std::size_t>(number);
+      const double area = surface_area(apart.surfaces[s]);
+      constexpr double rounding = 1e-6;
+      if (std::abs(surface_area(inputs.scene.surfaces[s]) - area) <= rounding * area) continue;
+      throw InputError(fmt::format(
+          "windows '{}': the surface '{}' lies in the plane of a neighbour of the same material "
+          "and was joined with that; give it a material that differs, if only by a thousandth",
+          group.name, inputs.scene.surfaces[s].name));
+    }
+  }
+}
+
+}  // namespace
+
+DaylightInputs read_daylight_inputs(const DaylightArguments& arguments, Console& console,
+                                    Report& report) {
+  for (const std::string* file :
+       {&arguments.weather, &arguments.points, &arguments.windows, &arguments.sun_points}) {
+    if (!file->empty()) note_input(*file);
+  }
+  DaylightInputs inputs{.weather = read_weather(arguments.weather)};
+  inputs.scene = read_scene_step(arguments.scene, console, report, &inputs.clean_up);
+  inputs.windows = arguments.windows.empty() ? read_windows(inputs.scene)
+                                             : read_windows(arguments.windows, inputs.scene);
+  refuse_joined_windows(inputs);
+  for (const std::string& name : arguments.observers) {
+    inputs.eyes.push_back(choose_camera(inputs.scene, name));
+  }
+  if (!arguments.sun_points.empty()) {
+    for (const Probe& probe : read_probes(arguments.sun_points, inputs.scene.metres_per_unit)) {
+      inputs.sun_points.push_back(probe.position);
+    }
+  }
+  set_compass(arguments.north_degrees, inputs);
+  return inputs;
+}
+
+std::vector<Probe> DaylightSensors::all() const {
+  std::vector<Probe> both = probes;
+  both.insert(both.end(), eyes.begin(), eyes.end());
+  return both;
+}
+
+std::vector<SensorRange> DaylightSensors::ranges() const {
+  std::vector<SensorRange> ranges;
+  for (const YearRoom& room : rooms) ranges.push_back({.first = room.first, .count = room.count});
+  return ranges;
+}
+
+DaylightSensors daylight_sensors(const DaylightArguments& arguments, const DaylightInputs& inputs,
+                                 const ElementCaster& caster) {
+  const Scene& scene = inputs.scene;
+  DaylightSensors sensors;
+  for (LuxGrid& planned : requested_grids(
+           arguments.grids.in_metres(scene), read_lighting_design(scene).grids,
+           inputs.clean_up.names ? inputs.clean_up.names->apart(scene) : scene, inputs.up)) {
+    const LuxGrid grid = without_buried_points(caster, std::move(planned));
+    add_room({.name = grid.name, .grid = grid, .lines = plan_lines(scene, caster, grid, {})},
+             grid.points, sensors);
+  }
+  if (!arguments.points.empty()) {
+    add_room({.name = std::filesystem::path(arguments.points).filename().string()},
+             read_probes(arguments.points, scene.metres_per_unit), sensors);
+  }
+  if (sensors.probes.empty()) {
+    throw InputError(
+        "there are no sensors; name planes with '--plane floor@0.8' or as [[grids]] in the scene "
+        "file, or a file of points with '--points'");
+  }
+  for (const Camera& eye : inputs.eyes) {
+    sensors.eyes.push_back({.position = eye.position, .normal = eye.direction});
+  }
+  return sensors;
+}
+
+DaylightOptions daylight_options(const DaylightArguments& arguments, const Scene& scene,
+                                 Console& console) {
+  DaylightOptions options{.sky_subdivision = arguments.sky, .gather_rays = arguments.rays};
+  const MeshOptions mesh = arguments.mesh.options(scene);
+  options.mesh.max_patch_size = mesh.max_patch_size;
+  options.progress = console.progress();
+  return options;
+}
+
+std::vector<std::string> daylight_conventions(const DaylightArguments& arguments,
+                                              const DaylightInputs& inputs, const SkyPatches& sky) {
+  const Eigen::Vector3d& north = sky.north();
+  std::vector<std::string> sentences = {
+      fmt::format("The dome is Perez' all-weather sky (1993) in {} patches of even luminance "
+                  "(Tregenza, Reinhart). The sun is a disc of 0.533 degrees in its own place.",
+                  sky.dome_count()),
+      inputs.weather.format.ends_with("(WEA)")
+          ? "Lux follow from watts by Perez' efficacies (1990) for a dew point of 11 degrees."
+          : "Lux follow from watts by Perez' efficacies (1990) for the dew point of each hour.",
+      fmt::format("The ground reflects {:g} of the light of sun and dome, evenly.",
+                  arguments.ground),
+      "Panes pass light by its angle, with all reflections inside. The sun in mirrors, and through "
+      "glass that bends or scatters its light, is left out.",
+      fmt::format("North is ({:.4g}, {:.4g}, {:.4g}) in the scene's axes, {}.", north.x(),
+                  north.y(), north.z(), inputs.has_north ? "by its sky" : "assumed"),
+      "Lamps and emitting surfaces of the scene are off."};
+  if (inputs.windows.groups.empty()) sentences.emplace_back("There are no blinds.");
+  for (const WindowGroup& group : inputs.windows.groups) {
+    sentences.push_back(fmt::format("The windows '{}' are {}.", group.name, operation_text(group)));
+  }
+  if (!inputs.eyes.empty()) {
+    sentences.push_back(fmt::format(
+        "Glare is the DGP of Wienold & Christoffersen (2006) with Guth's position index. Sources "
+        "are the sun, and sky and ground above {:g} cd/m^2 through clear panes; surfaces of the "
+        "room, such as lit blinds, count by their illuminance of the eye alone.",
+        glare_luminance));
+  }
+  return sentences;
+}
+
+YearReport daylight_report(const DaylightArguments& arguments, const DaylightInputs& inputs,
+                           const std::vector<std::string>& notes) {
+  const Scene& scene = inputs.scene;
+  YearReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
+                  .version = LIGHTWELL_VERSION,
+                  .weather = inputs.weather,
+                  .notes = notes,
+                  .occupancy = arguments.occupancy,
+                  .north = inputs.north,
+                  .metres_per_unit = scene.metres_per_unit,
+                  .unit_name = scene.unit_name};
+  made.notes.insert(made.notes.end(), scene.notes.begin(), scene.notes.end());
+  return made;
+}
+
+}  // namespace lightwell

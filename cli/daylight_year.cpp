@@ -1,0 +1,311 @@
+#include "cli/daylight_year.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+#include "cli/commands.h"
+#include "cli/interrupt.h"
+#include "cli/outputs.h"
+#include "daylight/glare_of_year.h"
+#include "daylight/operated_year.h"
+#include "daylight/year_files.h"
+#include "raytrace/readings/probe_surface.h"
+#include "viewer/export/write_whole.h"
+
+namespace lightwell {
+namespace {
+
+// Files of every hour and sensor, where they are asked for.
+class HourlyFiles {
+ public:
+  HourlyFiles(const OutputFolder& folder, int sensors)
+      : sensors_(sensors),
+        total_(folder / "illuminance.npy", sensors),
+        sunlight_(folder / "sunlight.npy", sensors) {}
+
+  void append(const HourBlock& block) {
+    total_.append(block.total.topRows(sensors_));
+    sunlight_.append(block.sunlight.topRows(sensors_));
+  }
+  void commit() {
+    total_.commit();
+    sunlight_.commit();
+  }
+
+ private:
+  int sensors_;
+  NumpyRows total_, sunlight_;
+};
+
+// The files that the command will write.
+std::vector<std::string> files_of(const DaylightArguments& arguments) {
+  std::vector<std::string> files = {"sensors.csv", "hours.csv", "year.html", "year.json"};
+  if (arguments.hourly) files.insert(files.end(), {"illuminance.npy", "sunlight.npy"});
+  if (!arguments.observers.empty()) files.emplace_back("glare.csv");
+  return files;
+}
+
+// The measures of all rooms.
+void set_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_factor,
+                 RoomMetrics YearRoom::*which, std::vector<YearRoom>& rooms) {
+  for (YearRoom& room : rooms) {
+    room.*which = room_metrics(sensors, daylight_factor, room.first, room.count);
+  }
+}
+
+// Counts what becomes of a year.
+class YearCount {
+ public:
+  YearCount(std::span<const SkyHour> hours, int sensors, double error, HourlyFiles* files,
+            YearReport& made)
+      : made_(made),
+        files_(files),
+        metrics_(counted(hours, sensors, 1.0)),
+        least_(counted(hours, sensors, 1.0 - std::min(1.0, error))),
+        most_(counted(hours, sensors, 1.0 + error)) {
+    made_.error = error;
+    for (YearRoom& room : made_.rooms) room.mean_of_hours.assign(made_.weather.hours.size(), 0.0f);
+  }
+
+  void add(const HourBlock& block) {
+    metrics_.add(block);
+    least_.add(block);
+    most_.add(block);
+    for (YearRoom& room : made_.rooms) {
+      for (std::size_t h = 0; h < block.hours.size(); ++h) {
+        room.mean_of_hours[static_cast<std::size_t>(block.hours[h].number)] =
+            block.total.col(static_cast<Eigen::Index>(h)).segment(room.first, room.count).mean();
+      }
+    }
+    if (files_) files_->append(block);
+  }
+
+  // Fills in the measures. `open_sun_hours`, if not null, are those of windows without blinds,
+  // which ASE asks for.
+  void finish(const Eigen::ArrayXd* open_sun_hours) {
+    const auto with_sun = [&](const AnnualMetrics& metrics) {
+      SensorMetrics sensors = metrics.sensors();
+      if (open_sun_hours) sensors.sun_hours = *open_sun_hours;
+      return sensors;
+    };
+    made_.sensors = with_sun(metrics_);
+    set_metrics(made_.sensors, made_.daylight_factor, &YearRoom::metrics, made_.rooms);
+    set_metrics(with_sun(least_), made_.daylight_factor, &YearRoom::least, made_.rooms);
+    set_metrics(with_sun(most_), made_.daylight_factor, &YearRoom::most, made_.rooms);
+  }
+
+ private:
+  AnnualMetrics counted(std::span<const SkyHour> hours, int sensors, double factor) const {
+    return {sensors, hours, static_cast<int>(made_.weather.hours.size()), made_.occupancy, factor};
+  }
+
+  YearReport& made_;
+  HourlyFiles* files_;
+  AnnualMetrics metrics_, least_, most_;
+};
+
+int occupied_hours_of(const YearReport& made) {
+  return static_cast<int>(made.weather.hours.size()) / hours_a_day *
+         (made.occupancy.to - made.occupancy.from);
+}
+
+// Hours of each group of windows in its states.
+std::vector<YearWindows> hours_in_states(const OperatedWindows& windows,
+                                         const Eigen::ArrayXXi& states,
+                                         std::span<const SkyHour> hours,
+                                         const Occupancy& occupancy) {
+  std::vector<YearWindows> all;
+  for (std::size_t g = 0; g < windows.groups.size(); ++g) {
+    const WindowGroup& group = windows.groups[g];
+    YearWindows of_group{.name = group.name, .operation = operation_text(group)};
+    for (const WindowState& state : group.states) of_group.states.push_back({.name = state.name});
+    for (std::size_t h = 0; h < hours.size(); ++h) {
+      const int state = states(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(h));
+      YearWindows::State& in_state = of_group.states[static_cast<std::size_t>(state)];
+      const int hour = hours[h].number % hours_a_day;
+      ++in_state.hours;
+      if (hour >= occupancy.from && hour < occupancy.to) ++in_state.occupied_hours;
+    }
+    all.push_back(std::move(of_group));
+  }
+  return all;
+}
+
+// The year with windows that change: its measures, and those of each computation.
+class OperatedCount {
+ public:
+  OperatedCount(std::span<const SkyHour> hours, int sensors, const YearReport& made)
+      : hours_(hours), sensors_(sensors), made_(made) {}
+
+  void add(const ComputedYear& year, const HourBlock& block) {
+    auto found = counts_.find(year.number);
+    if (found == counts_.end()) {
+      found = counts_
+                  .try_emplace(year.number, sensors_, hours_,
+                               static_cast<int>(made_.weather.hours.size()), made_.occupancy)
+                  .first;
+    }
+    found->second.add(block);
+  }
+
+  Eigen::ArrayXd open_sun_hours() const { return counts_.at(0).sensors().sun_hours; }
+
+  std::vector<YearInStates> years(const OperatedYear& year, const OperatedWindows& windows) const {
+    std::vector<YearInStates> all;
+    for (const auto& [number, count] : counts_) {
+      YearInStates in_states{.states = states_text(windows, year.plan.computations[number]),
+                             .error = year.errors[number]};
+      const SensorMetrics sensors = count.sensors();
+      for (const YearRoom& room : made_.rooms) {
+        in_states.rooms.push_back(
+            room_metrics(sensors, year.daylight_factor, room.first, room.count));
+      }
+      all.push_back(std::move(in_states));
+    }
+    return all;
+  }
+
+ private:
+  std::span<const SkyHour> hours_;
+  int sensors_;
+  const YearReport& made_;
+  std::map<std::size_t, AnnualMetrics> counts_{};
+};
+
+// Goes through the year and fills in all measures. `files` may be null.
+OperatedYear go_through_year(const DaylightInputs& inputs, const DaylightModel& model,
+                             const OperationTask& task, HourlyFiles* files, YearReport& made) {
+  const int sensors = model.sensor_count() - static_cast<int>(inputs.eyes.size());
+  const bool is_operated = !inputs.windows.groups.empty();
+  std::optional<YearCount> count;
+  OperatedCount operated(task.hours, sensors, made);
+  GlareCount glare(inputs.eyes, sensors, task.hours, task.ground_reflectance);
+  std::size_t computations = 0;
+  const OperatedYear year =
+      operate_year(inputs.scene, model, inputs.windows, task,
+                   [&](const ComputedYear& computed, const HourBlock& block) {
+                     if (computed.number == computations) {
+                       ++computations;
+                       if (!inputs.eyes.empty()) glare.add_computation(computed.model);
+                     }
+                     if (is_operated) return operated.add(computed, block);
+                     if (!count) count.emplace(task.hours, sensors, computed.error, files, made);
+                     count->add(block);
+                     glare.add_light(block);
+                   });
+  made.daylight_factor = year.daylight_factor;
+  if (!count) count.emplace(task.hours, sensors, year.error(), files, made);
+  if (is_operated) {
+    year.visit(task.hours, [&](const HourBlock& block) {
+      count->add(block);
+      glare.add_light(block);
+    });
+    const Eigen::ArrayXd open_sun_hours = operated.open_sun_hours();
+    count->finish(&open_sun_hours);
+    made.windows = hours_in_states(inputs.windows, year.states, task.hours, made.occupancy);
+    made.states = operated.years(year, inputs.windows);
+    made.is_superposed = year.plan.is_superposed;
+    made.superposition = year.superposition;
+  } else {
+    count->finish(nullptr);
+  }
+  for (const SkyHour& hour : task.hours) made.hour_numbers.push_back(hour.number);
+  made.glare = glare.finish(year.plan, year.states, made.occupancy, occupied_hours_of(made));
+  return year;
+}
+
+// Notes on the weather, said on the console too.
+std::vector<std::string> weather_notes(const Weather& weather, const std::vector<SkyHour>& hours,
+                                       Console& console) {
+  std::vector<std::string> notes = weather.notes;
+  const std::string dark = note_on_dark_hours(weather, hours);
+  if (!dark.empty()) notes.push_back(dark);
+  for (const std::string& note : notes) console.say("note: " + note);
+  return notes;
+}
+
+std::vector<std::string> conventions_of_year(const DaylightArguments& arguments,
+                                             const DaylightInputs& inputs, const SkyPatches& sky) {
+  std::vector<std::string> sentences = {
+      "An hour has the mean irradiances of the weather file; the sun stands where it is in the "
+      "middle of the hour, standard time, without refraction (Michalsky 1988).",
+      fmt::format("Dates are those of {}, since a typical year is put together from several.",
+                  inputs.weather.is_leap_year ? "the leap year 2016" : "2017")};
+  const std::vector<std::string> more = daylight_conventions(arguments, inputs, sky);
+  sentences.insert(sentences.end(), more.begin(), more.end());
+  return sentences;
+}
+
+void note_darkness(YearReport& made, Console& console) {
+  if ((made.daylight_factor > 0.0f).any()) return;
+  made.notes.emplace_back(
+      "No daylight reaches any sensor: the scene has no opening, or its windows are opaque.");
+  console.say("warning: " + made.notes.back());
+}
+
+}  // namespace
+
+int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& inputs,
+                     Console& console, Report& report) {
+  const Weather& weather = inputs.weather;
+  const std::vector<SkyHour> hours = sky_hours(weather, inputs.up, inputs.north);
+  YearReport made = daylight_report(arguments, inputs, weather_notes(weather, hours, console));
+  const OutputFolder folder(arguments.output);
+  for (const std::string& file : files_of(arguments)) require_writable(folder / file);
+
+  Stopwatch watch;
+  DaylightModel model(inputs.scene, inputs.up, inputs.north,
+                      daylight_options(arguments, inputs.scene, console));
+  DaylightSensors sensors = daylight_sensors(arguments, inputs, model.caster());
+  model.set_sensors(probe_points(model.caster(), sensors.all()));
+  report.add_phase("sky", watch.lap());
+  made.rooms = std::move(sensors.rooms);
+  made.conventions = conventions_of_year(arguments, inputs, model.sky());
+  std::vector<SensorRange> ranges;
+  for (const YearRoom& room : made.rooms) ranges.push_back({room.first, room.count});
+  std::optional<HourlyFiles> files;
+  if (arguments.hourly) files.emplace(folder, static_cast<int>(sensors.probes.size()));
+  const OperatedYear year = go_through_year(inputs, model,
+                                            {.hours = hours,
+                                             .is_leap_year = weather.is_leap_year,
+                                             .ground_reflectance = arguments.ground,
+                                             .rooms = ranges},
+                                            files ? &*files : nullptr, made);
+  note_darkness(made, console);
+  if (!inputs.sun_points.empty()) {
+    made.exposure =
+        YearExposure{.day = arguments.sun_day,
+                     .points = inputs.sun_points,
+                     .hours = sun_exposure(model, weather, inputs.sun_points, arguments.sun_day)};
+  }
+  console.finish_phase();
+  stop_if_interrupted();
+  report.add_phase("year", watch.lap());
+
+  write_sensors(folder / "sensors.csv", sensors.probes, made.sensors, made.daylight_factor,
+                inputs.scene.metres_per_unit);
+  write_hours(folder / "hours.csv", {.hours = hours,
+                                     .is_leap_year = weather.is_leap_year,
+                                     .windows = inputs.windows,
+                                     .states = year.states});
+  if (!made.glare.empty()) write_glare(folder / "glare.csv", hours, made.glare);
+  write_whole(folder / "year.html", {year_page(made)});
+  const Json figures = year_json(made);
+  write_json(folder / "year.json", figures);
+  if (files) files->commit();
+  for (const std::string& file : files_of(arguments)) report.add_file(folder / file);
+  report.add("patches", model.mesh().patch_count());
+  report.add("sensors", sensors.probes.size());
+  report.add("hours_with_light", hours.size());
+  for (const char* key : {"relative_error", "rooms", "windows", "method", "superposition_error",
+                          "states", "glare", "exposure_to_sunlight"}) {
+    if (figures.contains(key)) report.add(key, figures[key]);
+  }
+  if (!console.options().json && !console.options().quiet) fmt::print("{}", year_text(made));
+  report.print();
+  return exit_done;
+}
+
+}  // namespace lightwell
