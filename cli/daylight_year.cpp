@@ -58,21 +58,25 @@ void set_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_fa
 // Counts what becomes of a year.
 class YearCount {
  public:
-  YearCount(std::span<const SkyHour> hours, int sensors, double error, HourlyFiles* files,
-            YearReport& made)
+  YearCount(std::span<const SkyHour> hours, int sensors, HourlyFiles* files, YearReport& made)
       : made_(made),
         files_(files),
-        metrics_(counted(hours, sensors, 1.0)),
-        least_(counted(hours, sensors, 1.0 - std::min(1.0, error))),
-        most_(counted(hours, sensors, 1.0 + error)) {
-    made_.error = error;
+        metrics_(sensors, hours, static_cast<int>(made.weather.hours.size()), made.occupancy),
+        least_(metrics_),
+        most_(metrics_) {
     for (YearRoom& room : made_.rooms) room.mean_of_hours.assign(made_.weather.hours.size(), 0.0f);
   }
 
-  void add(const HourBlock& block) {
+  // Adds a block of hours, with the bound of each hour's light.
+  void add(const HourBlock& block, const std::vector<double>& errors) {
+    std::vector<float> less, more;
+    for (const double error : errors) {
+      less.push_back(static_cast<float>(1.0 - std::min(1.0, error)));
+      more.push_back(static_cast<float>(1.0 + error));
+    }
     metrics_.add(block);
-    least_.add(block);
-    most_.add(block);
+    least_.add(block, less);
+    most_.add(block, more);
     for (YearRoom& room : made_.rooms) {
       for (std::size_t h = 0; h < block.hours.size(); ++h) {
         room.mean_of_hours[static_cast<std::size_t>(block.hours[h].number)] =
@@ -97,10 +101,6 @@ class YearCount {
   }
 
  private:
-  AnnualMetrics counted(std::span<const SkyHour> hours, int sensors, double factor) const {
-    return {sensors, hours, static_cast<int>(made_.weather.hours.size()), made_.occupancy, factor};
-  }
-
   YearReport& made_;
   HourlyFiles* files_;
   AnnualMetrics metrics_, least_, most_;
@@ -174,42 +174,53 @@ class OperatedCount {
   std::map<std::size_t, AnnualMetrics> counts_{};
 };
 
+// Counts the year that is put together from the computations, with the bound of each hour.
+void count_operated(const OperatedYear& year, std::span<const SkyHour> hours, YearCount& count,
+                    GlareCount& glare) {
+  std::size_t first = 0;
+  year.visit(hours, [&](const HourBlock& block) {
+    std::vector<double> errors;
+    for (std::size_t h = 0; h < block.hours.size(); ++h) {
+      errors.push_back(year.error_of_hour(first + h));
+    }
+    first += block.hours.size();
+    count.add(block, errors);
+    glare.add_light(block);
+  });
+}
+
 // Goes through the year and fills in all measures. `files` may be null.
 OperatedYear go_through_year(const DaylightInputs& inputs, const DaylightModel& model,
                              const OperationTask& task, HourlyFiles* files, YearReport& made) {
   const int sensors = model.sensor_count() - static_cast<int>(inputs.eyes.size());
   const bool is_operated = !inputs.windows.groups.empty();
-  std::optional<YearCount> count;
+  YearCount count(task.hours, sensors, files, made);
   OperatedCount operated(task.hours, sensors, made);
   GlareCount glare(inputs.eyes, sensors, task.hours, task.ground_reflectance);
   std::size_t computations = 0;
-  const OperatedYear year =
-      operate_year(inputs.scene, model, inputs.windows, task,
-                   [&](const ComputedYear& computed, const HourBlock& block) {
-                     if (computed.number == computations) {
-                       ++computations;
-                       if (!inputs.eyes.empty()) glare.add_computation(computed.model);
-                     }
-                     if (is_operated) return operated.add(computed, block);
-                     if (!count) count.emplace(task.hours, sensors, computed.error, files, made);
-                     count->add(block);
-                     glare.add_light(block);
-                   });
+  const auto visit = [&](const ComputedYear& computed, const HourBlock& block) {
+    if (computed.number == computations) {
+      ++computations;
+      if (!inputs.eyes.empty()) glare.add_computation(computed.model);
+    }
+    if (is_operated) return operated.add(computed, block);
+    made.error = computed.error;
+    count.add(block, std::vector<double>(block.hours.size(), computed.error));
+    glare.add_light(block);
+  };
+  const OperatedYear year = operate_year(inputs.scene, model, inputs.windows, task, visit);
   made.daylight_factor = year.daylight_factor;
-  if (!count) count.emplace(task.hours, sensors, year.error(), files, made);
   if (is_operated) {
-    year.visit(task.hours, [&](const HourBlock& block) {
-      count->add(block);
-      glare.add_light(block);
-    });
+    made.error = year.error();
+    count_operated(year, task.hours, count, glare);
     const Eigen::ArrayXd open_sun_hours = operated.open_sun_hours();
-    count->finish(&open_sun_hours);
+    count.finish(&open_sun_hours);
     made.windows = hours_in_states(inputs.windows, year.states, task.hours, made.occupancy);
     made.states = operated.years(year, inputs.windows);
     made.is_superposed = year.plan.is_superposed;
     made.superposition = year.superposition;
   } else {
-    count->finish(nullptr);
+    count.finish(nullptr);
   }
   for (const SkyHour& hour : task.hours) made.hour_numbers.push_back(hour.number);
   made.glare = glare.finish(year.plan, year.states, made.occupancy, occupied_hours_of(made));
@@ -243,6 +254,28 @@ void note_darkness(YearReport& made, Console& console) {
   made.notes.emplace_back(
       "No daylight reaches any sensor: the scene has no opening, or its windows are opaque.");
   console.say("warning: " + made.notes.back());
+}
+
+// What the files of a year are written from.
+struct WrittenYear {
+  const OutputFolder& folder;
+  const DaylightInputs& inputs;
+  std::span<const SkyHour> hours{};
+  std::span<const Probe> probes{};
+};
+
+void write_files(const WrittenYear& written, const YearReport& made, const OperatedYear& year) {
+  const OutputFolder& folder = written.folder;
+  const DaylightInputs& inputs = written.inputs;
+  write_sensors(folder / "sensors.csv", written.probes, made.sensors, made.daylight_factor,
+                inputs.scene.metres_per_unit);
+  write_hours(folder / "hours.csv", {.hours = written.hours,
+                                     .is_leap_year = inputs.weather.is_leap_year,
+                                     .windows = inputs.windows,
+                                     .states = year.states});
+  if (!made.glare.empty()) write_glare(folder / "glare.csv", written.hours, made.glare);
+  write_whole(folder / "year.html", {year_page(made)});
+  write_json(folder / "year.json", year_json(made));
 }
 
 }  // namespace
@@ -284,21 +317,14 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   stop_if_interrupted();
   report.add_phase("year", watch.lap());
 
-  write_sensors(folder / "sensors.csv", sensors.probes, made.sensors, made.daylight_factor,
-                inputs.scene.metres_per_unit);
-  write_hours(folder / "hours.csv", {.hours = hours,
-                                     .is_leap_year = weather.is_leap_year,
-                                     .windows = inputs.windows,
-                                     .states = year.states});
-  if (!made.glare.empty()) write_glare(folder / "glare.csv", hours, made.glare);
-  write_whole(folder / "year.html", {year_page(made)});
-  const Json figures = year_json(made);
-  write_json(folder / "year.json", figures);
+  write_files({.folder = folder, .inputs = inputs, .hours = hours, .probes = sensors.probes}, made,
+              year);
   if (files) files->commit();
   for (const std::string& file : files_of(arguments)) report.add_file(folder / file);
   report.add("patches", model.mesh().patch_count());
   report.add("sensors", sensors.probes.size());
   report.add("hours_with_light", hours.size());
+  const Json figures = year_json(made);
   for (const char* key : {"relative_error", "rooms", "windows", "method", "superposition_error",
                           "states", "glare", "exposure_to_sunlight"}) {
     if (figures.contains(key)) report.add(key, figures[key]);

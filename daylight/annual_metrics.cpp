@@ -78,9 +78,8 @@ double median_of(std::vector<float> values) {
 }  // namespace
 
 AnnualMetrics::AnnualMetrics(int sensors, std::span<const SkyHour> hours, int year_hours,
-                             const Occupancy& occupancy, double factor)
+                             const Occupancy& occupancy)
     : occupancy_(occupancy),
-      factor_(static_cast<float>(factor)),
       year_hours_(year_hours),
       occupied_hours_(year_hours / hours_a_day * (occupancy.to - occupancy.from)),
       bright_hours_(year_hours / 2),
@@ -97,20 +96,21 @@ AnnualMetrics::AnnualMetrics(int sensors, std::span<const SkyHour> hours, int ye
   }
 }
 
-void AnnualMetrics::add(const HourBlock& block) {
+void AnnualMetrics::add(const HourBlock& block, std::span<const float> factors) {
   constexpr int grain = 16;
   parallel_for(static_cast<int>(count_.rows()), grain, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) add(block, i);
+    for (int i = begin; i < end; ++i) add(block, factors, i);
   });
 }
 
-void AnnualMetrics::add(const HourBlock& block, Eigen::Index i) {
+void AnnualMetrics::add(const HourBlock& block, std::span<const float> factors, Eigen::Index i) {
   const float bins_of_logarithm = static_cast<float>(bins) / std::log(most_lux / least_lux);
   for (std::size_t h = 0; h < block.hours.size(); ++h) {
     const int number = block.hours[h].number, hour = number % hours_a_day;
     const auto column = static_cast<Eigen::Index>(h);
     const float sunlight = block.sunlight(i, column);
-    const float E = sunlight + factor_ * (block.total(i, column) - sunlight);
+    const float factor = factors.empty() ? 1.0f : factors[h];
+    const float E = sunlight + factor * (block.total(i, column) - sunlight);
     count_(i, lux) += double{E};
     if (hour >= occupancy_.from && hour < occupancy_.to) count_occupied(E, sunlight, count_, i);
     if (is_bright_[static_cast<std::size_t>(number)] == 0) continue;

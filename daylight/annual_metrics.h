@@ -44,13 +44,13 @@ struct RoomMetrics {
 /// Counts hours of a year at sensors.
 class AnnualMetrics {
  public:
-  /// `hours` are all hours with light, `year_hours` all hours of the year. Light is taken times
-  /// `factor`, to see what an error of light does to the measures; direct sunlight is taken as it
-  /// is.
+  /// `hours` are all hours with light, `year_hours` all hours of the year.
   AnnualMetrics(int sensors, std::span<const SkyHour> hours, int year_hours,
-                const Occupancy& occupancy, double factor = 1.0);
+                const Occupancy& occupancy);
 
-  void add(const HourBlock& block);
+  /// Counts the hours of a block. `factors`, if not empty, has one for the light of each hour, to
+  /// see what an error of light does to the measures; direct sunlight is taken as it is.
+  void add(const HourBlock& block, std::span<const float> factors = {});
   SensorMetrics sensors() const;
   int occupied_hours() const { return occupied_hours_; }
 
@@ -58,10 +58,9 @@ class AnnualMetrics {
   static constexpr int bins = 1024;  // of illuminance, for medians
   double median(Eigen::Index sensor) const;
 
-  void add(const HourBlock& block, Eigen::Index sensor);
+  void add(const HourBlock& block, std::span<const float> factors, Eigen::Index sensor);
 
   Occupancy occupancy_;
-  float factor_ = 1.0f;
   int year_hours_ = 0, occupied_hours_ = 0, bright_hours_ = 0;
   std::vector<char> is_bright_{};  // per hour of the year
   Eigen::ArrayXXd count_;          // sensors x counters

@@ -69,8 +69,21 @@ double superposition_error(const DaylightModel& check, const SuperpositionSum& s
 
 }  // namespace
 
+double OperatedYear::error_of_hour(std::size_t hour) const {
+  if (plan.is_superposed) return std::ranges::max(errors) + superposition;
+  const auto computed =
+      std::ranges::find(plan.computations, states_of_hour(states, static_cast<Eigen::Index>(hour)));
+  return errors[static_cast<std::size_t>(computed - plan.computations.begin())];
+}
+
 double OperatedYear::error() const {
-  return std::ranges::max(errors) + superposition;
+  double light = 0.0, uncertain = 0.0;
+  for (Eigen::Index h = 0; h < total.cols(); ++h) {
+    const double lux = (total.col(h) - sunlight.col(h)).cast<double>().max(0.0).sum();
+    light += lux;
+    uncertain += error_of_hour(static_cast<std::size_t>(h)) * lux;
+  }
+  return light > 0.0 ? uncertain / light : std::ranges::max(errors);
 }
 
 void OperatedYear::visit(std::span<const SkyHour> hours,

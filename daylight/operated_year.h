@@ -33,8 +33,12 @@ struct OperatedYear {
   /// it already.
   Eigen::ArrayXXf total{}, sunlight{};
 
-  /// Bound of the error of the operated year's light, in the terms of year_error(): the greatest of
-  /// the computations, and the error of superposition besides.
+  /// Bound of the error of the operated light in an hour, in the terms of year_error(): that of
+  /// the hour's computation; of superposed light the greatest of all, and the error of
+  /// superposition besides.
+  double error_of_hour(std::size_t hour) const;
+  /// Bound of the error of the year's light: the mean of the hours' bounds, weighted by their light
+  /// without sunlight.
   double error() const;
   /// Calls `visit` with the light of `hours`, those of the year, in blocks.
   void visit(std::span<const SkyHour> hours,

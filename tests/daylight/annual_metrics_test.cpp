@@ -76,14 +76,15 @@ TEST(AnnualMetrics, CountHoursOfTheDay) {
 TEST(AnnualMetrics, FactorScalesLightButSun) {
   const std::vector<SkyHour> hours = days();
   const HourBlock light = block(hours, 1, [](int, int) { return 240.0; });
-  AnnualMetrics as_is(1, hours, 8760, {}), more(1, hours, 8760, {}, 1.25);
+  AnnualMetrics as_is(1, hours, 8760, {}), more(1, hours, 8760, {});
   as_is.add(light);
-  more.add(light);
+  more.add(light, std::vector<float>(hours.size(), 1.25f));
   EXPECT_EQ(as_is.sensors().autonomy[0], 0.0);
   EXPECT_EQ(more.sensors().autonomy[0], 100.0);
-  AnnualMetrics sunny(1, hours, 8760, {}, 0.5);
+  AnnualMetrics sunny(1, hours, 8760, {});
   sunny.add(block(
-      hours, 1, [](int, int) { return 0.0; }, 1000.0f));
+                hours, 1, [](int, int) { return 0.0; }, 1000.0f),
+            std::vector<float>(hours.size(), 0.5f));
   EXPECT_EQ(sunny.sensors().autonomy[0], 100.0);
   EXPECT_EQ(sunny.sensors().sun_hours[0], 3650.0);
 }
