@@ -149,7 +149,7 @@ std::vector<std::string> daylight_conventions(const DaylightArguments& arguments
       "Lamps and emitting surfaces of the scene are off."};
   if (inputs.windows.groups.empty()) sentences.emplace_back("There are no blinds.");
   for (const WindowGroup& group : inputs.windows.groups) {
-    sentences.push_back(fmt::format("The windows '{}' are {}.", group.name, operation_text(group)));
+    sentences.push_back(fmt::format("Windows '{}': {}.", group.name, operation_text(group)));
   }
   if (!inputs.eyes.empty()) {
     sentences.push_back(fmt::format(

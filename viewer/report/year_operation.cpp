@@ -35,14 +35,15 @@ void add_states(const YearReport& report, std::string& page) {
   const auto out = std::back_inserter(page);
   page +=
       "<p>The year with the windows in one state throughout:</p>\n<table><tr><th>States</th>"
-      "<th>Sensors</th><th>sDA<sub>300/50%</sub></th><th>ASE<sub>1000,250h</sub></th>"
+      "<th "
+      "class=\"text\">Sensors</th><th>sDA<sub>300/50%</sub></th><th>ASE<sub>1000,250h</sub></th>"
       "<th>DA<sub>300</sub></th><th>Mean year-round</th><th>EN 17037</th><th>Within</th></tr>\n";
   for (const YearInStates& year : report.states) {
     for (std::size_t r = 0; r < year.rooms.size(); ++r) {
       const RoomMetrics& m = year.rooms[r];
       fmt::format_to(
           out,
-          "<tr><td>{}</td><td>{}</td><td>{:.1f}\u202f%</td><td>{:.1f}\u202f%</td>"
+          "<tr><td>{}</td><td class=\"text\">{}</td><td>{:.1f}\u202f%</td><td>{:.1f}\u202f%</td>"
           "<td>{:.1f}\u202f%</td><td>{} lx</td><td>{}</td><td>±{:.1f}\u202f%</td></tr>\n",
           r == 0 ? html_text(year.states) : "", html_text(report.rooms[r].name), m.spatial_autonomy,
           m.sun_exposure, m.mean_autonomy, lux_text(m.mean_lux), m.en_level, 100.0 * year.error);
