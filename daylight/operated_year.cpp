@@ -13,12 +13,6 @@ namespace {
 // Hours that are visited together.
 constexpr std::size_t hours_of_block = 512;
 
-// Light of all groups changed by superposition, without sunlight, summed over some hours.
-struct SuperpositionSum {
-  std::vector<SkyHour> hours{};  // ascending
-  Eigen::ArrayXd light{};        // lx, per sensor
-};
-
 // Adds the light of a block, times the computation's weight in each hour, to the year.
 void add_weighted(const HourBlock& block, std::size_t computation, Eigen::Index first,
                   OperatedYear& year) {
@@ -32,16 +26,41 @@ void add_weighted(const HourBlock& block, std::size_t computation, Eigen::Index 
   }
 }
 
-// Adds the light of those hours of a block that are among `hours`, without sunlight.
-void add_to_sum(const HourBlock& block, double weight, std::span<const SkyHour> hours,
-                Eigen::ArrayXd& sum) {
-  if (weight == 0.0) return;
-  for (std::size_t h = 0; h < block.hours.size(); ++h) {
-    if (!std::ranges::binary_search(hours, block.hours[h].number, {}, &SkyHour::number)) continue;
-    const auto column = static_cast<Eigen::Index>(h);
-    sum += weight * (block.total.col(column) - block.sunlight.col(column)).cast<double>();
+// Compares superposed light of all groups changed with its computation, in hours all over the year.
+class SuperpositionCheck {
+ public:
+  SuperpositionCheck(std::span<const SkyHour> hours, int sensors, OperatedYear& year)
+      : hours_(spread_over(hours)),
+        superposed_(Eigen::ArrayXd::Zero(sensors)),
+        computed_(Eigen::ArrayXd::Zero(sensors)) {
+    if (year.plan.is_superposed) {
+      year.all_changed = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(hours.size()));
+    }
   }
-}
+
+  // Adds a block of a computation, whose hours begin with number `first` of the year's.
+  void add(const HourBlock& block, std::size_t computation, Eigen::Index first,
+           OperatedYear& year) {
+    const std::size_t last = year.plan.computations.size() - 1;
+    const double weight = year.plan.superposed_weight(computation, year.plan.computations[last]);
+    for (std::size_t h = 0; h < block.hours.size(); ++h) {
+      const auto column = static_cast<Eigen::Index>(h);
+      const Eigen::ArrayXd light =
+          (block.total.col(column) - block.sunlight.col(column)).cast<double>();
+      if (computation == last) year.all_changed[first + column] = light.sum();
+      if (!std::ranges::binary_search(hours_, block.hours[h].number, {}, &SkyHour::number))
+        continue;
+      superposed_ += weight * light;
+      if (computation == last) computed_ += light;
+    }
+  }
+
+  double error() const { return relative_difference(superposed_ - computed_, computed_); }
+
+ private:
+  std::vector<SkyHour> hours_;            // ascending
+  Eigen::ArrayXd superposed_, computed_;  // lx, sums of the hours without sunlight, per sensor
+};
 
 // The model of the scene in other states, with the same sensors.
 std::unique_ptr<DaylightModel> model_in_states(const Scene& scene, const DaylightModel& open,
@@ -53,27 +72,18 @@ std::unique_ptr<DaylightModel> model_in_states(const Scene& scene, const Dayligh
   return model;
 }
 
-// The difference of superposed light from that of a computation with all groups changed, relative
-// to the light of the operated year in the same hours. In no hour is more superposed.
-double superposition_error(const DaylightModel& check, const SuperpositionSum& superposed,
-                           const OperationTask& task, const OperatedYear& year) {
-  Eigen::ArrayXd light = Eigen::ArrayXd::Zero(check.sensor_count()), operated = light;
-  simulate_year(check, check.sky_coefficients().sum(), superposed.hours, task.ground_reflectance,
-                [&](const HourBlock& block) {
-                  light += (block.total - block.sunlight).cast<double>().rowwise().sum();
-                });
-  year.visit(task.hours,
-             [&](const HourBlock& block) { add_to_sum(block, 1.0, superposed.hours, operated); });
-  return relative_difference(superposed.light - light, operated);
-}
-
 }  // namespace
 
 double OperatedYear::error_of_hour(std::size_t hour) const {
-  if (plan.is_superposed) return std::ranges::max(errors) + superposition;
-  const auto computed =
-      std::ranges::find(plan.computations, states_of_hour(states, static_cast<Eigen::Index>(hour)));
-  return errors[static_cast<std::size_t>(computed - plan.computations.begin())];
+  const auto h = static_cast<Eigen::Index>(hour);
+  const WindowStates in_hour = states_of_hour(states, h);
+  const auto computed = std::ranges::find(plan.computations, in_hour);
+  if (computed != plan.computations.end()) {
+    return errors[static_cast<std::size_t>(computed - plan.computations.begin())];
+  }
+  const double light = (total.col(h) - sunlight.col(h)).cast<double>().sum();
+  const double share = light > all_changed[h] ? all_changed[h] / light : 1.0;
+  return std::ranges::max(errors) + superposition * plan.changed_pairs(in_hour) * share;
 }
 
 double OperatedYear::error() const {
@@ -110,8 +120,7 @@ OperatedYear operate_year(const Scene& scene, const DaylightModel& open,
         Eigen::ArrayXXf::Zero(open.sensor_count(), static_cast<Eigen::Index>(task.hours.size()));
     year.sunlight = year.total;
   }
-  SuperpositionSum checked{.hours = spread_over(task.hours),
-                           .light = Eigen::ArrayXd::Zero(open.sensor_count())};
+  SuperpositionCheck check(task.hours, open.sensor_count(), year);
   for (std::size_t c = 0; c < year.plan.computations.size(); ++c) {
     std::unique_ptr<DaylightModel> changed;
     if (c > 0) changed = model_in_states(scene, open, windows, year.plan.computations[c]);
@@ -123,17 +132,12 @@ OperatedYear operate_year(const Scene& scene, const DaylightModel& open,
     Eigen::Index first = 0;
     simulate_year(model, sky, task.hours, task.ground_reflectance, [&](const HourBlock& block) {
       if (is_operated) add_weighted(block, c, first, year);
-      if (year.plan.is_superposed) {
-        add_to_sum(block, year.plan.weight(c, year.plan.check), checked.hours, checked.light);
-      }
+      if (year.plan.is_superposed) check.add(block, c, first, year);
       first += static_cast<Eigen::Index>(block.hours.size());
       visit(computed, block);
     });
   }
-  if (year.plan.is_superposed) {
-    const auto model = model_in_states(scene, open, windows, year.plan.check);
-    year.superposition = superposition_error(*model, checked, task, year);
-  }
+  if (year.plan.is_superposed) year.superposition = check.error();
   return year;
 }
 

@@ -35,6 +35,10 @@ WindowStates all_changed(const std::vector<WindowStates>& changes) {
   return all;
 }
 
+double changed_groups(const WindowStates& states) {
+  return static_cast<double>(std::ranges::count_if(states, [](int state) { return state != 0; }));
+}
+
 }  // namespace
 
 Scene scene_in_states(const Scene& scene, const OperatedWindows& windows,
@@ -70,15 +74,24 @@ std::string states_text(const OperatedWindows& windows, const WindowStates& stat
 }
 
 double WindowPlan::weight(std::size_t computation, const WindowStates& states) const {
-  const WindowStates& computed = computations[computation];
-  if (!is_superposed) return computed == states ? 1.0 : 0.0;
-  const auto is_changed = [](int state) { return state != 0; };
-  if (computation == 0) {
-    return 1.0 - static_cast<double>(std::ranges::count_if(states, is_changed));
+  if (is_superposed && states != computations.back()) {
+    return superposed_weight(computation, states);
   }
-  const auto group = std::ranges::find_if(computed, is_changed) - computed.begin();
-  const auto g = static_cast<std::size_t>(group);
+  return computations[computation] == states ? 1.0 : 0.0;
+}
+
+double WindowPlan::superposed_weight(std::size_t computation, const WindowStates& states) const {
+  if (computation == 0) return 1.0 - changed_groups(states);
+  if (computation + 1 == computations.size()) return 0.0;
+  const WindowStates& computed = computations[computation];
+  const auto changed = std::ranges::find_if(computed, [](int state) { return state != 0; });
+  const auto g = static_cast<std::size_t>(changed - computed.begin());
   return states[g] == computed[g] ? 1.0 : 0.0;
+}
+
+double WindowPlan::changed_pairs(const WindowStates& states) const {
+  const double here = changed_groups(states), most = changed_groups(computations.back());
+  return most > 1.0 ? here * (here - 1.0) / (most * (most - 1.0)) : 0.0;
 }
 
 WindowStates states_of_hour(const Eigen::ArrayXXi& states, Eigen::Index hour) {
@@ -93,15 +106,15 @@ WindowPlan plan_computations(const OperatedWindows& windows, const Eigen::ArrayX
   for (Eigen::Index h = 0; h < states.cols(); ++h) combinations.insert(states_of_hour(states, h));
   combinations.erase(open);
   const std::vector<WindowStates> changes = single_changes(states);
-  const std::size_t superposed = changes.size() + 2;  // with the open state and the check
+  const std::size_t superposed = changes.size() + 2;  // with none and all of them changed
   if (combinations.size() < std::max(superposed, std::size_t{most_combinations})) {
     plan.computations.insert(plan.computations.end(), combinations.begin(), combinations.end());
   } else {
     plan.is_superposed = true;
     plan.computations.insert(plan.computations.end(), changes.begin(), changes.end());
-    plan.check = all_changed(changes);
+    plan.computations.push_back(all_changed(changes));
   }
-  const std::size_t count = plan.computations.size() + (plan.is_superposed ? 1 : 0);
+  const std::size_t count = plan.computations.size();
   if (count > std::size_t{most_computations}) {
     throw InputError(fmt::format(
         "the states of the windows need {} computations of the room, and {} are the most; join "

@@ -36,15 +36,19 @@ inline constexpr int most_computations = 32;
 /// and ends in the room is exact. Left out is light that two changed groups have met, such as light
 /// through one group that the other reflects: of the order of the share of the room's surfaces
 /// that windows are. One behind the other, two groups would be wrong altogether. So a further
-/// computation, with all groups changed, measures the error.
+/// computation, the last, has all groups changed: it measures the error, and is the light of the
+/// hours with these states.
 struct WindowPlan {
   std::vector<WindowStates> computations{};  ///< the first has all groups in their first state
   bool is_superposed = false;
-  /// States of the computation that measures the error of superposition; empty: none.
-  WindowStates check{};
 
   /// Factor of a computation's light in an hour with these states. Factors sum to 1.
   double weight(std::size_t computation, const WindowStates& states) const;
+  /// The same by superposition, whether or not the states are computed by themselves.
+  double superposed_weight(std::size_t computation, const WindowStates& states) const;
+  /// Share of the pairs of groups that are both changed in the states, [0, 1]: what superposition
+  /// leaves out is of pairs.
+  double changed_pairs(const WindowStates& states) const;
 };
 
 /// The plan for hours with these states, groups x hours. Throws InputError if more than

@@ -38,14 +38,20 @@ TEST(WindowPlan, FewCombinationsAreComputedEach) {
   }
 }
 
-// 2^5 combinations, where 1 + 5 computations and a check are enough.
+// 2^5 combinations, where 1 + 5 computations and one of all groups changed are enough. The last
+// hour, in which all are, has that computation for itself.
 TEST(WindowPlan, ManyCombinationsAreSuperposed) {
   const Eigen::ArrayXXi states = all_combinations(5);
   const WindowPlan plan = plan_computations(windows_of(5), states);
   EXPECT_TRUE(plan.is_superposed);
-  ASSERT_EQ(plan.computations.size(), 6u);
-  EXPECT_EQ(plan.check, (WindowStates{1, 1, 1, 1, 1}));
-  for (Eigen::Index h = 0; h < states.cols(); ++h) {
+  ASSERT_EQ(plan.computations.size(), 7u);
+  EXPECT_EQ(plan.computations.back(), (WindowStates{1, 1, 1, 1, 1}));
+  EXPECT_EQ(plan.weight(6, plan.computations.back()), 1.0);
+  EXPECT_EQ(plan.weight(0, plan.computations.back()), 0.0);
+  EXPECT_EQ(plan.superposed_weight(0, plan.computations.back()), -4.0);
+  // One of the ten pairs.
+  EXPECT_DOUBLE_EQ(plan.changed_pairs({1, 0, 0, 1, 0}), 0.1);
+  for (Eigen::Index h = 0; h + 1 < states.cols(); ++h) {
     const WindowStates in_hour = states_of_hour(states, h);
     double sum = 0.0, changes = 0.0;
     for (std::size_t c = 0; c < plan.computations.size(); ++c) {
