@@ -51,6 +51,12 @@ CommandText command_text(CLI::App& command) {
 
 }  // namespace
 
+std::string CommandText::summary() const {
+  std::size_t end = description.find_last_not_of('.') + 1;
+  for (const char* const mark : {". ", ": "}) end = std::min(end, description.find(mark));
+  return description.substr(0, end);
+}
+
 std::vector<CommandText> command_texts(CLI::App& program) {
   std::vector<CommandText> texts{command_text(program)};
   const std::function<bool(CLI::App*)> all = [](CLI::App*) { return true; };

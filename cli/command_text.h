@@ -24,8 +24,8 @@ struct CommandText {
   std::string name{}, description{}, footer{};
   std::vector<OptionText> options{};  ///< in the order of their definition
 
-  /// The description as far as its first colon or full stop.
-  std::string summary() const { return description.substr(0, description.find_first_of(":.")); }
+  /// The first sentence of the description, or what stands before its first colon.
+  std::string summary() const;
 };
 
 /// The texts of the program, first, and of its sub-commands.

@@ -50,7 +50,7 @@ std::string bash_command(const CommandText& command) {
   std::vector<std::string> options;
   for (const OptionText& option : command.options) {
     if (option.is_positional) {
-      arguments = fmt::format("{}", fmt::join(option.words, " "));
+      if (!option.words.empty()) arguments += fmt::format("{} ", fmt::join(option.words, " "));
       continue;
     }
     options.insert(options.end(), option.names.begin(), option.names.end());
@@ -70,6 +70,12 @@ _lightwell() {{
   local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} command=${{COMP_WORDS[1]}}
   local commands='{}' options='' arguments='' words='' kind=''
   COMPREPLY=()
+  # Bash parts a word at '='.
+  if [ "$word" = = ]; then
+    word=''
+  elif [ "$before" = = ]; then
+    before=${{COMP_WORDS[COMP_CWORD-2]}}
+  fi
   if [ "$COMP_CWORD" = 1 ]; then
     mapfile -t COMPREPLY < <(compgen -W "help $commands --help --version" -- "$word")
     return
@@ -191,6 +197,10 @@ std::string fish_script(Commands all) {
   std::string lines =
       "# Completion of lightwell in fish: put this file, named lightwell.fish, into a folder of\n"
       "# completions.\n";
+  lines += fmt::format(
+      "complete -c lightwell -f -n __fish_use_subcommand -a help -d 'Explains a command'\n"
+      "complete -c lightwell -f -n '__fish_seen_subcommand_from help' -a '{}'\n",
+      fmt::join(names_of(all.subspan(1)), " "));
   for (const CommandText& command : all.subspan(1)) {
     lines += fmt::format("complete -c lightwell -f -n __fish_use_subcommand -a {} -d {}\n",
                          command.name, fish_quoted(command.summary()));

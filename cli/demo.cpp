@@ -1,4 +1,4 @@
-// From an installation to a picture and a walk through it, without a file of the user's.
+// A picture and a walk through it, made by an installation without a file of the user's.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 

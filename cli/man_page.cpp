@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "cli/commands.h"
+
 namespace lightwell {
 namespace {
 
@@ -90,15 +92,18 @@ std::string options_under(const CommandText& command, const std::string& heading
 }
 
 std::string exit_status() {
-  constexpr std::array<std::pair<int, std::string_view>, 6> codes{
-      {{0, "The results are written."},
-       {1, "A result could not be written, or memory did not suffice."},
-       {2, "Wrong usage."},
-       {3, "A file cannot be used; the message says what is wrong, where, and what to do."},
-       {4, "The results are written, but are less exact than asked for."},
-       {130, "Interrupted."}}};
+  constexpr std::array<std::pair<ExitCode, std::string_view>, 6> codes{
+      {{exit_done, "The results are written."},
+       {exit_failed, "A result could not be written, or memory did not suffice."},
+       {exit_wrong_usage, "Wrong usage."},
+       {exit_bad_input,
+        "A file cannot be used; the message says what is wrong, where, and what to do."},
+       {exit_not_accurate,
+        "The results are written, but are less exact than asked for; of 'validate': a case fails."},
+       {exit_interrupted, "Interrupted."}}};
   std::string text = ".SH EXIT STATUS\n";
-  for (const auto& [code, meaning] : codes) text += fmt::format(".TP\n{}\n{}\n", code, meaning);
+  for (const auto& [code, meaning] : codes)
+    text += fmt::format(".TP\n{}\n{}\n", static_cast<int>(code), meaning);
   return text;
 }
 

@@ -1,4 +1,4 @@
-// What installers need: manual pages, and completions for shells.
+// Manual pages, and completions for shells, for installers.
 #include <fmt/format.h>
 
 #include <filesystem>

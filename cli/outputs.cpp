@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <stdexcept>
 #include <system_error>
@@ -62,6 +63,18 @@ void require_writable(const fs::path& file) {
       ::open(trial.temporary().c_str(), O_CREAT | O_WRONLY | O_NOFOLLOW | O_CLOEXEC, 0600);
   if (descriptor < 0) refuse(file, std::generic_category().message(errno));
   ::close(descriptor);
+}
+
+void require_different(const std::vector<fs::path>& files) {
+  std::vector<fs::path> seen;
+  for (const fs::path& file : files) {
+    if (file.empty()) continue;
+    const fs::path whole = fs::weakly_canonical(file);
+    if (std::ranges::count(seen, whole) > 0) {
+      refuse(file, "the command writes another result into the same file; name another output");
+    }
+    seen.push_back(whole);
+  }
 }
 
 OutputFolder::OutputFolder(const fs::path& folder) : folder_(folder) {

@@ -9,6 +9,10 @@ namespace lightwell {
 /// file that note_input() named. To be called before the long work whose result goes into `file`.
 void require_writable(const std::filesystem::path& file);
 
+/// Throws std::runtime_error if two of a command's outputs, of which empty ones are none, are the
+/// same file.
+void require_different(const std::vector<std::filesystem::path>& files);
+
 /// Names a file that the command reads. Throws std::runtime_error if require_writable() named the
 /// same file, by whatever name, as an output: results never replace what they were made from.
 void note_input(const std::filesystem::path& file);

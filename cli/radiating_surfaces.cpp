@@ -84,8 +84,9 @@ SurfaceLine read_line(const TextFile& file, int line, const Columns& columns,
   }
   if (kelvin) read.surface.kelvin = kelvin;
   if (celsius) read.surface.kelvin = *celsius + zero_celsius;
-  if (read.surface.kelvin && *read.surface.kelvin < 0.0) {
-    file.fail(line, fmt::format("the temperature is {:g} K, below zero", *read.surface.kelvin));
+  if (const auto T = read.surface.kelvin; T && !(*T >= 0.0 && *T <= hottest_surface)) {
+    file.fail(line, fmt::format("the temperature is {:g} K; it lies from 0 to {:g} K", *T,
+                                hottest_surface));
   }
   if (heat) read.surface.heat = *heat;
   if (read.emittance && !(*read.emittance >= 0.0 && *read.emittance <= 1.0)) {
@@ -116,6 +117,17 @@ std::vector<SurfaceLine> read_lines(const TextFile& file) {
   return lines;
 }
 
+// True for equal names, and for a name that the pattern fits; brackets and backslashes are letters.
+bool describes(const std::string& pattern, const std::string& name) {
+  if (pattern == name) return true;
+  std::string escaped;
+  for (const char c : pattern) {
+    if (c == '[' || c == '\\') escaped += '\\';
+    escaped += c;
+  }
+  return fnmatch(escaped.c_str(), name.c_str(), 0) == 0;
+}
+
 // The line that describes each row.
 std::vector<const SurfaceLine*> lines_of_rows(const TextFile& file,
                                               const std::vector<SurfaceLine>& lines,
@@ -125,7 +137,7 @@ std::vector<const SurfaceLine*> lines_of_rows(const TextFile& file,
   std::vector<std::string> left_out;
   for (const std::string& name : rows.name) {
     const auto found = std::find_if(lines.rbegin(), lines.rend(), [&](const SurfaceLine& line) {
-      return fnmatch(line.pattern.c_str(), name.c_str(), 0) == 0;
+      return describes(line.pattern, name);
     });
     if (found == lines.rend()) {
       left_out.push_back(name);
@@ -165,6 +177,9 @@ std::vector<RadiatingSurface> read_radiating_surfaces(const std::filesystem::pat
     const SurfaceLine& line = *of_row[i];
     RadiatingSurface surface = line.surface;
     surface.emittance = line.emittance.value_or(rows.emittance[i]);
+    if (line.surface.heat != 0.0 && !(surface.emittance > 0.0)) {
+      file.fail(line.line, "gives off heat, but has no emittance; give an emittance above 0");
+    }
     const double all = area_of[&line];
     if (all > 0.0) surface.heat *= area[i] / all;
     surfaces.push_back(surface);

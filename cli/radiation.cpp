@@ -109,7 +109,7 @@ Radiating exchange_of(const RadiationArguments& arguments, const NumberedScene& 
                                  .two_sided = arguments.two_sided,
                                  .progress = console.progress()};
   std::vector<RadiatingSurface> surfaces;
-  // What may be wrong with the table is found before the long work.
+  // Mistakes in the table are found before the long work.
   options.rows_found = [&](const ViewFactorRows& rows) {
     if (rows.count() > most_radiating_surfaces) {
       throw InputError(
@@ -158,6 +158,7 @@ int radiation(const RadiationArguments& arguments, Console& console) {
   for (const auto& file : numbered.scene.files) note_input(file);
   note_input(arguments.surfaces);
   refuse_losses(numbered.scene, console.options());
+  require_different({arguments.output, arguments.gebhart, arguments.script_f});
   for (const std::string& file : {arguments.output, arguments.gebhart, arguments.script_f}) {
     if (!file.empty()) require_writable(file);
   }
@@ -216,9 +217,10 @@ Action add_radiation(CLI::App& command) {
       ->check(CLI::Validator(
           [](std::string& text) {
             const auto value = parsed_number(text);
-            return value && *value >= 0.0 && std::isfinite(*value)
+            return value && *value >= 0.0 && *value <= hottest_surface
                        ? std::string()
-                       : fmt::format("a temperature in K, 0 or above, is needed, not '{}'", text);
+                       : fmt::format("a temperature from 0 to {:g} K is needed, not '{}'",
+                                     hottest_surface, text);
           },
           std::string{}));
   add_factors(command, *arguments);

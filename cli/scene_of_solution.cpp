@@ -10,9 +10,10 @@ namespace fs = std::filesystem;
 
 fs::path scene_of_solution(const fs::path& solution) {
   const fs::path known = read_solution(solution).solution.provenance.scene_file;
-  if (!known.empty() && fs::exists(known)) return known;
+  // The stored path is relative to the folder where the solve ran, which is not known.
   const fs::path beside = solution.parent_path() / known.filename();
   if (!known.empty() && fs::exists(beside)) return beside;
+  if (!known.empty() && fs::exists(known)) return known;
   throw InputError(fmt::format(
       "{}: the scene of the solution, '{}', is neither there nor beside the solution; name it "
       "first: lightwell view SCENE {}",

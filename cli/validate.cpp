@@ -47,6 +47,7 @@ int validate_program(const ValidateArguments& arguments, Console& console) {
     print_list(cases, options.json);
     return exit_done;
   }
+  require_different({arguments.html, arguments.markdown, arguments.json_file});
   for (const std::string& file : {arguments.html, arguments.markdown, arguments.json_file}) {
     if (!file.empty()) require_writable(file);
   }

@@ -15,7 +15,7 @@ install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md $
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/liblightwell-dev COMPONENT development)
 
-# Scenes to begin with, and the menu entry that opens solutions.
+# Scenes to begin with, and the handler of solutions.
 set(lightwell_data ${CMAKE_INSTALL_DATADIR}/lightwell)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/cornell/ DESTINATION ${lightwell_data}/cornell COMPONENT program
         FILES_MATCHING PATTERN "*.toml" PATTERN "data/*.csv" PATTERN "output" EXCLUDE PATTERN "reference" EXCLUDE)

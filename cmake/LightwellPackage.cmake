@@ -1,5 +1,5 @@
 # Debian packages, by `cpack` in a build folder: lightwell (the program, its manual pages, completions, scenes and
-# menu entry) and liblightwell-dev (headers and libraries). A package belongs to the Debian release that built it, since
+# handler of solutions) and liblightwell-dev (headers and libraries). A package belongs to the Debian release that built it, since
 # it depends on that release's libraries.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME lightwell)
@@ -17,7 +17,7 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lightwell)
 set(CPACK_DEBIAN_PROGRAM_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# What draws the window where no graphics card does.
+# Mesa draws the window where no graphics card does.
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS libgl1-mesa-dri)
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "Light in rooms, computed once and shown from everywhere.

@@ -13,8 +13,6 @@
 namespace lightwell {
 namespace {
 
-constexpr double hottest = 1e6;  // K; sigma T^4 times the largest areas is far within a double
-
 [[noreturn]] void refuse(Eigen::Index surface, const std::string& what) {
   throw InputError(fmt::format("surface {}: {}", surface, what));
 }
@@ -25,7 +23,7 @@ void check_emittance(Eigen::Index i, double emittance) {
 }
 
 bool is_temperature(double kelvin) {
-  return kelvin >= 0.0 && kelvin <= hottest;
+  return kelvin >= 0.0 && kelvin <= hottest_surface;
 }
 
 void check_surface(const ExchangeAreas& areas, Eigen::Index i, const RadiatingSurface& surface) {
@@ -33,7 +31,7 @@ void check_surface(const ExchangeAreas& areas, Eigen::Index i, const RadiatingSu
   if (surface.kelvin) {
     if (is_temperature(*surface.kelvin)) return;
     refuse(i, fmt::format("its temperature is {} K; it must lie between 0 and {:g} K",
-                          *surface.kelvin, hottest));
+                          *surface.kelvin, hottest_surface));
   }
   if (!std::isfinite(surface.heat)) refuse(i, "its heat is not a finite number");
   if (surface.heat == 0.0) return;
@@ -129,7 +127,7 @@ RadiantExchange radiant_exchange(const ExchangeAreas& areas,
     throw InputError(
         fmt::format("the temperature of the surroundings is {} K; it must lie between "
                     "0 and {:g} K",
-                    surroundings, hottest));
+                    surroundings, hottest_surface));
   }
   std::vector<char> holds;
   for (int i = 0; i < n; ++i) {

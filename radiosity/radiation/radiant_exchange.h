@@ -11,6 +11,9 @@ namespace lightwell {
 /// Stefan-Boltzmann constant, W/(m^2 K^4).
 inline constexpr double stefan_boltzmann = 5.670374419e-8;
 
+/// Highest temperature of a surface, K: sigma T^4 times the largest areas is far within a double.
+inline constexpr double hottest_surface = 1e6;
+
 /// A gray and diffuse surface. Either its temperature is known or the heat that it gives off.
 struct RadiatingSurface {
   double emittance = 1.0;  ///< [0,1], and absorptance

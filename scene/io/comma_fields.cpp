@@ -7,8 +7,14 @@ namespace lightwell {
 std::vector<std::string_view> comma_fields(std::string_view line) {
   std::vector<std::string_view> fields;
   for (std::size_t begin = 0;;) {
-    const std::size_t comma = line.find(',', begin);
-    fields.push_back(trimmed(line.substr(begin, comma - begin)));
+    const std::size_t first = line.find_first_not_of(" \t", begin);
+    const std::size_t quote = first != std::string_view::npos && line[first] == '"'
+                                  ? line.find('"', first + 1)
+                                  : std::string_view::npos;
+    const bool is_quoted = quote != std::string_view::npos;
+    const std::size_t comma = line.find(',', is_quoted ? quote : begin);
+    fields.push_back(is_quoted ? line.substr(first + 1, quote - first - 1)
+                               : trimmed(line.substr(begin, comma - begin)));
     if (comma == std::string_view::npos) return fields;
     begin = comma + 1;
   }

@@ -6,7 +6,8 @@
 
 namespace lightwell {
 
-/// The fields of a line between commas, without blanks around them; an empty line has one.
+/// The fields of a line between commas, without blanks around them; an empty line has one. A field
+/// in quotation marks, which may hold commas, is without them.
 std::vector<std::string_view> comma_fields(std::string_view line);
 
 /// A name as one field, in quotation marks. A name that begins like a formula, which a spreadsheet

@@ -74,6 +74,8 @@ TEST_F(Installed, EveryOptionOfTheHelpIsOnTheManualPage) {
         without_backslashes(content_of(folder / ("man1/lightwell-" + command + ".1")));
     const std::vector<std::string> options = options_of(help(command));
     EXPECT_GE(options.size(), 5u) << command;  // those of every command
+    const std::string name = page.substr(0, page.find(".SH SYNOPSIS"));
+    EXPECT_EQ(std::ranges::count(name, '('), std::ranges::count(name, ')')) << name;
     for (const std::string& option : options) {
       EXPECT_NE(page.find("fB" + option + "fR"), std::string::npos) << command << " " << option;
     }
@@ -109,6 +111,7 @@ TEST_F(Installed, BashCompletes) {
   EXPECT_EQ(offered({"lightwell", "run", "--threads", ""}), "");
   EXPECT_EQ(offered({"lightwell", "solve", "roo"}), "room.toml");
   EXPECT_EQ(offered({"lightwell", "completion", ""}), "bash zsh fish");
+  EXPECT_EQ(offered({"lightwell", "render", "--pass", "=", "g"}), "gather");  // --pass=g
   fs::create_directory(folder / "rooms");
   EXPECT_EQ(offered({"lightwell", "run", "-o", "roo"}), "rooms");
 }
@@ -147,6 +150,12 @@ TEST_F(Installed, ASolutionAloneFindsItsScene) {
   // A camera that does not exist is refused once the scene was found and read.
   const std::vector<std::string> view{"view", "S.vtp", "--camera", "roof", "--offscreen", "a.png"};
   EXPECT_TRUE(says(run(view).err, "roof"));
+  // Another room of that name where the solve ran does not stand for the scene beside the solution.
+  fs::copy(folder / "S.vtp", folder / "far/S.vtp");
+  folder.write("room.toml", "torn");
+  std::vector<std::string> far = view;
+  far[1] = "far/S.vtp";
+  EXPECT_TRUE(says(run(far).err, "roof"));
   fs::rename(folder / "far/room.toml", folder / "room.toml");
   EXPECT_TRUE(says(run(view).err, "roof")) << "beside the solution";
   fs::remove(folder / "room.toml");

@@ -47,6 +47,10 @@ std::string Running::err() const {
   return content_of(said_ / "err");
 }
 
+std::string Running::out() const {
+  return content_of(said_ / "out");
+}
+
 Ended Running::wait() {
   int status = 0;
   ::waitpid(process_, &status, 0);

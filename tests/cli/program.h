@@ -30,6 +30,8 @@ class Running {
   void signal(int number) const;
   /// Text on standard error so far.
   std::string err() const;
+  /// Text on standard output so far.
+  std::string out() const;
   Ended wait();
 
  private:

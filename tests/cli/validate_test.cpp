@@ -68,10 +68,10 @@ TEST_F(Validate, FilesThatCannotBeWrittenAreRefusedBeforeTheWork) {
   }
 }
 
-// All cases take a minute; one that is told to stop ends with what is done.
+// All cases take a minute; a run that is told to stop after its first line ends with what is done.
 TEST_F(Validate, InterruptKeepsWhatIsDone) {
-  Running program(folder / "", {"validate", "--json-file", "v.json", "--only", "cie171-5.1"});
-  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  Running program(folder / "", {"validate", "--json-file", "v.json"});
+  while (program.out().empty()) std::this_thread::sleep_for(std::chrono::milliseconds(10));
   program.signal(SIGINT);
   const Ended ended = program.wait();
   EXPECT_EQ(ended.code, 130);

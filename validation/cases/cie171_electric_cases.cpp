@@ -185,10 +185,7 @@ ComparedValues ground_reflection(const ReferenceValue& c, const Progress& progre
   const BandArray found = probe_irradiance(scene, caster, direct_light, solved.solution, probes,
                                            {.rays = 1 << 16, .run = {.progress = progress}});
   for (std::size_t i = 0; i < values.size(); ++i) {
-    const Probe& probe = probes[i];
-    const double sun = probe.normal.z() > 0.0 ? static_cast<double>(E) * probe.normal.z() : 0.0;
-    values[i].computed = to_percent *
-                         (static_cast<double>(found(static_cast<Eigen::Index>(i), 0)) - sun) /
+    values[i].computed = to_percent * static_cast<double>(found(static_cast<Eigen::Index>(i), 0)) /
                          static_cast<double>(rho * E);
   }
   return values;
@@ -241,7 +238,7 @@ void add_indirect_light(const ReferenceValue& c, const std::string& rho, const P
       (solved.solution.patch_radiosity.col(0).cast<double>() * mesh.area).sum() / mesh.area.sum();
   const ReferenceValue& direct = e.at("direct_lux");
   const double mean = e.at("mean_indirect_lux").at(rho);
-  // The power of all patches is exact but for floats and the solver's 1e-5 of the largest B.
+  // Half of N^-0.5 of the 2^20 rays that find the direct light of the lamp.
   values.push_back({fmt::format("mean of a wall, rho {}", rho), mean,
                     mean_B / reflectance - direct.at("mean").get<double>(),
                     5e-4 * (mean + direct.at("mean").get<double>())});

@@ -16,9 +16,13 @@ namespace lightwell {
 namespace {
 
 constexpr double closed_form_error = 1e-9;  // relative, of polygon_exchange()
-// Wanted standard error of the factors of the command 'form-factors'. Four of them are the
-// tolerance: a right program exceeds it once in 16 000 times.
-constexpr double target_error = 1e-4;
+// Wanted standard error of the factors of the command 'form-factors', of which four are the
+// tolerance: a right program exceeds it once in 16 000 times. A thousandth of the factor.
+constexpr double target_share = 1e-3, least_target_error = 1e-6;
+
+double target_of(double factor) {
+  return std::max(target_share * factor, least_target_error);
+}
 
 ComparedValues element_to_polygon(const ReferenceValue& c) {
   const ReferenceValue& g = c.at("geometry");
@@ -30,7 +34,8 @@ ComparedValues element_to_polygon(const ReferenceValue& c) {
 }
 
 // The rows of a file with these polygons, counted by the command 'form-factors': all one-sided.
-double facet_factor(const std::vector<Loop>& polygons, const Progress& progress) {
+double facet_factor(const std::vector<Loop>& polygons, double target_error,
+                    const Progress& progress) {
   Scene scene;
   const int paint = add_paint(scene, {});
   PolygonArrays arrays{.first = {0}};
@@ -66,8 +71,8 @@ ComparedValues polygon_to_polygon(const ReferenceValue& c, const Progress& progr
            .tolerance = closed_form_error},
           {.place = "form-factors",
            .expected = expected,
-           .computed = facet_factor({first, second}, progress),
-           .tolerance = 4.0 * target_error}};
+           .computed = facet_factor({first, second}, target_of(expected), progress),
+           .tolerance = 4.0 * target_of(expected)}};
 }
 
 void add_box_faces(const ReferenceValue& box, std::vector<Loop>& polygons) {
@@ -90,8 +95,8 @@ ComparedValues occluded_pair(const ReferenceValue& c, const Progress& progress) 
   const double expected = c.at("value");
   // Behind a blocker that hides everything nothing may be seen.
   return {{.expected = expected,
-           .computed = facet_factor(polygons, progress),
-           .tolerance = expected > 0.0 ? 4.0 * target_error : 0.0}};
+           .computed = facet_factor(polygons, target_of(expected), progress),
+           .tolerance = expected > 0.0 ? 4.0 * target_of(expected) : 0.0}};
 }
 
 // Half the length of strips that stand for endless ones, in units of their width. What lies beyond
@@ -264,10 +269,12 @@ std::string form_factor_reason(const std::string& type) {
            "2^17 stratified rays";
   }
   if (type == "polygon-polygon") {
-    return "1e-9 for the closed form; four standard errors of 1e-4 for the command 'form-factors'";
+    return "1e-9 for the closed form; four standard errors of a thousandth for the command "
+           "'form-factors'";
   }
   if (type == "occluded-polygon-polygon") {
-    return "four standard errors of 1e-4 asked of the command 'form-factors'; 0 where nothing is "
+    return "four standard errors of a thousandth asked of the command 'form-factors'; 0 where "
+           "nothing is "
            "seen";
   }
   if (type.starts_with("2d"))

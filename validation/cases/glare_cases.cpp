@@ -29,7 +29,8 @@ ComparedValues position_indices(const ReferenceValue& c) {
 // intensity, UGR is then 8 lg 100 = 16 higher.
 constexpr double shrunk = 0.1;
 
-// True for a luminaire on the limit of the standard's table, which cuts through its area.
+// True for a luminaire on the limit of the standard's table, which cuts through its area: within 5
+// % of its distance ahead a luminaire counts or does not.
 bool is_on_limit(const ReferenceValue& c, const ReferenceValue& luminaire) {
   const ReferenceValue& g = c.at("geometry");
   const Eigen::Vector3d to =
@@ -89,7 +90,12 @@ ComparedValues unified_rating(const ReferenceValue& c, const Progress& progress)
   ComparedValues values = {{"UGR", expected_ugr(c), glare.ugr.value_or(0.0) - of_size, 0.02}};
   // Sources stand in the order of the luminaires. Their angle changes along them by 1 % at most,
   // and means differ from the middle by the square of that.
-  std::size_t number = 0;
+  std::size_t number = 0, counted = 0;
+  for (const ReferenceValue& s : c.at("expected").at("per_source")) {
+    counted += is_on_limit(c, s) ? 0 : 1;
+  }
+  values.push_back({"luminaires in sight", static_cast<double>(counted),
+                    static_cast<double>(glare.sources.size()), 0.0});
   for (const ReferenceValue& s : c.at("expected").at("per_source")) {
     if (is_on_limit(c, s) || number >= glare.sources.size()) continue;
     const GlareSource& source = glare.sources[number++];
