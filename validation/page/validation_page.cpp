@@ -18,6 +18,8 @@ namespace {
 constexpr const char* page_style =
     "<style>.verdict{font-size:1.15rem;font-weight:600}.failed{color:#d2380b;font-weight:600}"
     ".cases td,.cases th{padding-right:.7rem;font-size:.82rem}.cases .text{max-width:20rem}"
+    "@media screen and (min-width:60rem){body{max-width:62rem}.cases "
+    "td:nth-child(2){min-width:17rem}}"
     ".sources td{font-size:.8rem;color:#444;text-align:left}code{font-size:.95em}</style>\n";
 
 std::string verdict_cell(const CaseResult& one) {
