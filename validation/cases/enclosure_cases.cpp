@@ -168,16 +168,13 @@ ComparedValues furnace(const ReferenceValue& c, const Progress& progress) {
 }
 
 // The box of a converged case: one face, or a panel in the middle of a face, emits.
-Scene converged_box(const ReferenceValue& p, const std::string& id) {
+Scene converged_box(const ReferenceValue& p) {
   Scene scene;
   CaseBox room{.high = reference_point(p.at("dims"))};
-  const std::string emission = p.at("emission");
-  const std::string lit = id == "corridor-end"            ? "y0"
-                          : emission.starts_with("face ") ? emission.substr(5, 2)
-                                                          : "z1";
-  const bool has_panel = emission.find("panel") != std::string::npos;
-  const double panel = id == "room-panel" ? 1.0 : 0.2;  // m
-  const float M = id == "room-panel" || !has_panel ? 1.0f : 10.0f;
+  const std::string lit = p.at("emitting_face");
+  const bool has_panel = p.contains("panel_side");
+  const double panel = has_panel ? p.at("panel_side").get<double>() : 0.0;  // m
+  const auto M = p.at("exitance").get<float>();
   for (std::size_t f = 0; f < 6; ++f) {
     const bool emits = !has_panel && lit == box_face_names[f];
     room.materials[f] =
@@ -236,7 +233,7 @@ ComparedValues probed(const Scene& scene, const std::vector<Probe>& probes,
 }
 
 ComparedValues converged(const ReferenceValue& c, const Progress& progress) {
-  const Scene scene = converged_box(c.at("parameters"), c.at("id"));
+  const Scene scene = converged_box(c.at("parameters"));
   std::vector<Probe> probes;
   ComparedValues expected;
   for (const ReferenceValue& point : c.at("expected").at("points")) {
