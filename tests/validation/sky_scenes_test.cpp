@@ -45,7 +45,7 @@ TEST(LightThroughAnOpening, IsThatOfTheStoredQuadrature) {
   EXPECT_GT(compared, 100);
 }
 
-// By construction, and Fresnel's limits: T falls to 0 at grazing incidence.
+// Given by construction, and Fresnel's limits: T falls to 0 at grazing incidence.
 TEST(PaneOfTransmittance, HasItAlongTheNormal) {
   const ClearPane pane = pane_of_transmittance(0.8788);
   EXPECT_NEAR(pane_transmittance(pane, 1.0), 0.8788, 1e-12);

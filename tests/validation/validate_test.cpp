@@ -16,7 +16,7 @@ TEST(ValidationCases, HaveNamesSourcesAndReasons) {
   for (const ValidationCase& one : validation_cases()) {
     EXPECT_TRUE(ids.insert(one.id).second) << one.id << " stands twice";
     EXPECT_FALSE(one.group.empty() || one.title.empty() || one.source.empty()) << one.id;
-    // What cannot be run says why; everything else says where its tolerance comes from.
+    // A case that cannot be run says why; everything else says where its tolerance comes from.
     EXPECT_FALSE((one.can_run() ? one.reason : one.note).empty()) << one.id;
   }
 }

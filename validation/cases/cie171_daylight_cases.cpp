@@ -102,7 +102,7 @@ Scene daylight_scene(const DaylightCase& daylight, int number) {
   return scene;
 }
 
-// What a point gets in percent of the unobstructed horizontal light, by the stored numbers, or by
+// Light of a point in percent of the unobstructed horizontal light, by the stored numbers, or by
 // quadrature with Fresnel's pane in place of the report's polynomial.
 double expected_percent(const DaylightCase& daylight, const Scene& scene, const std::string& sky,
                         const std::string& point) {

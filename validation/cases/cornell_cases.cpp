@@ -1,9 +1,13 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "radiosity/solve.h"
 #include "raytrace/readings/probe.h"
+#include "scene/io/comma_fields.h"
 #include "scene/io/read_scene.h"
 #include "validation/cases/case_lists.h"
 #include "validation/cases/reference_data.h"
@@ -29,13 +33,12 @@ CornellPoints cornell_points(double metres_per_unit) {
   std::string_view text = validation_data::cornell_irradiance_csv;
   text.remove_prefix(text.find('\n') + 1);
   for (Eigen::Index i = 0; i < points.E.rows(); ++i) {
-    std::string line(text.substr(0, text.find('\n')));
+    const std::string_view line = text.substr(0, text.find('\n'));
     text.remove_prefix(std::min(text.size(), line.size() + 1));
-    constexpr int first = 7;
-    for (int field = 0; field < first + 3; ++field) {
-      const std::size_t end = std::min(line.find(','), line.size());
-      if (field >= first) points.E(i, field - first) = std::stof(line.substr(0, end));
-      line.erase(0, end + 1);
+    constexpr std::size_t first = 7;
+    const std::vector<std::string_view> fields = comma_fields(line);
+    for (int k = 0; k < 3; ++k) {
+      points.E(i, k) = std::stof(std::string(fields.at(first + static_cast<std::size_t>(k))));
     }
   }
   return points;

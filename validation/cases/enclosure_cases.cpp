@@ -158,8 +158,8 @@ ComparedValues furnace(const ReferenceValue& c, const Progress& progress) {
   const double tolerance = 1e-6 * room.B / (1.0 - rho);
   ComparedValues values = {furthest(
       "patches", solved.solution.patch_radiosity.col(0).cast<double>(), room.B, tolerance)};
-  // Where exitances differ, the gather parts emitters that have closed forms from the light that
-  // its rays find, and the sum of both is no longer without noise.
+  // In boxes of unlike exitances the gather parts emitters that have closed forms from the light
+  // that its rays find, and the sum of both is no longer without noise.
   const bool is_even = std::equal(room.rho.begin() + 1, room.rho.end(), room.rho.begin());
   if (is_even) {
     values.push_back(furthest("vertices", at_vertices.col(0).cast<double>(), room.B, tolerance));
@@ -208,9 +208,9 @@ Eigen::Vector3d inward_normal(const std::string& face) {
 }
 
 constexpr int probe_rays = 1 << 14;
-// Of about 2400 patches, an edge is a 20th of a face: light that varies over the length of a face
-// is off by the square of that, 2.5e-3, in patches. A gather of N stratified rays adds N^-0.75,
-// 7e-4, twice.
+// An edge of one of about 2400 patches is a 20th of a face: light that varies over the length of a
+// face is off by the square of that, 2.5e-3, in patches. A gather of N stratified rays adds
+// N^-0.75, 7e-4, twice.
 constexpr double probe_error = 4e-3;
 
 ComparedValues probed(const Scene& scene, const std::vector<Probe>& probes,

@@ -98,6 +98,14 @@ Sky sky_of(SkyKind kind) {
           .ground = constant_spectrum(rgb_bands(), 0.0f)};
 }
 
+// Tolerances of identities, relative.
+constexpr double of_floats = 1e-6;
+// Integrals over the dome are good to 2e-4 at a horizon: the cells of the dome are 2 pi / 512 wide,
+// and the midpoint rule is off by the square of that.
+constexpr double of_dome = 2e-4;
+// The standard rounds the weights of red, green and blue to four digits.
+constexpr double of_weights = 1e-4;
+
 // Illuminance of a free point by a sky of 1000 cd/m^2.
 double light_of_sky(SkyKind kind, const Eigen::Vector3d& normal) {
   Scene scene;
@@ -113,8 +121,11 @@ double light_on_floor(const std::function<void(Scene&)>& add_light) {
   return LitCase(std::move(scene)).direct({0, 0, 0}, Eigen::Vector3d::UnitZ());
 }
 
-// How the program computes a row of the table of photometric identities.
-using Identity = std::function<double()>;
+// A row of the table of photometric identities: its tolerance, relative, and the program's value.
+struct Identity {
+  double tolerance = of_floats;
+  std::function<double()> compute{};
+};
 
 std::map<std::string, Identity> photometric_identities() {
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), level = Eigen::Vector3d::UnitX();
@@ -124,35 +135,41 @@ std::map<std::string, Identity> photometric_identities() {
     return luminous(bands, radiance);
   };
   return {
-      {"Km at 540 THz", [] { return rgb_bands().lumens_per_watt; }},
+      {"Km at 540 THz", {of_floats, [] { return rgb_bands().lumens_per_watt; }}},
       {"Rec.709 luminance of linear RGB (1,0.5,0.25)",
-       [=] { return luminance(rgb_bands(1.0), 1.0f, 0.5f, 0.25f); }},
-      {"isotropic 1000 lm", [] { return candela_of_lumens(1000.0, lamp_of(EvenIntensity{})); }},
+       {of_weights, [=] { return luminance(rgb_bands(1.0), 1.0f, 0.5f, 0.25f); }}},
+      {"isotropic 1000 lm",
+       {of_floats, [] { return candela_of_lumens(1000.0, lamp_of(EvenIntensity{})); }}},
       {"uniform 60 deg half-angle beam of 1000 lm",
-       [] {
-         return candela_of_lumens(1000.0, lamp_of(SpotCone{.inner = pi / 3.0, .outer = pi / 3.0}));
-       }},
+       {of_floats,
+        [] {
+          return candela_of_lumens(1000.0, lamp_of(SpotCone{.inner = pi / 3.0, .outer = pi / 3.0}));
+        }}},
       {"solid angle of a cone of half angle 60 deg",
-       [] { return relative_flux(lamp_of(SpotCone{.inner = pi / 3.0, .outer = pi / 3.0})); }},
-      {"sun disc solid angle (0.533 deg diameter)", [] { return Sun{}.solid_angle(); }},
+       {of_floats,
+        [] { return relative_flux(lamp_of(SpotCone{.inner = pi / 3.0, .outer = pi / 3.0})); }}},
+      {"sun disc solid angle (0.533 deg diameter)",
+       {of_floats, [] { return Sun{}.solid_angle(); }}},
       {"E at 3 m under 1000 cd",
-       [] {
-         return light_on_floor([](Scene& scene) {
-           scene.lamps = {lamp_of(EvenIntensity{})};
-           scene.lamps[0].intensity *= 1000.0f;
-           scene.lamps[0].position = {0, 0, 3};
-         });
-       }},
+       {of_floats,
+        [] {
+          return light_on_floor([](Scene& scene) {
+            scene.lamps = {lamp_of(EvenIntensity{})};
+            scene.lamps[0].intensity *= 1000.0f;
+            scene.lamps[0].position = {0, 0, 3};
+          });
+        }}},
       {"uniform sky L=1000 cd/m2: horizontal illuminance",
-       [=] { return light_of_sky(SkyKind::gradation, up); }},
+       {of_dome, [=] { return light_of_sky(SkyKind::gradation, up); }}},
       {"uniform hemisphere on a vertical surface (sky half only)",
-       [=] { return light_of_sky(SkyKind::gradation, level); }},
+       {of_dome, [=] { return light_of_sky(SkyKind::gradation, level); }}},
       {"CIE overcast sky zenith L=1000: horizontal illuminance",
-       [=] { return light_of_sky(SkyKind::overcast, up); }},
+       {of_dome, [=] { return light_of_sky(SkyKind::overcast, up); }}},
       {"CIE overcast: vertical illuminance / horizontal",
-       [=] {
-         return light_of_sky(SkyKind::overcast, level) / light_of_sky(SkyKind::overcast, up);
-       }},
+       {of_dome,
+        [=] {
+          return light_of_sky(SkyKind::overcast, level) / light_of_sky(SkyKind::overcast, up);
+        }}},
   };
 }
 
@@ -163,15 +180,8 @@ ComparedValues identities(const ReferenceValue& c) {
     const auto found = known.find(row.at("what").get<std::string>());
     if (found == known.end()) continue;
     const double expected = row.at("value");
-    // Integrals over the dome are good to 2e-4 at a horizon: the cells of the dome are
-    // 2 pi / 512 wide, and the midpoint rule is off by the square of that.
-    const bool is_of_sky = found->first.find("sky") != std::string::npos ||
-                           found->first.find("hemisphere") != std::string::npos ||
-                           found->first.find("overcast") != std::string::npos;
-    // The standard rounds the weights of red, green and blue to four digits.
-    const bool is_of_rgb = found->first.starts_with("Rec.709");
-    const double share = is_of_sky ? 2e-4 : is_of_rgb ? 1e-4 : 1e-6;
-    values.push_back({found->first, expected, found->second(), share * expected});
+    const auto& [tolerance, compute] = found->second;
+    values.push_back({found->first, expected, compute(), tolerance * expected});
   }
   return values;
 }
