@@ -64,9 +64,10 @@ ScheduleSpan read_schedule_span(const TomlValue& value, const WindowGroup& group
     const std::string text = hours->string();
     const auto pair = dashed_pair(text);
     if (!pair || pair->first < 0 || pair->second < 0 || pair->first > hours_a_day ||
-        pair->second > hours_a_day || pair->first == pair->second) {
-      hours->fail(
-          fmt::format("is '{}'; write two different hours from 0 to 24, such as \"8-18\"", text));
+        pair->second > hours_a_day || pair->first == pair->second ||
+        pair->first - pair->second == hours_a_day) {
+      hours->fail(fmt::format(
+          "is '{}'; write two different hours from 0 to 24, such as \"8-18\", or \"0-24\"", text));
     }
     std::tie(span.from_hour, span.to_hour) = *pair;
   }
@@ -176,6 +177,11 @@ void read_states(const TomlValue& states, const std::vector<Material>& materials
           fmt::format("is named '{}' like an earlier one; give it a name of its own", state.name));
     }
     if (const auto material = table.find("material")) {
+      if (group.states.empty()) {
+        material->fail(
+            "is not for the first state, which is the scene as it stands; remove the key, or put a "
+            "state without it first");
+      }
       state.material = index_of_material(*material, materials);
     } else if (!group.states.empty()) {
       table.fail(fmt::format(

@@ -138,6 +138,13 @@ TEST_F(ReadWindows, WrongInputIsASentence) {
          "Did you mean 'fabric'?");
   expect(pane + "states = [{ name = \"open\" }, { name = \"blind\" }]\n",
          "lacks the key 'material'");
+  expect(pane +
+             "states = [{ name = \"open\", material = \"white\" }, { name = \"blind\", "
+             "material = \"fabric\" }]\n",
+         "is not for the first state, which is the scene as it stands");
+  expect(pane + states +
+             "operation = \"schedule\"\nschedule = [{ state = \"blind\", hours = \"24-0\" }]\n",
+         "write two different hours from 0 to 24");
   expect(pane + "states = [{ name = \"open\" }, { name = \"open\", material = \"fabric\" }]\n",
          "is named 'open' like an earlier one");
   expect(pane + states + "operation = \"always\"\nstate = \"blinds\"\n", "Did you mean 'blind'?");
