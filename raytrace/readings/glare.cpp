@@ -47,12 +47,7 @@ class GlareSum {
   void add(const std::string& name, const Eigen::Vector3d& point, double solid_angle,
            double luminance) {
     const Eigen::Vector3d way = (point - eye_.position).normalized();
-    const double ahead = way.dot(eye_.direction);
-    constexpr double degrees = 180.0 / pi;
-    const double above = way.dot(eye_.up);
-    const double beside = std::abs(way.dot(eye_.direction.cross(eye_.up)));
-    const double p = position_index(std::acos(std::min(1.0, ahead)) * degrees,
-                                    std::atan2(beside, above) * degrees);
+    const double p = position_index(eye_, way);
     if (!number_.contains(name)) {
       number_[name] = sources_.size();
       sources_.push_back({.name = name});
@@ -166,6 +161,14 @@ double position_index(double sigma, double tau) {
   }
   return std::exp((35.2 - 0.31889 * tau - 1.22 * std::exp(-2.0 * tau / 9.0)) * 1e-3 * sigma +
                   (21.0 + 0.26667 * tau - 0.002963 * tau * tau) * 1e-5 * sigma * sigma);
+}
+
+double position_index(const Camera& eye, const Eigen::Vector3d& towards) {
+  constexpr double degrees = 180.0 / pi;
+  const double ahead = towards.dot(eye.direction), above = towards.dot(eye.up);
+  const double beside = std::abs(towards.dot(eye.direction.cross(eye.up)));
+  return position_index(std::acos(std::min(1.0, ahead)) * degrees,
+                        std::atan2(beside, above) * degrees);
 }
 
 bool counts_for_glare(double ahead, double beside, double above) {

@@ -24,6 +24,9 @@ namespace lightwell {
 /// for r = tan sigma below 0.6, else 1 + 1.2 r.
 double position_index(double sigma, double tau);
 
+/// The same of a unit vector from an eye, within 90 degrees of the eye's direction.
+double position_index(const Camera& eye, const Eigen::Vector3d& towards);
+
 /// Returns whether a point counts for glare, by its distances along the line of sight, beside it
 /// and above it. The table of CIE 117 ends at 3 times the distance along the line of sight to the
 /// sides, and at 1.9 times above.
