@@ -96,6 +96,11 @@ AnnualMetrics::AnnualMetrics(int sensors, std::span<const SkyHour> hours, int ye
   }
 }
 
+bool Occupancy::holds(int hour_of_year) const {
+  const int hour = hour_of_year % hours_a_day;
+  return hour >= from && hour < to;
+}
+
 void AnnualMetrics::add(const HourBlock& block, std::span<const float> factors) {
   constexpr int grain = 16;
   parallel_for(static_cast<int>(count_.rows()), grain, [&](int begin, int end) {
@@ -106,13 +111,13 @@ void AnnualMetrics::add(const HourBlock& block, std::span<const float> factors) 
 void AnnualMetrics::add(const HourBlock& block, std::span<const float> factors, Eigen::Index i) {
   const float bins_of_logarithm = static_cast<float>(bins) / std::log(most_lux / least_lux);
   for (std::size_t h = 0; h < block.hours.size(); ++h) {
-    const int number = block.hours[h].number, hour = number % hours_a_day;
+    const int number = block.hours[h].number;
     const auto column = static_cast<Eigen::Index>(h);
     const float sunlight = block.sunlight(i, column);
     const float factor = factors.empty() ? 1.0f : factors[h];
     const float E = sunlight + factor * (block.total(i, column) - sunlight);
     count_(i, lux) += double{E};
-    if (hour >= occupancy_.from && hour < occupancy_.to) count_occupied(E, sunlight, count_, i);
+    if (occupancy_.holds(number)) count_occupied(E, sunlight, count_, i);
     if (is_bright_[static_cast<std::size_t>(number)] == 0) continue;
     count_(i, en_100) += E >= 100.0f;
     count_(i, en_300) += E >= 300.0f;

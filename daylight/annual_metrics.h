@@ -13,6 +13,9 @@ namespace lightwell {
 /// Hours of every day, in standard time, that count as occupied (IES LM-83-12: 8 to 18).
 struct Occupancy {
   int from = 8, to = 18;  ///< 0 <= from < to <= 24
+
+  /// True for an hour of the year, counted from 0, that is occupied.
+  bool holds(int hour_of_year) const;
 };
 
 /// Measures of a year, one value for each sensor.

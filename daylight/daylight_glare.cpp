@@ -7,18 +7,13 @@
 #include "radiosity/visibility/clear_panes.h"
 #include "raytrace/readings/glare.h"
 #include "scene/degree.h"
-#include "scene/io/weather/weather_file.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
 namespace {
 
-// Guth's position index of a direction ahead of an eye.
-double position_index_of(const Camera& eye, const Eigen::Vector3d& direction) {
-  const double ahead = std::clamp(direction.dot(eye.direction), -1.0, 1.0);
-  const double above = direction.dot(eye.up);
-  const double beside = std::abs(direction.dot(eye.direction.cross(eye.up)));
-  return position_index(std::acos(ahead) / degree, std::atan2(beside, above) / degree);
+double capped_position_index(const Camera& eye, const Eigen::Vector3d& towards) {
+  return std::min(position_index(eye, towards), most_position_index);
 }
 
 // Sums over the rays of one cell.
@@ -45,7 +40,7 @@ CellSum sum_of_cell(const DaylightModel& model, const ClearPanes& panes, const C
             : luminous(model.scene().bands, panes.passed(model.caster(), ray)) /
                   luminous(model.scene().bands, constant_spectrum(model.scene().bands, 1.0f));
     if (!(T > 0.0)) continue;
-    const double P = position_index_of(eye, towards);
+    const double P = capped_position_index(eye, towards);
     sum.seen += solid_angle;
     sum.passed += T * solid_angle;
     sum.weight += T * T / (P * P) * solid_angle;
@@ -111,18 +106,20 @@ double sun_contrast(const Camera& eye, const SkyHour& hour, double sunlight) {
   if (!(sunlight > 0.0) || !(cosine > 0.0)) return 0.0;
   const double half = 0.5 * Sun{}.angle_degrees * degree;
   const double solid_angle = 2.0 * std::numbers::pi * (1.0 - std::cos(half));
-  const double across = sunlight / cosine, P = position_index_of(eye, hour.sun);
+  // Part of the disc is ahead of an eye that the sun grazes, where the cosine of the disc's middle
+  // may be next to nothing.
+  const double across = std::min(sunlight / cosine, hour.sun_lux);
+  const double P = capped_position_index(eye, hour.sun);
   return across * across / (solid_angle * P * P);
 }
 
-void count_glare(std::span<const SkyHour> hours, int from_hour, int to_hour, int occupied_hours,
+void count_glare(std::span<const SkyHour> hours, const Occupancy& occupancy, int occupied_hours,
                  GlareOfYear& glare) {
   constexpr double most_hours = 5.0;  // %
   const auto share = [&](auto value, double limit) {
     int count = 0;
     for (std::size_t h = 0; h < hours.size(); ++h) {
-      const int hour = hours[h].number % hours_a_day;
-      if (hour >= from_hour && hour < to_hour && value(h) > limit) ++count;
+      if (occupancy.holds(hours[h].number) && value(h) > limit) ++count;
     }
     return 100.0 * count / occupied_hours;
   };

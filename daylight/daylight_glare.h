@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "daylight/annual_metrics.h"
 #include "daylight/daylight_model.h"
 #include "daylight/sky_year.h"
 #include "scene/camera.h"
@@ -32,8 +33,13 @@ struct GlareView {
 /// Least luminance of a patch that is a glare source, cd/m^2.
 inline constexpr float glare_luminance = 2000.0f;
 
+/// Greatest position index P of a glare source, as evalglare has it (Wienold & Christoffersen
+/// 2006). The formulas of position_index() grow far beyond it towards the edge of the field of
+/// view.
+inline constexpr double most_position_index = 16.0;
+
 /// The view of an eye by `rays` x `rays` rays through each cell of the sky. Position index P: see
-/// position_index().
+/// position_index(), at most most_position_index.
 GlareView glare_view(const DaylightModel& model, const Camera& eye, int rays = 3);
 
 /// Sum of L^2 w / P^2, cd^2/m^4 sr, over sky and ground that an eye sees brighter than
@@ -42,7 +48,7 @@ Eigen::ArrayXd sky_contrast(const DaylightModel& model, const GlareView& view,
                             std::span<const SkyHour> hours, double ground_reflectance);
 
 /// The same of the sun, for sunlight at the eye, lx across its direction of view. The sun's disc
-/// has the luminance that gives that illuminance.
+/// has the luminance that gives that illuminance, but at most that of the hour's sun in the open.
 double sun_contrast(const Camera& eye, const SkyHour& hour, double sunlight);
 
 /// Glare of an eye over the occupied hours of a year.
@@ -50,7 +56,7 @@ struct GlareOfYear {
   std::string name{};
   /// Shares of the occupied hours, %, with a DGP above 0.35, 0.40 and 0.45.
   double above_35 = 0.0, above_40 = 0.0, above_45 = 0.0;
-  /// The same of the simplified DGPs.
+  /// The same of the simplified DGPs, hours with sun at the eye included.
   double simplified_above_35 = 0.0, simplified_above_40 = 0.0, simplified_above_45 = 0.0;
   /// EN 17037, table A.5: "high", "medium", "minimum" or "none": in at most 5 % of the hours is the
   /// DGP above 0.35, 0.40 or 0.45.
@@ -61,7 +67,7 @@ struct GlareOfYear {
 
 /// Counts the hours of `glare`, whose `dgp` and `vertical_lux` are those of `hours`.
 /// `occupied_hours` is their number in the year, nights included.
-void count_glare(std::span<const SkyHour> hours, int from_hour, int to_hour, int occupied_hours,
+void count_glare(std::span<const SkyHour> hours, const Occupancy& occupancy, int occupied_hours,
                  GlareOfYear& glare);
 
 }  // namespace lightwell

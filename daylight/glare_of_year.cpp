@@ -49,7 +49,7 @@ std::vector<GlareOfYear> GlareCount::finish(const WindowPlan& plan, const Eigen:
       glare.vertical_lux.push_back(lux);
       glare.dgp.push_back(static_cast<float>(daylight_glare_probability(double{lux}, contrast)));
     }
-    count_glare(hours_, occupancy.from, occupancy.to, occupied_hours, glare);
+    count_glare(hours_, occupancy, occupied_hours, glare);
     found.push_back(std::move(glare));
   }
   return found;

@@ -53,17 +53,56 @@ TEST(DaylightGlare, FormulasAreThoseOfThePapers) {
 }
 
 // The sun in the line of sight has P = 1: E = L w gives L^2 w = E^2 / w, and w = pi (0.2665
-// degrees)^2 to 1e-5. At 60 degrees above the line of sight E = L w cos 60.
+// degrees)^2 to 1e-5. At 45 degrees above the line of sight E = L w cos 45.
 TEST(DaylightGlare, SunIsADiscOfItsLuminance) {
   const Camera eye = eye_towards(Vector3d::Zero(), -Vector3d::UnitY());
   const double half = 0.2665 * pi / 180.0, w = pi * half * half;
-  SkyHour hour{.sun = -Vector3d::UnitY()};
+  SkyHour hour{.sun = -Vector3d::UnitY(), .sun_lux = 1e5};
   EXPECT_NEAR(sun_contrast(eye, hour, 5e4), 2.5e9 / w, 1e-5 * 2.5e9 / w);
-  hour.sun = Vector3d(0.0, -0.5, std::sqrt(0.75));
-  const double P = position_index(60.0, 0.0), L = 5e4 / (0.5 * w);
+  hour.sun = Vector3d(0.0, -1.0, 1.0).normalized();
+  const double P = position_index(45.0, 0.0), L = 5e4 / (std::sqrt(0.5) * w);
   EXPECT_NEAR(sun_contrast(eye, hour, 5e4), L * L * w / (P * P), 1e-5 * L * L * w / (P * P));
   hour.sun = Vector3d::UnitY();
   EXPECT_EQ(sun_contrast(eye, hour, 5e4), 0.0);
+}
+
+// An eye that the sun grazes has light of the part of the disc ahead, and the middle of the disc
+// next to no cosine. L is that of the sun in the open, and w that of the whole disc. P is 16, where
+// its formula gives 82 at 85 degrees and more beyond.
+TEST(DaylightGlare, GrazingSunIsNoBrighterThanTheSun) {
+  const Camera eye = eye_towards(Vector3d::Zero(), -Vector3d::UnitY());
+  const double half = 0.2665 * pi / 180.0, w = pi * half * half;
+  constexpr double sun_lux = 1e5;
+  const double most = sun_lux * sun_lux / w / (16.0 * 16.0);
+  for (const double degrees : {85.0, 89.9, 89.9999}) {
+    const double angle = degrees * pi / 180.0;
+    const SkyHour hour{.sun = Vector3d(0.0, -std::cos(angle), std::sin(angle)), .sun_lux = sun_lux};
+    // A disc whose middle is on the eye's horizon gives 4 / (3 pi) of its radius as the cosine.
+    const double sunlight = sun_lux * std::max(std::cos(angle), 4.0 / (3.0 * pi) * half);
+    EXPECT_NEAR(sun_contrast(eye, hour, sunlight), most, 1e-5 * most) << degrees;
+  }
+}
+
+// Above an eye, 80 degrees and more from its direction, the formula gives P = 45 and more. P is 16
+// there, so that the weight of a patch of sky is its solid angle over 16^2.
+TEST(DaylightGlare, PositionIndexIsAtMost16) {
+  const DaylightModel model = direct_model(open_ground());
+  const Camera eye = eye_towards(Vector3d::Zero(), Vector3d::UnitY());
+  const GlareView view = glare_view(model, eye);
+  const SkyPatches& sky = model.sky();
+  int edge = 0;
+  for (int c = 0; c < sky.dome_count(); ++c) {
+    const double weight = double{view.weight[sky.column_of(c)]};
+    if (!(weight > 0.0)) continue;
+    const Vector3d middle = sky.direction(c, 0.5, 0.5);
+    const double sigma = std::acos(middle.dot(eye.direction)) * 180.0 / pi;
+    // Patches are 6.2 degrees high; those with their middle within 84 degrees are seen whole.
+    if (sigma > 84.0 || sigma < 80.0 || middle.z() < 0.9) continue;
+    ++edge;
+    // Floats of sums of 9 doubles.
+    EXPECT_NEAR(weight, sky.solid_angle(c) / 256.0, 1e-6 * weight) << c;
+  }
+  EXPECT_GT(edge, 0);
 }
 
 // A veil that passes half of the light leaves a quarter of L^2.
@@ -130,18 +169,18 @@ TEST(DaylightGlare, OnlyBrightSkyIsASource) {
 TEST(DaylightGlare, HoursAreCountedByClass) {
   GlareOfYear glare{.dgp = {0.5f, 0.42f, 0.37f, 0.9f}, .vertical_lux = {5000.0f, 1.0f, 1.0f, 1.0f}};
   const std::vector<SkyHour> hours = {{.number = 8}, {.number = 9}, {.number = 17}, {.number = 18}};
-  count_glare(hours, 8, 18, 10, glare);
+  count_glare(hours, {.from = 8, .to = 18}, 10, glare);
   EXPECT_DOUBLE_EQ(glare.above_45, 10.0);
   EXPECT_DOUBLE_EQ(glare.above_40, 20.0);
   EXPECT_DOUBLE_EQ(glare.above_35, 30.0);
   // 6.22e-5 * 5000 + 0.184 = 0.495.
   EXPECT_DOUBLE_EQ(glare.simplified_above_45, 10.0);
   EXPECT_EQ(glare.level, "none");
-  count_glare(hours, 8, 18, 20, glare);
+  count_glare(hours, {.from = 8, .to = 18}, 20, glare);
   EXPECT_EQ(glare.level, "minimum");
-  count_glare(hours, 8, 18, 40, glare);
+  count_glare(hours, {.from = 8, .to = 18}, 40, glare);
   EXPECT_EQ(glare.level, "medium");
-  count_glare(hours, 8, 18, 60, glare);
+  count_glare(hours, {.from = 8, .to = 18}, 60, glare);
   EXPECT_EQ(glare.level, "high");
 }
 

@@ -53,8 +53,8 @@ void add_states(const YearReport& report, std::string& page) {
   if (report.is_superposed) {
     fmt::format_to(out,
                    "<p>Light of several changed groups is superposed; with all groups changed, "
-                   "this differs from a computation by {:.1f}\u202f%, which is part of the "
-                   "bounds.</p>\n",
+                   "this differs from a computation by {:.1f}\u202f% of the light with no group "
+                   "changed, which is part of the bounds.</p>\n",
                    100.0 * report.superposition);
   }
   page += "</section>\n";
@@ -87,7 +87,9 @@ void add_glare(const YearReport& report, std::string& page) {
   page +=
       "</table>\n<p>Shares of the occupied hours. EN 17037: in at most 5\u202f% of them is the "
       "daylight glare probability above 0.35 (high), 0.40 (medium) or 0.45 (minimum). DGPs leaves "
-      "out contrast.</p>\n";
+      "out contrast, and is meant for hours without sun at the eye; all hours are counted. Glare "
+      "has "
+      "no bound of its error.</p>\n";
   for (const GlareOfYear& glare : report.glare) {
     constexpr LuxRange range{.low = 0.0, .high = 0.6};
     fmt::format_to(out,
