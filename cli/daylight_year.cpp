@@ -55,7 +55,7 @@ void set_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_fa
   }
 }
 
-// Counts what becomes of a year.
+// Measures of a year and of its rooms, hour by hour.
 class YearCount {
  public:
   YearCount(std::span<const SkyHour> hours, int sensors, HourlyFiles* files, YearReport& made)
@@ -124,9 +124,8 @@ std::vector<YearWindows> hours_in_states(const OperatedWindows& windows,
     for (std::size_t h = 0; h < hours.size(); ++h) {
       const int state = states(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(h));
       YearWindows::State& in_state = of_group.states[static_cast<std::size_t>(state)];
-      const int hour = hours[h].number % hours_a_day;
       ++in_state.hours;
-      if (hour >= occupancy.from && hour < occupancy.to) ++in_state.occupied_hours;
+      if (occupancy.holds(hours[h].number)) ++in_state.occupied_hours;
     }
     all.push_back(std::move(of_group));
   }
@@ -139,25 +138,16 @@ class OperatedCount {
   OperatedCount(std::span<const SkyHour> hours, int sensors, const YearReport& made)
       : hours_(hours), sensors_(sensors), made_(made) {}
 
-  void add(const ComputedYear& year, const HourBlock& block) {
-    auto found = counts_.find(year.number);
-    if (found == counts_.end()) {
-      found = counts_
-                  .try_emplace(year.number, sensors_, hours_,
-                               static_cast<int>(made_.weather.hours.size()), made_.occupancy)
-                  .first;
-    }
-    found->second.add(block);
-  }
+  void add(const ComputedYear& year, const HourBlock& block) { count_of(year.number).add(block); }
 
-  Eigen::ArrayXd open_sun_hours() const { return counts_.at(0).sensors().sun_hours; }
+  Eigen::ArrayXd open_sun_hours() { return count_of(0).sensors().sun_hours; }
 
-  std::vector<YearInStates> years(const OperatedYear& year, const OperatedWindows& windows) const {
+  std::vector<YearInStates> years(const OperatedYear& year, const OperatedWindows& windows) {
     std::vector<YearInStates> all;
-    for (const auto& [number, count] : counts_) {
+    for (std::size_t number = 0; number < year.plan.computations.size(); ++number) {
       YearInStates in_states{.states = states_text(windows, year.plan.computations[number]),
                              .error = year.errors[number]};
-      const SensorMetrics sensors = count.sensors();
+      const SensorMetrics sensors = count_of(number).sensors();
       for (const YearRoom& room : made_.rooms) {
         in_states.rooms.push_back(
             room_metrics(sensors, year.daylight_factor, room.first, room.count));
@@ -168,6 +158,12 @@ class OperatedCount {
   }
 
  private:
+  // The measures of a computation. A year without light adds no hours to them.
+  AnnualMetrics& count_of(std::size_t number) {
+    const auto year_hours = static_cast<int>(made_.weather.hours.size());
+    return counts_.try_emplace(number, sensors_, hours_, year_hours, made_.occupancy).first->second;
+  }
+
   std::span<const SkyHour> hours_;
   int sensors_;
   const YearReport& made_;
@@ -177,14 +173,11 @@ class OperatedCount {
 // Counts the year that is put together from the computations, with the bound of each hour.
 void count_operated(const OperatedYear& year, std::span<const SkyHour> hours, YearCount& count,
                     GlareCount& glare) {
-  std::size_t first = 0;
+  std::ptrdiff_t first = 0;
   year.visit(hours, [&](const HourBlock& block) {
-    std::vector<double> errors;
-    for (std::size_t h = 0; h < block.hours.size(); ++h) {
-      errors.push_back(year.error_of_hour(first + h));
-    }
-    first += block.hours.size();
-    count.add(block, errors);
+    const auto begin = year.hour_errors.begin() + first;
+    first += static_cast<std::ptrdiff_t>(block.hours.size());
+    count.add(block, {begin, year.hour_errors.begin() + first});
     glare.add_light(block);
   });
 }
@@ -256,7 +249,7 @@ void note_darkness(YearReport& made, Console& console) {
   console.say("warning: " + made.notes.back());
 }
 
-// What the files of a year are written from.
+// Sources of the files of a year.
 struct WrittenYear {
   const OutputFolder& folder;
   const DaylightInputs& inputs;

@@ -26,40 +26,79 @@ void add_weighted(const HourBlock& block, std::size_t computation, Eigen::Index 
   }
 }
 
-// Compares superposed light of all groups changed with its computation, in hours all over the year.
-class SuperpositionCheck {
+// Light without sunlight of a column, never below nothing.
+Eigen::ArrayXd skylight_of(const Eigen::ArrayXXf& total, const Eigen::ArrayXXf& sunlight,
+                           Eigen::Index column) {
+  return (total.col(column) - sunlight.col(column)).cast<double>().max(0.0);
+}
+
+// Collects what the bounds of hours with operated windows need while the computations are made.
+class HourBounds {
  public:
-  SuperpositionCheck(std::span<const SkyHour> hours, int sensors, OperatedYear& year)
-      : hours_(spread_over(hours)),
-        superposed_(Eigen::ArrayXd::Zero(sensors)),
-        computed_(Eigen::ArrayXd::Zero(sensors)) {
-    if (year.plan.is_superposed) {
-      year.all_changed = Eigen::ArrayXd::Zero(static_cast<Eigen::Index>(hours.size()));
-    }
+  HourBounds(const WindowPlan& plan, Eigen::Index sensors, Eigen::Index hours)
+      : plan_(plan),
+        light_(Eigen::ArrayXXd::Zero(hours, static_cast<Eigen::Index>(plan.computations.size()))) {
+    if (plan.is_superposed) deviation_ = Eigen::ArrayXXf::Zero(sensors, hours);
   }
 
   // Adds a block of a computation, whose hours begin with number `first` of the year's.
-  void add(const HourBlock& block, std::size_t computation, Eigen::Index first,
-           OperatedYear& year) {
-    const std::size_t last = year.plan.computations.size() - 1;
-    const double weight = year.plan.superposed_weight(computation, year.plan.computations[last]);
-    for (std::size_t h = 0; h < block.hours.size(); ++h) {
-      const auto column = static_cast<Eigen::Index>(h);
-      const Eigen::ArrayXd light =
-          (block.total.col(column) - block.sunlight.col(column)).cast<double>();
-      if (computation == last) year.all_changed[first + column] = light.sum();
-      if (!std::ranges::binary_search(hours_, block.hours[h].number, {}, &SkyHour::number))
-        continue;
-      superposed_ += weight * light;
-      if (computation == last) computed_ += light;
+  void add(const HourBlock& block, std::size_t computation, Eigen::Index first) {
+    const bool is_last = computation + 1 == plan_.computations.size();
+    const auto weight =
+        is_last
+            ? -1.0f
+            : static_cast<float>(plan_.superposed_weight(computation, plan_.computations.back()));
+    for (Eigen::Index h = 0; h < block.total.cols(); ++h) {
+      light_(first + h, static_cast<Eigen::Index>(computation)) =
+          skylight_of(block.total, block.sunlight, h).sum();
+      if (!plan_.is_superposed) continue;
+      deviation_.col(first + h) += weight * (block.total.col(h) - block.sunlight.col(h));
     }
   }
 
-  double error() const { return relative_difference(superposed_ - computed_, computed_); }
+  // Bounds of all hours of the year, whose light is complete.
+  std::vector<double> of_hours(const OperatedYear& year) const {
+    std::vector<double> errors;
+    for (Eigen::Index h = 0; h < light_.rows(); ++h) {
+      const WindowStates states = states_of_hour(year.states, h);
+      const auto computed = std::ranges::find(plan_.computations, states);
+      errors.push_back(
+          computed == plan_.computations.end()
+              ? of_superposed(year, states, h)
+              : year.errors[static_cast<std::size_t>(computed - plan_.computations.begin())]);
+    }
+    return errors;
+  }
+
+  // See OperatedYear::superposition.
+  double superposition() const {
+    const double open = light_.col(0).sum();
+    if (!plan_.is_superposed || !(open > 0.0)) return 0.0;
+    double sum = 0.0;
+    for (Eigen::Index h = 0; h < light_.rows(); ++h) {
+      sum += std::sqrt(deviation_.col(h).cast<double>().square().mean());
+    }
+    return sum * static_cast<double>(deviation_.rows()) / open;
+  }
 
  private:
-  std::vector<SkyHour> hours_;            // ascending
-  Eigen::ArrayXd superposed_, computed_;  // lx, sums of the hours without sunlight, per sensor
+  double of_superposed(const OperatedYear& year, const WindowStates& states,
+                       Eigen::Index hour) const {
+    const Eigen::ArrayXd light = skylight_of(year.total, year.sunlight, hour);
+    if (!(light.sum() > 0.0)) return 1.0;
+    double squares = 0.0;  // lx^2
+    for (std::size_t c = 0; c < year.errors.size(); ++c) {
+      const double part =
+          plan_.weight(c, states) * year.errors[c] * light_(hour, static_cast<Eigen::Index>(c));
+      squares += part * part;
+    }
+    return std::sqrt(squares) / light.sum() +
+           relative_difference(deviation_.col(hour).cast<double>(), light);
+  }
+
+  const WindowPlan& plan_;
+  Eigen::ArrayXXd light_;        // lx, sum over sensors, hours x computations
+  Eigen::ArrayXXf deviation_{};  // lx, superposed less computed with all changed, sensors x hours
 };
 
 // The model of the scene in other states, with the same sensors.
@@ -74,24 +113,12 @@ std::unique_ptr<DaylightModel> model_in_states(const Scene& scene, const Dayligh
 
 }  // namespace
 
-double OperatedYear::error_of_hour(std::size_t hour) const {
-  const auto h = static_cast<Eigen::Index>(hour);
-  const WindowStates in_hour = states_of_hour(states, h);
-  const auto computed = std::ranges::find(plan.computations, in_hour);
-  if (computed != plan.computations.end()) {
-    return errors[static_cast<std::size_t>(computed - plan.computations.begin())];
-  }
-  const double light = (total.col(h) - sunlight.col(h)).cast<double>().sum();
-  const double share = light > all_changed[h] ? all_changed[h] / light : 1.0;
-  return std::ranges::max(errors) + superposition * plan.changed_pairs(in_hour) * share;
-}
-
 double OperatedYear::error() const {
   double light = 0.0, uncertain = 0.0;
   for (Eigen::Index h = 0; h < total.cols(); ++h) {
-    const double lux = (total.col(h) - sunlight.col(h)).cast<double>().max(0.0).sum();
+    const double lux = skylight_of(total, sunlight, h).sum();
     light += lux;
-    uncertain += error_of_hour(static_cast<std::size_t>(h)) * lux;
+    uncertain += hour_errors[static_cast<std::size_t>(h)] * lux;
   }
   return light > 0.0 ? uncertain / light : std::ranges::max(errors);
 }
@@ -120,7 +147,7 @@ OperatedYear operate_year(const Scene& scene, const DaylightModel& open,
         Eigen::ArrayXXf::Zero(open.sensor_count(), static_cast<Eigen::Index>(task.hours.size()));
     year.sunlight = year.total;
   }
-  SuperpositionCheck check(task.hours, open.sensor_count(), year);
+  HourBounds bounds(year.plan, open.sensor_count(), year.total.cols());
   for (std::size_t c = 0; c < year.plan.computations.size(); ++c) {
     std::unique_ptr<DaylightModel> changed;
     if (c > 0) changed = model_in_states(scene, open, windows, year.plan.computations[c]);
@@ -131,13 +158,18 @@ OperatedYear operate_year(const Scene& scene, const DaylightModel& open,
     const ComputedYear computed{.number = c, .model = model, .error = year.errors.back()};
     Eigen::Index first = 0;
     simulate_year(model, sky, task.hours, task.ground_reflectance, [&](const HourBlock& block) {
-      if (is_operated) add_weighted(block, c, first, year);
-      if (year.plan.is_superposed) check.add(block, c, first, year);
+      if (is_operated) {
+        add_weighted(block, c, first, year);
+        bounds.add(block, c, first);
+      }
       first += static_cast<Eigen::Index>(block.hours.size());
       visit(computed, block);
     });
   }
-  if (year.plan.is_superposed) year.superposition = check.error();
+  if (is_operated) {
+    year.hour_errors = bounds.of_hours(year);
+    year.superposition = bounds.superposition();
+  }
   return year;
 }
 

@@ -26,21 +26,22 @@ struct OperatedYear {
   Eigen::ArrayXXi states{};  ///< groups x hours
   WindowPlan plan{};
   std::vector<double> errors{};  ///< of each computation, see year_error()
-  /// Error of superposition with all groups changed, relative to the light in these states; 0:
-  /// nothing is superposed.
+  /// Error of superposition with all groups changed: root mean square over sensors of superposed
+  /// less computed light (without sunlight), relative to the light with all groups in their first
+  /// state, in the mean of the year. 0: nothing is superposed.
   double superposition = 0.0;
   Eigen::ArrayXf daylight_factor{};  ///< with all groups in their first state
-  /// Light without sunlight with all groups changed, sum of the sensors in each hour, lx; empty:
-  /// nothing is superposed.
-  Eigen::ArrayXd all_changed{};
   /// Light of all hours, lx, sensors x hours; empty without windows, where the one computation has
   /// it already.
   Eigen::ArrayXXf total{}, sunlight{};
 
-  /// Bound of the error of the operated light in an hour, in the terms of year_error(): that of
-  /// the hour's computation. Of superposed light it is the greatest of all, and besides the error
-  /// of superposition: that with all groups changed, times the share of pairs that have changed.
-  double error_of_hour(std::size_t hour) const;
+  /// Bound of the error of each hour's operated light, in the terms of year_error(); empty without
+  /// windows. Computed light has the bound of its computation. Superposed light has the bounds of
+  /// its parts, as of independent errors, relative to the sum of the parts, and besides what
+  /// superposition leaves out with all groups changed in this hour, relative to the hour's own
+  /// light. That is taken whole, since two groups that face each other may leave out all of it. An
+  /// hour whose superposed light is no more than nothing has 1.
+  std::vector<double> hour_errors{};
   /// Bound of the error of the year's light: the mean of the hours' bounds, weighted by their light
   /// without sunlight.
   double error() const;

@@ -89,11 +89,6 @@ double WindowPlan::superposed_weight(std::size_t computation, const WindowStates
   return states[g] == computed[g] ? 1.0 : 0.0;
 }
 
-double WindowPlan::changed_pairs(const WindowStates& states) const {
-  const double here = changed_groups(states), most = changed_groups(computations.back());
-  return most > 1.0 ? here * (here - 1.0) / (most * (most - 1.0)) : 0.0;
-}
-
 WindowStates states_of_hour(const Eigen::ArrayXXi& states, Eigen::Index hour) {
   return {states.col(hour).begin(), states.col(hour).end()};
 }

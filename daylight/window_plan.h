@@ -46,9 +46,6 @@ struct WindowPlan {
   double weight(std::size_t computation, const WindowStates& states) const;
   /// The same by superposition, whether or not the states are computed by themselves.
   double superposed_weight(std::size_t computation, const WindowStates& states) const;
-  /// Share of the pairs of groups that are both changed in the states, [0, 1]: what superposition
-  /// leaves out is of pairs.
-  double changed_pairs(const WindowStates& states) const;
 };
 
 /// The plan for hours with these states, groups x hours. Throws InputError if more than

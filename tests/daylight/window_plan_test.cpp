@@ -49,8 +49,6 @@ TEST(WindowPlan, ManyCombinationsAreSuperposed) {
   EXPECT_EQ(plan.weight(6, plan.computations.back()), 1.0);
   EXPECT_EQ(plan.weight(0, plan.computations.back()), 0.0);
   EXPECT_EQ(plan.superposed_weight(0, plan.computations.back()), -4.0);
-  // One of the ten pairs.
-  EXPECT_DOUBLE_EQ(plan.changed_pairs({1, 0, 0, 1, 0}), 0.1);
   for (Eigen::Index h = 0; h + 1 < states.cols(); ++h) {
     const WindowStates in_hour = states_of_hour(states, h);
     double sum = 0.0, changes = 0.0;
