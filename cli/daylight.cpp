@@ -37,6 +37,15 @@ void parse_sun_day(const std::string& text, ExposureDay& day) {
     throw CLI::ValidationError(
         "--sun-day", fmt::format("'{}' is no day; write month and day, such as 03-21", text));
   }
+  const auto is_before = [&](int month, int last) {
+    return read.month < month || (read.month == month && read.day <= last);
+  };
+  if (is_before(1, 31) || !is_before(3, 21)) {
+    throw CLI::ValidationError(
+        "--sun-day", fmt::format("'{}' is none of the days of EN 17037; write one from 02-01 to "
+                                 "03-21",
+                                 text));
+  }
   day = read;
 }
 
@@ -95,13 +104,15 @@ void add_people(CLI::App& command, const std::shared_ptr<DaylightArguments>& arg
       .add_option_function<std::string>(
           "--sun-day",
           [arguments](const std::string& text) { parse_sun_day(text, arguments->sun_day); },
-          "day of --sun-points (default 03-21)")
-      ->type_name("MM-DD");
+          "day of --sun-points, 02-01 to 03-21 (default 03-21)")
+      ->type_name("MM-DD")
+      ->needs(sun_points);
   command
       .add_option("--least-sun", arguments->sun_day.least_altitude_degrees,
                   "least altitude of the sun that counts for --sun-points (default 0)")
       ->type_name("DEGREES")
-      ->check(CLI::Range(0.0, 89.0).description(""));
+      ->check(CLI::Range(0.0, 89.0).description(""))
+      ->needs(sun_points);
   command
       .add_option_function<std::string>(
           "--at",
@@ -176,6 +187,9 @@ Action add_daylight(CLI::App& command) {
   add_people(command, arguments);
   command.add_flag("--hourly", arguments->hourly,
                    "also write illuminance.npy and sunlight.npy: hours of hours.csv x sensors, lx");
+  command.get_option("--at")
+      ->excludes(command.get_option("--hourly"))
+      ->excludes(command.get_option("--occupied"));
   command.footer(
       "Example: lightwell daylight office.toml --weather oakland.epw --plane floor@0.8 -o year");
   return [arguments](Console& console) { return daylight(*arguments, console); };

@@ -10,6 +10,7 @@
 #include "mesh/cleaning/joined_surfaces.h"
 #include "raytrace/cameras/choose_camera.h"
 #include "scene/errors.h"
+#include "scene/io/text_file.h"
 #include "viewer/export/start_view.h"
 
 namespace lightwell {
@@ -58,6 +59,19 @@ void refuse_joined_windows(const DaylightInputs& inputs) {
   }
 }
 
+// Reads the states of windows, of `--windows` or of the scene file, with the files that they name.
+OperatedWindows read_operated_windows(const DaylightArguments& arguments, const Scene& scene,
+                                      const Console& console) {
+  const bool has_file = !arguments.windows.empty();
+  const FilesRead read =
+      console.options().inside_folder
+          ? FilesRead::inside_folder_of(has_file ? arguments.windows : scene.file.string())
+          : FilesRead();
+  OperatedWindows windows = has_file ? read_windows(arguments.windows, scene) : read_windows(scene);
+  for (const std::filesystem::path& file : read.files()) note_input(file);
+  return windows;
+}
+
 }  // namespace
 
 DaylightInputs read_daylight_inputs(const DaylightArguments& arguments, Console& console,
@@ -68,8 +82,7 @@ DaylightInputs read_daylight_inputs(const DaylightArguments& arguments, Console&
   }
   DaylightInputs inputs{.weather = read_weather(arguments.weather)};
   inputs.scene = read_scene_step(arguments.scene, console, report, &inputs.clean_up);
-  inputs.windows = arguments.windows.empty() ? read_windows(inputs.scene)
-                                             : read_windows(arguments.windows, inputs.scene);
+  inputs.windows = read_operated_windows(arguments, inputs.scene, console);
   refuse_joined_windows(inputs);
   for (const std::string& name : arguments.observers) {
     inputs.eyes.push_back(choose_camera(inputs.scene, name));

@@ -37,7 +37,7 @@ struct DaylightArguments {
   std::string at_text{};
 };
 
-/// What the command reads.
+/// Inputs of the command.
 struct DaylightInputs {
   Weather weather{};
   CleanUpReport clean_up{};
@@ -68,7 +68,7 @@ DaylightSensors daylight_sensors(const DaylightArguments& arguments, const Dayli
 DaylightOptions daylight_options(const DaylightArguments& arguments, const Scene& scene,
                                  Console& console);
 
-/// What is assumed, a sentence each, but for the sentences on hour, sun and date.
+/// Assumptions, a sentence each, but for the sentences on hour, sun and date.
 std::vector<std::string> daylight_conventions(const DaylightArguments& arguments,
                                               const DaylightInputs& inputs, const SkyPatches& sky);
 

@@ -44,9 +44,10 @@ struct WindowGroup {
   /// The state of `always`; the closed state of `lm_83` and `illuminance`.
   int state = 1;
   double close_above = 0.0, open_below = 0.0;  ///< lx, of `illuminance`; open_below <= close_above
-  /// Of `schedule`: later spans go before earlier ones, and hours in none have the first state.
+  /// Spans of `schedule`: later ones go before earlier ones, and hours in none have the first
+  /// state.
   std::vector<ScheduleSpan> spans{};
-  /// Of a `schedule` by a file: the state of each hour of the year, 8760 or 8784.
+  /// State of each hour of the year, 8760 or 8784, of a `schedule` by a file.
   std::vector<int> hours{};
 };
 

@@ -220,11 +220,28 @@ TEST_F(DaylightCommand, GlareAndExposureAreReported) {
   folder.write("court.toml", glazed_court("[[cameras]]\nname = \"visitor\"\nposition = [2, 2, 1]\n"
                                           "direction = [0, -1, 1]\nup = [0, 0, 1]\n"));
   folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,3,0,0,1\n2,0.05,0.5,0,0,1\n");
-  const Json json = run_json(command({"--observer", "visitor", "--sun-points", "p.csv"}));
+  const Json json =
+      run_json(command({"--observer", "visitor", "--sun-points", "p.csv", "--occupied", "12-13"}));
   const Json& glare = json["glare"][0];
   EXPECT_EQ(glare["observer"], "visitor");
-  // Three hours of 3650 have light.
-  EXPECT_LE(glare["DGP_above_0.35"].get<double>(), 100.0 * 3 / 3650);
+  std::istringstream lines(text_of("glare.csv"));
+  std::string line;
+  std::getline(lines, line);
+  EXPECT_EQ(line, "hour,visitor lux,visitor DGP");
+  int noons = 0, with_glare = 0;
+  while (std::getline(lines, line)) {
+    const std::vector<double> values = numbers_of(line);
+    // Contrast only adds to what the light at the eye makes; four decimals are written.
+    EXPECT_GE(values[2], std::min(1.0, 5.87e-5 * values[1] + 0.16) - 1e-4) << line;
+    if (static_cast<int>(values[0]) % 24 != 12) continue;
+    ++noons;
+    with_glare += values[2] > 0.35 ? 1 : 0;
+  }
+  EXPECT_EQ(noons, 2);
+  // The sun of noon in June, 63 degrees high, is ahead of the eye and shines through the roof with
+  // tens of thousands of lux; 3300 lx alone make a DGP of 0.35.
+  EXPECT_GE(with_glare, 1);
+  EXPECT_NEAR(glare["DGP_above_0.35"].get<double>(), 100.0 * with_glare / 365, 1e-9);
   EXPECT_EQ(glare["en_17037"], "high");
   const Json& points = json["exposure_to_sunlight"]["points"];
   // The equinox at 50 degrees north: the sun is 0.4 degrees north of the equator, which makes the
@@ -270,6 +287,13 @@ TEST_F(DaylightCommand, WrongWindowsAreASentence) {
   };
   expect("", "there are no windows");
   expect("[[windows]]\nsurfaces = \"rof\"\nstates = []\n", "Did you mean 'roof'?");
+  expect(
+      "[[windows]]\nsurfaces = \"roof\"\nstates = [{ name = \"open\", material = \"grey\" }, "
+      "{ name = \"blind\", material = \"fabric\" }]\n",
+      "is not for the first state, which is the scene as it stands; remove");
+  expect(roof_states +
+             "operation = \"schedule\"\nschedule = [{ state = \"blind\", hours = \"24-0\" }]\n",
+         "write two different hours from 0 to 24");
   std::string hours;
   for (int h = 0; h < 8784; ++h) hours += "open\n";
   folder.write("hours.csv", hours);
@@ -287,6 +311,17 @@ TEST_F(DaylightCommand, WrongInputIsASentence) {
   expect({"--plane", "flour@0.8"}, 3, "Did you mean 'floor'?");
   expect({"--plane", "floor@0.8", "--occupied", "18-8"}, 2, "'18-8' is no span of hours");
   expect({"--plane", "floor@0.8", "--ground", "2"}, 2, "--ground");
+  folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,0.8,0,0,1\n");
+  const Words with_points = {"--points", "p.csv"},
+              with_sun = with_points + Words{"--sun-points", "p.csv"};
+  for (const char* day : {"01-31", "03-22", "06-21"}) {
+    expect(with_sun + Words{"--sun-day", day}, 2, "write one from 02-01 to 03-21");
+  }
+  expect(with_points + Words{"--sun-day", "02-01"}, 2, "--sun-points");
+  expect(with_points + Words{"--least-sun", "11"}, 2, "--sun-points");
+  const Words at_noon = with_points + Words{"--at", "2017-06-21 12:30"};
+  expect(at_noon + Words{"--hourly"}, 2, "--hourly");
+  expect(at_noon + Words{"--occupied", "8-12"}, 2, "--occupied");
   expect({"--plane", "floor@0.8", "--sky", "9"}, 2, "--sky");
   folder.write("year.wea", "nonsense");
   expect({"--plane", "floor@0.8"}, 3, "year.wea:1: ");
@@ -295,6 +330,19 @@ TEST_F(DaylightCommand, WrongInputIsASentence) {
       {"daylight", "court.toml", "--weather", "year.csv", "-o", "year", "--plane", "floor@0.8"});
   EXPECT_EQ(ended.code, 3);
   EXPECT_NE(ended.err.find("weather is read from .epw"), std::string::npos) << ended.err;
+}
+
+// A year whose every hour is dark has states of windows, and no light in them.
+TEST_F(DaylightCommand, AYearWithoutLightHasNoMeasures) {
+  folder.write("court.toml", glazed_court(roof_states));
+  std::string dark = weather.substr(0, weather.find("6 21"));
+  dark += "6 21 12.5 0 0\n";
+  folder.write("year.wea", dark);
+  const Json json = run_json(command({}));
+  EXPECT_EQ(json["hours_with_light"], 0);
+  EXPECT_EQ(json["rooms"][0]["mean_lux"]["value"], 0.0);
+  EXPECT_EQ(json["windows"][0]["states"][0]["hours_with_light"], 0);
+  EXPECT_EQ(json["states"].size(), 1u);
 }
 
 TEST_F(DaylightCommand, SaysThatAClosedRoomGetsNoDaylight) {
@@ -311,6 +359,27 @@ TEST_F(DaylightCommand, RefusesToWriteOverItsPoints) {
   const Ended ended = run(command({"--points", "year/sensors.csv"}));
   EXPECT_NE(ended.code, 0);
   EXPECT_EQ(lines_of(text_of("sensors.csv")), 2);
+}
+
+// The schedule that a file of windows names is an input, too, and within the reach of
+// --inside-folder.
+TEST_F(DaylightCommand, RefusesToWriteOverItsSchedule) {
+  std::filesystem::create_directory(folder / "year");
+  std::filesystem::create_directory(folder / "blinds");
+  folder.write("court.toml", glazed_court());
+  std::string hours;
+  for (int h = 0; h < 8760; ++h) hours += "open\n";
+  folder.write("year/hours.csv", hours);
+  folder.write("blinds/windows.toml",
+               roof_states + "operation = \"schedule\"\nschedule = \"../year/hours.csv\"\n");
+  const Words with_windows = command({"--windows", "blinds/windows.toml"});
+  const Ended ended = run(with_windows);
+  EXPECT_NE(ended.code, 0);
+  EXPECT_NE(ended.err.find("the command reads the same file"), std::string::npos) << ended.err;
+  EXPECT_EQ(text_of("hours.csv"), hours);
+  const Ended outside = run(with_windows + Words{"--inside-folder"});
+  EXPECT_NE(outside.code, 0);
+  EXPECT_NE(outside.err.find("outside of its folder"), std::string::npos) << outside.err;
 }
 
 }  // namespace lightwell::daylight_command_test
