@@ -42,7 +42,7 @@ SkyHour even_sky(double luminance) {
 
 }  // namespace
 
-// By hand: 0.0587 + 0.16 for 1000 lx without sources. Sources of 99 Ev^1.87 add 9.18e-2 log10 100.
+// 1000 lx without sources give 0.0587 + 0.16. Sources of 99 Ev^1.87 add 9.18e-2 log10 100.
 TEST(DaylightGlare, FormulasAreThoseOfThePapers) {
   EXPECT_NEAR(daylight_glare_probability(1000.0, 0.0), 0.2187, 1e-12);
   EXPECT_NEAR(daylight_glare_probability(1000.0, 99.0 * std::pow(1000.0, 1.87)), 0.4023, 1e-12);
@@ -158,14 +158,14 @@ TEST(DaylightGlare, OnlyBrightSkyIsASource) {
   const std::vector<SkyHour> hours = {even_sky(1900.0), even_sky(2100.0)};
   const Eigen::ArrayXd contrast = sky_contrast(model, view, hours, 0.0);
   EXPECT_EQ(contrast[0], 0.0);
-  // Of luminance 2100 cd/m^2 all over the dome; float sums of 577 columns.
+  // A luminance of 2100 cd/m^2 all over the dome; float sums of 577 columns.
   const double expected =
       2100.0 * 2100.0 * double{view.weight.head(model.sky().dome_count()).sum()};
   EXPECT_NEAR(contrast[1], expected, 1e-4 * expected);
 }
 
-// Of ten occupied hours, DGP is 0.5 in one, 0.42 in one and 0.37 in one; in the evening nobody is
-// there.
+// Ten hours are occupied, and DGP is 0.5 in one of them, 0.42 in one and 0.37 in one; in the
+// evening nobody is there.
 TEST(DaylightGlare, HoursAreCountedByClass) {
   GlareOfYear glare{.dgp = {0.5f, 0.42f, 0.37f, 0.9f}, .vertical_lux = {5000.0f, 1.0f, 1.0f, 1.0f}};
   const std::vector<SkyHour> hours = {{.number = 8}, {.number = 9}, {.number = 17}, {.number = 18}};

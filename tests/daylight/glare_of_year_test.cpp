@@ -17,7 +17,7 @@ DaylightModel direct_model(const Scene& scene) {
 
 }  // namespace
 
-// Each hour has the contrast of its state of the window: a veil of one half leaves a quarter. The
+// Hours have the contrast of their state of the window: a veil of one half leaves a quarter. The
 // sun is behind the eye, and lux at the eye are those of the block.
 TEST(GlareCount, HoursHaveTheContrastOfTheirStates) {
   Scene room = test::room_with_panes(1);

@@ -175,7 +175,7 @@ TEST(OperatedYear, SuperposedLightIsThatOfTheOpenPanes) {
                         alone =
                             light_of(scene_in_states(room, windows, {1, 1, 1, 0}), hours, options);
   const Eigen::Index last = year.total.cols() - 1;
-  // Each of the four computations spreads 4096 rays over what its windows show of the sky, and
+  // A computation, of four, spreads 4096 rays over what its windows show of the sky, and
   // sends 4096 gather rays, whose mean has an error of at most 1 / 64 of the reflected light, which
   // is about a quarter of all: four standard errors of the sum of four such differences, which
   // share their random numbers.

@@ -58,8 +58,8 @@ Eigen::ArrayXXi states_for(int dark_sensors, const std::vector<double>& lux) {
 
 }  // namespace
 
-// Of 49 sensors one is more than 2 %, of 50 it is not. 2000 lx across the rays are 1414 lx on the
-// sensor, 1000 lx are 707 lx. The sun is not seen through pane 1.
+// One sensor of 49 is more than 2 %, and one of 50 is not. 2000 lx across the rays are 1414 lx on
+// the sensor, 1000 lx are 707 lx. The sun is not seen through pane 1.
 TEST(WindowOperation, Lm83ClosesThePaneThatTheSunComesThrough) {
   const Eigen::ArrayXXi few = states_for(48, {2000.0, 1000.0, 0.0});
   EXPECT_EQ(few.row(0).matrix(), Eigen::RowVector3i(1, 0, 0));
@@ -67,7 +67,7 @@ TEST(WindowOperation, Lm83ClosesThePaneThatTheSunComesThrough) {
   EXPECT_EQ(states_for(49, {2000.0}).maxCoeff(), 0);
 }
 
-// Each room is judged by itself: 1 of 10 sensors in the one, none of 100 in the other.
+// Rooms are judged one by one: 1 of 10 sensors in the one, none of 100 in the other.
 TEST(WindowOperation, OneSunnyRoomIsEnough) {
   const Scene room = test::room_with_panes(2);
   const OperatedWindows windows = test::windows_of_panes(room, test::diffuse(room.bands, 0.0f));

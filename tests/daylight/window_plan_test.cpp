@@ -76,7 +76,7 @@ TEST(WindowPlan, TooManyComputationsAreRefused) {
   for (Eigen::Index h = 0; h < states.cols(); ++h) {
     for (Eigen::Index g = 0; g < groups; ++g) states(g, h) = (h + g) % groups < groups / 2;
   }
-  // Each hour is one combination, of which half are equal; they are more than the groups with the
+  // An hour is one combination, and half of these are equal; they are more than the groups with the
   // open state and the check.
   for (int h = 0; h < groups; ++h) states(h, groups + h) = 1 - states(h, groups + h);
   EXPECT_THROW(plan_computations(windows_of(groups), states), InputError);
