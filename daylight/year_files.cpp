@@ -6,6 +6,8 @@
 #include <bit>
 #include <string>
 
+#include "scene/io/comma_fields.h"
+
 namespace lightwell {
 namespace {
 
@@ -13,14 +15,6 @@ namespace {
 constexpr std::size_t header_bytes = 128;
 
 static_assert(std::endian::native == std::endian::little, "'<f4' in NumPy's header");
-
-// A text as a field of CSV (RFC 4180).
-std::string csv_text(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + '"';
-}
 
 }  // namespace
 
@@ -87,7 +81,7 @@ void write_hours(const std::filesystem::path& csv, const HourTable& table) {
   std::ostream& out = file.stream();
   fmt::print(out, "hour,month,day,standard_time,sun_altitude,sun_azimuth,sun_lux,dome_lux");
   for (const WindowGroup& group : table.windows.groups)
-    fmt::print(out, ",{}", csv_text(group.name));
+    fmt::print(out, ",{}", quoted_field(group.name));
   fmt::print(out, "\n");
   for (std::size_t h = 0; h < table.hours.size(); ++h) {
     const SkyHour& hour = table.hours[h];
@@ -98,7 +92,7 @@ void write_hours(const std::filesystem::path& csv, const HourTable& table) {
     for (std::size_t g = 0; g < table.windows.groups.size(); ++g) {
       const int state = table.states(static_cast<Eigen::Index>(g), static_cast<Eigen::Index>(h));
       const WindowState& named = table.windows.groups[g].states[static_cast<std::size_t>(state)];
-      fmt::print(out, ",{}", csv_text(named.name));
+      fmt::print(out, ",{}", quoted_field(named.name));
     }
     fmt::print(out, "\n");
   }
@@ -111,7 +105,7 @@ void write_glare(const std::filesystem::path& csv, std::span<const SkyHour> hour
   std::ostream& out = file.stream();
   fmt::print(out, "hour");
   for (const GlareOfYear& eye : eyes) {
-    fmt::print(out, ",{},{}", csv_text(eye.name + " lux"), csv_text(eye.name + " DGP"));
+    fmt::print(out, ",{},{}", quoted_field(eye.name + " lux"), quoted_field(eye.name + " DGP"));
   }
   fmt::print(out, "\n");
   for (std::size_t h = 0; h < hours.size(); ++h) {

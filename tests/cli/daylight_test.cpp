@@ -205,9 +205,9 @@ TEST_F(DaylightCommand, BlindsCloseByTheSun) {
   EXPECT_EQ(json["windows"][0]["states"][0]["occupied_hours"], 1);
   EXPECT_EQ(json["windows"][0]["states"][1]["occupied_hours"], 2);
   const std::string hours = text_of("hours.csv"), page = text_of("year.html");
-  EXPECT_NE(hours.find("dome_lux,skylight\n"), std::string::npos);
-  EXPECT_NE(hours.find(",blind\n"), std::string::npos);
-  EXPECT_TRUE(hours.ends_with(",open\n"));
+  EXPECT_NE(hours.find("dome_lux,\"skylight\"\n"), std::string::npos);
+  EXPECT_NE(hours.find(",\"blind\"\n"), std::string::npos);
+  EXPECT_TRUE(hours.ends_with(",\"open\"\n"));
   EXPECT_NE(page.find("IES LM-83-12"), std::string::npos);
   EXPECT_EQ(Json::parse(text_of("year.json"))["windows"], json["windows"]);
 }
@@ -227,7 +227,7 @@ TEST_F(DaylightCommand, GlareAndExposureAreReported) {
   std::istringstream lines(text_of("glare.csv"));
   std::string line;
   std::getline(lines, line);
-  EXPECT_EQ(line, "hour,visitor lux,visitor DGP");
+  EXPECT_EQ(line, "hour,\"visitor lux\",\"visitor DGP\"");
   int noons = 0, with_glare = 0;
   while (std::getline(lines, line)) {
     const std::vector<double> values = numbers_of(line);
