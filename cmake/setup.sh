@@ -12,6 +12,8 @@ build_packages=(
   libtomlplusplus-dev libassimp-dev libdraco-dev libmeshoptimizer-dev libpugixml-dev libmuparser-dev libjpeg-dev libopenexr-dev libpng-dev zlib1g-dev
   libcli11-dev nlohmann-json3-dev libgtest-dev
 )
+# What CPack needs besides to find the libraries that a Debian package depends on.
+deb_packages=(dpkg-dev file)
 # A virtual display and a software OpenGL, for the tests of the viewer.
 display_packages=(xvfb xauth libgl1-mesa-dri)
 # What checks the format of the sources: the version whose output is the format. Debian 13 has later ones only.
