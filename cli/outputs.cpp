@@ -69,7 +69,7 @@ void require_different(const std::vector<fs::path>& files) {
   std::vector<fs::path> seen;
   for (const fs::path& file : files) {
     if (file.empty()) continue;
-    const fs::path whole = fs::weakly_canonical(file);
+    const fs::path whole = fs::weakly_canonical(fs::absolute(file));
     if (std::ranges::count(seen, whole) > 0) {
       refuse(file, "the command writes another result into the same file; name another output");
     }
