@@ -1,52 +1,43 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <memory>
 #include <sstream>
+#include <tuple>
+#include <utility>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/daylight_year.h"
+#include "scene/io/dashed_pair.h"
 
 namespace lightwell {
 namespace {
 
 // Reads "8-18".
 Occupancy parse_occupancy(const std::string& text) {
-  Occupancy hours;
-  const char* const last = text.data() + text.size();
-  const auto [dash, bad_from] = std::from_chars(text.data(), last, hours.from);
-  const bool has_dash = bad_from == std::errc() && dash != last && *dash == '-';
-  const auto [end, bad_to] = std::from_chars(has_dash ? dash + 1 : last, last, hours.to);
-  if (!has_dash || bad_to != std::errc() || end != last || hours.from < 0 ||
-      hours.from >= hours.to || hours.to > 24) {
+  const auto hours = dashed_pair(text);
+  if (!hours || hours->first < 0 || hours->first >= hours->second || hours->second > hours_a_day) {
     throw CLI::ValidationError(
         "--occupied",
         fmt::format("'{}' is no span of hours; write two from 0 to 24, such as 8-18", text));
   }
-  return hours;
+  return {.from = hours->first, .to = hours->second};
 }
 
 // Reads "03-21".
 void parse_sun_day(const std::string& text, ExposureDay& day) {
-  std::istringstream words(text);
-  char dash = ' ';
-  ExposureDay read = day;
-  const bool is_date = (words >> read.month >> dash >> read.day) && dash == '-' && words.eof();
-  if (!is_date || number_of({.month = read.month, .day = read.day}, false) < 0) {
+  const auto date = dashed_pair(text);
+  if (!date || number_of({.month = date->first, .day = date->second}, false) < 0) {
     throw CLI::ValidationError(
         "--sun-day", fmt::format("'{}' is no day; write month and day, such as 03-21", text));
   }
-  const auto is_before = [&](int month, int last) {
-    return read.month < month || (read.month == month && read.day <= last);
-  };
-  if (is_before(1, 31) || !is_before(3, 21)) {
+  if (*date < std::pair(2, 1) || *date > std::pair(3, 21)) {
     throw CLI::ValidationError(
         "--sun-day", fmt::format("'{}' is none of the days of EN 17037; write one from 02-01 to "
                                  "03-21",
                                  text));
   }
-  day = read;
+  std::tie(day.month, day.day) = *date;
 }
 
 // Reads "2024-11-21 15:30", with a T or a space before the time of day.

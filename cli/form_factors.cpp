@@ -7,6 +7,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/facet_geometry.h"
 #include "cli/interrupt.h"
 #include "cli/memory_size.h"
 #include "cli/outputs.h"
@@ -181,21 +182,16 @@ std::string shortfall(const FormFactorArguments& arguments, const Computed& comp
 int form_factors(const FormFactorArguments& arguments, Console& console) {
   Report report(console.options());
   Stopwatch watch;
-  const NumberedScene numbered = [&] {
-    const InterruptEndsAtOnce at_once;
-    return read_numbered_scene(arguments.scene, allowed_references(console.options()));
-  }();
-  for (const auto& file : numbered.scene.files) note_input(file);
-  refuse_losses(numbered.scene, console.options());
+  const FacetGeometry geometry = read_facet_geometry(arguments.scene, console.options());
+  const NumberedScene& numbered = geometry.numbered;
   if (arguments.show_row > 0) require_writable(arguments.row_file());
   if (!arguments.view3d.empty()) require_writable(arguments.view3d);
   require_writable(arguments.output);
   require_writable(arguments.json_file());
-  const FacetCheck check = check_facets(numbered.scene);
-  std::vector<std::string> notes = findings(numbered, check);
+  std::vector<std::string> notes = geometry.notes;
   report.add_phase("read_scene", watch.lap());
 
-  Computed computed = compute(arguments, numbered, check, {console, report});
+  Computed computed = compute(arguments, numbered, geometry.check, {console, report});
   if (computed.factors.entry_count() == 0) {
     notes.push_back(
         "No facet sees another; the front of a facet is where its corners run counter-clockwise.");
@@ -242,12 +238,7 @@ void add_how(CLI::App& command, FormFactorArguments& arguments) {
       ->check(one_of("form-factor method", form_factor_method_names()))
       ->group(group);
   add_hemicube_resolution(command, arguments.hemicube_resolution)->group(group);
-  command
-      .add_option("--target-error", arguments.target_error,
-                  "target standard error of every factor (default 1e-3)")
-      ->type_name("E")
-      ->check(positive())
-      ->group(group);
+  add_target_error(command, arguments.target_error, group);
   add_memory(command, arguments.memory)->group(group);
   command
       .add_option("--max-patch-size", arguments.max_patch_size,
@@ -268,9 +259,7 @@ Action add_form_factors(CLI::App& command) {
   const auto arguments = std::make_shared<FormFactorArguments>();
   command.description(
       "View factors between the facets of a file, as a sparse matrix; materials do not matter.");
-  command.add_option("scene", arguments->scene, fmt::format("geometry: {}", scene_extensions))
-      ->required()
-      ->type_name("SCENE");
+  add_facet_geometry(command, arguments->scene);
   command
       .add_option("-o,--output", arguments->output,
                   "the matrix, Matrix Market .mtx; areas and names go into a .json beside it")

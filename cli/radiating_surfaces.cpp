@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 #include <array>
@@ -15,6 +14,7 @@
 #include "cli/arguments.h"
 #include "scene/errors.h"
 #include "scene/io/comma_fields.h"
+#include "scene/io/matches_glob.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
 
@@ -117,17 +117,6 @@ std::vector<SurfaceLine> read_lines(const TextFile& file) {
   return lines;
 }
 
-// True for equal names, and for a name that the pattern fits; brackets and backslashes are letters.
-bool describes(const std::string& pattern, const std::string& name) {
-  if (pattern == name) return true;
-  std::string escaped;
-  for (const char c : pattern) {
-    if (c == '[' || c == '\\') escaped += '\\';
-    escaped += c;
-  }
-  return fnmatch(escaped.c_str(), name.c_str(), 0) == 0;
-}
-
 // The line that describes each row.
 std::vector<const SurfaceLine*> lines_of_rows(const TextFile& file,
                                               const std::vector<SurfaceLine>& lines,
@@ -137,7 +126,7 @@ std::vector<const SurfaceLine*> lines_of_rows(const TextFile& file,
   std::vector<std::string> left_out;
   for (const std::string& name : rows.name) {
     const auto found = std::find_if(lines.rbegin(), lines.rend(), [&](const SurfaceLine& line) {
-      return describes(line.pattern, name);
+      return matches_glob(line.pattern, name);
     });
     if (found == lines.rend()) {
       left_out.push_back(name);

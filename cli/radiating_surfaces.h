@@ -12,7 +12,7 @@ namespace lightwell {
 
 /// The surface of each row, as a CSV file of surfaces describes them. Its first line names columns:
 ///
-/// - `surface`: a name, in which * and ? stand for any letters. Later lines go before earlier ones.
+/// - `surface`: a name or a pattern, see matches_glob(). Later lines go before earlier ones.
 /// - `emittance`, 0 to 1; where it is empty or missing, that of the scene file, else 1.
 /// - `kelvin`, `celsius` or `heat` (W, net, away from the surface): one of them in each line. Heat
 ///   is spread over all rows of its line by area.

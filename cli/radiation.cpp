@@ -9,6 +9,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/facet_geometry.h"
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/radiating_surfaces.h"
@@ -101,8 +102,8 @@ std::string facts_text(const Json& facts) {
                             facts["to_surroundings"].get<double>());
 }
 
-Radiating exchange_of(const RadiationArguments& arguments, const NumberedScene& numbered,
-                      const FacetCheck& check, const Feedback& feedback) {
+Radiating exchange_of(const RadiationArguments& arguments, const FacetGeometry& geometry,
+                      const Feedback& feedback) {
   const auto& [console, report] = feedback;
   Stopwatch watch;
   FacetViewFactorOptions options{.target_error = arguments.target_error,
@@ -112,16 +113,16 @@ Radiating exchange_of(const RadiationArguments& arguments, const NumberedScene& 
   // Mistakes in the table are found before the long work.
   options.rows_found = [&](const ViewFactorRows& rows) {
     if (rows.count() > most_radiating_surfaces) {
-      throw InputError(
-          fmt::format("{}: {} facets are more than the {} whose exchange fits into "
-                      "memory; merge facets of one temperature",
-                      numbered.scene.file.string(), rows.count(), most_radiating_surfaces));
+      throw InputError(fmt::format(
+          "{}: {} facets are more than the {} whose exchange fits into "
+          "memory; merge facets of one temperature",
+          geometry.numbered.scene.file.string(), rows.count(), most_radiating_surfaces));
     }
     static_cast<void>(read_radiating_surfaces(arguments.surfaces, rows,
                                               std::vector<double>(rows.name.size(), 1.0)));
   };
   options.phase_done = [&](const char* phase) { report.add_phase(phase, watch.lap()); };
-  Radiating of{.found = facet_view_factors(numbered, check, options)};
+  Radiating of{.found = facet_view_factors(geometry.numbered, geometry.check, options)};
   console.finish_phase();
   stop_if_interrupted();
   of.areas = exchange_areas(of.found.factors);
@@ -151,20 +152,14 @@ void write_results(const RadiationArguments& arguments, const Radiating& of, Rep
 
 int radiation(const RadiationArguments& arguments, Console& console) {
   Report report(console.options());
-  const NumberedScene numbered = [&] {
-    const InterruptEndsAtOnce at_once;
-    return read_numbered_scene(arguments.scene, allowed_references(console.options()));
-  }();
-  for (const auto& file : numbered.scene.files) note_input(file);
+  const FacetGeometry geometry = read_facet_geometry(arguments.scene, console.options());
   note_input(arguments.surfaces);
-  refuse_losses(numbered.scene, console.options());
   require_different({arguments.output, arguments.gebhart, arguments.script_f});
   for (const std::string& file : {arguments.output, arguments.gebhart, arguments.script_f}) {
     if (!file.empty()) require_writable(file);
   }
-  const FacetCheck check = check_facets(numbered.scene);
-  for (const std::string& note : findings(numbered, check)) console.say("note: " + note);
-  const Radiating of = exchange_of(arguments, numbered, check, {console, report});
+  for (const std::string& note : geometry.notes) console.say("note: " + note);
+  const Radiating of = exchange_of(arguments, geometry, {console, report});
   Json facts{{"rows", of.areas.count()},
              {"surfaces", surface_facts(of)},
              {"to_surroundings", of.exchange.to_surroundings},
@@ -196,9 +191,7 @@ Action add_radiation(CLI::App& command) {
   const auto arguments = std::make_shared<RadiationArguments>();
   command.description(
       "Net radiant heat of gray, diffuse surfaces from their temperatures and emittances.");
-  command.add_option("scene", arguments->scene, fmt::format("geometry: {}", scene_extensions))
-      ->required()
-      ->type_name("SCENE");
+  add_facet_geometry(command, arguments->scene);
   command
       .add_option("--surfaces", arguments->surfaces,
                   "CSV: surface (a name or a pattern), emittance, and kelvin, celsius or heat (W)")
@@ -224,11 +217,7 @@ Action add_radiation(CLI::App& command) {
           },
           std::string{}));
   add_factors(command, *arguments);
-  command
-      .add_option("--target-error", arguments->target_error,
-                  "target standard error of every view factor (default 1e-3)")
-      ->type_name("E")
-      ->check(positive());
+  add_target_error(command, arguments->target_error, "Options");
   command.add_flag("--two-sided", arguments->two_sided, "both sides of facets radiate");
   command.footer("Example: lightwell radiation room.stl --surfaces temperatures.csv -o heats.csv");
   return [arguments](Console& console) { return radiation(*arguments, console); };

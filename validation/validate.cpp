@@ -12,6 +12,7 @@
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "validation/cases/case_lists.h"
+#include "validation/cases/reference_data.h"
 
 namespace lightwell {
 namespace {
@@ -53,6 +54,8 @@ CaseResult run_case(ValidationCase about, const Progress& progress) {
     if (result.values.empty()) result.failure = "the case computed nothing";
   } catch (const Interrupted&) {
     result.verdict = Verdict::stopped;
+  } catch (const NoFolder&) {
+    throw;
   } catch (const std::exception& error) {
     result.verdict = Verdict::failed;
     result.failure = error.what();

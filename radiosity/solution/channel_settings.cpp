@@ -1,11 +1,11 @@
 #include "radiosity/solution/channel_settings.h"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 
 #include "scene/errors.h"
+#include "scene/io/matches_glob.h"
 
 namespace lightwell {
 namespace {
@@ -18,7 +18,7 @@ std::vector<std::size_t> channels_of(const RadiositySolution& solution,
   if (named != channels.end()) return {static_cast<std::size_t>(named - channels.begin())};
   std::vector<std::size_t> matching;
   for (std::size_t c = 0; c < channels.size(); ++c) {
-    if (fnmatch(setting.channels.c_str(), channels[c].name.c_str(), 0) == 0) matching.push_back(c);
+    if (matches_glob(setting.channels, channels[c].name)) matching.push_back(c);
   }
   if (matching.empty()) find_channel(solution, setting.channels);  // throws
   return matching;

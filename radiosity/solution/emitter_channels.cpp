@@ -2,11 +2,11 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <fnmatch.h>
 
 #include <algorithm>
 
 #include "scene/errors.h"
+#include "scene/io/matches_glob.h"
 #include "scene/io/nearest_name.h"
 
 namespace lightwell {
@@ -36,8 +36,8 @@ std::vector<Light> lights_of(const Scene& scene) {
 }
 
 bool matches(const std::string& glob, const Light& light) {
-  return fnmatch(glob.c_str(), light.name.c_str(), 0) == 0 ||
-         (!light.material.empty() && fnmatch(glob.c_str(), light.material.c_str(), 0) == 0);
+  return matches_glob(glob, light.name) ||
+         (!light.material.empty() && matches_glob(glob, light.material));
 }
 
 int channel_of(std::vector<std::string>& names, const std::string& name) {

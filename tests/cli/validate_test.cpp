@@ -1,9 +1,12 @@
 // The command that compares the program with known answers.
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <thread>
 
 #include "tests/cli/program.h"
@@ -66,6 +69,17 @@ TEST_F(Validate, FilesThatCannotBeWrittenAreRefusedBeforeTheWork) {
     EXPECT_TRUE(says(ended.err, "no-such-folder")) << ended.err;
     EXPECT_EQ(ended.out, "");
   }
+}
+
+// Cases of files do not fail where the machine cannot hold the files.
+TEST_F(Validate, AMachineWithoutATemporaryFolderIsNoFailedCase) {
+  const std::string err = (folder / "err").string();
+  const std::string command = "TMPDIR=/no-such-folder '" LIGHTWELL_PROGRAM
+                              "' validate --only ies-spot > '" +
+                              err + "' 2>&1";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 1);
+  EXPECT_TRUE(says(content_of(err), "TMPDIR"));
 }
 
 // All cases take a minute; a run that is told to stop after its first line ends with what is done.

@@ -40,6 +40,7 @@ struct ValidationCase {
   std::string reason{};  ///< of the tolerance
   std::string note{};    ///< parts of the case that are left out, and why
   std::vector<PublishedValue> published{};
+  bool has_plot = false;  ///< pages show all of its values beside each other
   /// Computes all values. Throws Interrupted if `progress` says stop. Empty: the case cannot be
   /// run, and `note` has the reason.
   std::function<ComparedValues(const Progress& progress)> compute{};

@@ -193,6 +193,7 @@ std::vector<ValidationCase> cie171_daylight_cases() {
          .reason = "0.8 % of the value: five of the standard errors of 0.16 % that the "
                    "rays of a point are asked to reach",
          .note = daylight_note(c),
+         .has_plot = true,
          .compute = [c](const Progress& progress) { return daylight_of(c, progress); }});
   }
   return cases;

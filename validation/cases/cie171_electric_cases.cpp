@@ -366,7 +366,8 @@ std::vector<ValidationCase> cie171_electric_cases() {
                        .source = c.value("formula", std::string("recomputed from the geometry")),
                        .reason = kind.reason,
                        .note = kind.note,
-                       .published = kind.published};
+                       .published = kind.published,
+                       .has_plot = true};
     one.compute = [c, compute = kind.compute](const Progress& progress) {
       return compute(c, progress);
     };

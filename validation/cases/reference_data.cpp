@@ -28,13 +28,13 @@ EmbeddedFile::EmbeddedFile(std::string_view name, std::string_view text) {
   std::error_code failure;
   const std::filesystem::path parent = std::filesystem::temp_directory_path(failure);
   if (failure) {
-    throw std::runtime_error(
+    throw NoFolder(
         "there is no folder for the files of the cases; set TMPDIR to a folder that can be "
         "written");
   }
   std::string made = (parent / "lightwell-validate-XXXXXX").string();
   if (mkdtemp(made.data()) == nullptr) {
-    throw std::runtime_error(fmt::format(
+    throw NoFolder(fmt::format(
         "{}: no folder can be made here for the files of the cases; set TMPDIR to a folder that "
         "can be written",
         parent.string()));
@@ -47,8 +47,7 @@ EmbeddedFile::EmbeddedFile(std::string_view name, std::string_view text) {
   if (!out) {
     std::error_code ignored;
     std::filesystem::remove_all(folder_, ignored);
-    throw std::runtime_error(
-        fmt::format("{}: could not be written; is the disk full?", file_.string()));
+    throw NoFolder(fmt::format("{}: could not be written; is the disk full?", file_.string()));
   }
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
@@ -30,12 +31,17 @@ ReferenceValue reference_cases(std::string_view json);
 Eigen::Vector3d reference_point(const ReferenceValue& value);
 std::vector<Eigen::Vector3d> reference_polygon(const ReferenceValue& value);
 
+/// The failure of this machine, and of no case, to hold a file.
+struct NoFolder : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
 /// Embedded text as a file of its own, for readers that take a path. The destructor removes the
 /// file.
 class EmbeddedFile {
  public:
   /// Writes `text` to a new file of that name in a new folder for temporary files. Throws
-  /// std::runtime_error that names the folder.
+  /// NoFolder that names the folder.
   EmbeddedFile(std::string_view name, std::string_view text);
   ~EmbeddedFile();
   EmbeddedFile(const EmbeddedFile&) = delete;

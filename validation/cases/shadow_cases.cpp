@@ -6,6 +6,7 @@
 
 #include "mesh/discontinuity/critical_lines.h"
 #include "mesh/geometry/cross.h"
+#include "mesh/geometry/uncovered_length.h"
 #include "validation/cases/case_lists.h"
 #include "validation/cases/case_scenes.h"
 #include "validation/cases/reference_data.h"
@@ -126,13 +127,7 @@ double length_without(const FlatLine& line, const std::vector<FlatLine>& cover, 
     const double s = d.dot(other.a - line.a) / length, t = d.dot(other.b - line.a) / length;
     parts.emplace_back(std::min(s, t), std::max(s, t));
   }
-  std::sort(parts.begin(), parts.end());
-  double reached = 0.0, missing = 0.0;
-  for (const auto& [from, to] : parts) {
-    if (from > reached) missing += std::min(from, length) - reached;
-    reached = std::max(reached, std::min(to, length));
-  }
-  return missing + std::max(0.0, length - reached);
+  return uncovered_length(length, std::move(parts));
 }
 
 // The outlines of umbra and penumbra are critical lines.
@@ -145,7 +140,7 @@ void add_outlines(const ReferenceValue& expected, const ShadowScene& s, Compared
   }
   const double tolerance = 1e-9 * s.size;
   const auto add = [&](const char* name, const ReferenceValue& polygon) {
-    if (polygon.empty()) return;  // a light larger than its occluder has no umbra
+    if (polygon.empty()) return;  // the light leaves no umbra
     double missing = 0.0;
     for (std::size_t i = 0; i < polygon.size(); ++i) {
       const ReferenceValue &a = polygon.at(i), &b = polygon.at((i + 1) % polygon.size());
@@ -201,6 +196,7 @@ std::vector<ValidationCase> shadow_cases() {
          .source = c.at("formula"),
          .reason = std::string("2e-6 of the unoccluded value: floats in exact visibility") +
                    (has_lines ? "; 1e-6 of the scene's size of missing outline" : ""),
+         .has_plot = true,
          .compute = [c](const Progress&) { return shadow_of(c); }});
   }
   return cases;

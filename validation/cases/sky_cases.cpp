@@ -164,12 +164,14 @@ std::vector<ValidationCase> sky_cases() {
                 "sky of Moon & Spencer",
        .source = "quadrature with 13 digits; 7 pi / 9 for the overcast sky",
        .reason = "3e-5 of the value: the program states 1e-5, and values are floats",
+       .has_plot = true,
        .compute = [first_sky](const Progress&) { return horizontal_light(first_sky); }});
   cases.push_back({.id = "sky-overcast-gradation",
                    .group = "sky components",
                    .title = "luminance of the overcast sky over that of the zenith",
                    .source = "(1 + 2 sin e) / 3, Moon & Spencer 1942",
                    .reason = "1e-6: floats",
+                   .has_plot = true,
                    .compute = [](const Progress&) { return zenith_ratio(); }});
   for (const OpeningCase& opening : opening_cases) {
     cases.push_back({.id = opening.id,
@@ -182,6 +184,7 @@ std::vector<ValidationCase> sky_cases() {
                                    : "closed form of int L sin dw over a level rectangle",
                      .reason = "0.5 % of the value: five of the standard errors of 0.1 % that the "
                                "rays of a point are asked to reach",
+                     .has_plot = true,
                      .compute = [opening](const Progress& progress) {
                        return light_of_opening(opening, progress);
                      }});

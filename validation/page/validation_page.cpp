@@ -73,9 +73,7 @@ std::string group_part(const ValidationRun& run, const std::string& group) {
     if (one.about.group != group) continue;
     rows += page_row(one);
     sources += sources_of(one);
-    const bool has_plot = one.about.group == "CIE 171:2006" || one.about.group == "shadows" ||
-                          one.about.group == "sky components";
-    const std::string plot = has_plot ? values_plot(one) : "";
+    const std::string plot = one.about.has_plot ? values_plot(one) : "";
     if (plot.empty()) continue;
     plots += fmt::format(
         "<figure>{}<figcaption><code>{}</code>: {}{}. Lines: expected; dots: computed. Below: "

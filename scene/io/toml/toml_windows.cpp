@@ -1,15 +1,15 @@
 #include "scene/io/toml/toml_windows.h"
 
 #include <fmt/format.h>
-#include <fnmatch.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <tuple>
 
 #include "scene/errors.h"
 #include "scene/io/comma_fields.h"
+#include "scene/io/dashed_pair.h"
+#include "scene/io/matches_glob.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
 #include "scene/io/toml/toml_document.h"
@@ -31,17 +31,6 @@ int state_of_name(const TomlValue& value, const WindowGroup& group) {
   }
   value.fail(fmt::format("is '{}', and the group has no such state; it has {}.{}", name,
                          quoted_list(known), did_you_mean(name, known)));
-}
-
-// Two whole numbers with a dash between, such as 05-31 and 8-18; empty if `text` is something else.
-std::optional<std::pair<int, int>> dashed_pair(const std::string& text) {
-  std::pair<int, int> pair;
-  const char* const last = text.data() + text.size();
-  const auto [dash, bad_first] = std::from_chars(text.data(), last, pair.first);
-  if (bad_first != std::errc() || dash == last || *dash != '-') return std::nullopt;
-  const auto [end, bad_second] = std::from_chars(dash + 1, last, pair.second);
-  if (bad_second != std::errc() || end != last) return std::nullopt;
-  return pair;
 }
 
 void read_window_day(const TomlTable& span, const char* key, int& month, int& day) {
@@ -212,8 +201,7 @@ std::vector<int> matching_surfaces(const TomlValue& patterns, const Scene& scene
       const Surface& surface = scene.surfaces[s];
       const std::string& material =
           scene.materials[static_cast<std::size_t>(surface.material)].name;
-      if (fnmatch(glob.c_str(), surface.name.c_str(), 0) == 0 ||
-          fnmatch(glob.c_str(), material.c_str(), 0) == 0) {
+      if (matches_glob(glob, surface.name) || matches_glob(glob, material)) {
         matches_any = true;
         taken[s] = 1;
       }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "mesh/geometry/cross.h"
+#include "mesh/geometry/uncovered_length.h"
 #include "tests/mesh/mesh_scenes.h"
 
 namespace lightwell::critical_lines_test {
@@ -54,13 +55,7 @@ double uncovered(const PlaneLine& line, const std::vector<PlaneLine>& cover, boo
     const double s = d.dot(c.a - line.a) / length, t = d.dot(c.b - line.a) / length;
     parts.emplace_back(std::min(s, t), std::max(s, t));
   }
-  std::sort(parts.begin(), parts.end());
-  double reached = 0.0, missing = 0.0;
-  for (const auto& [from, to] : parts) {
-    if (from > reached) missing += std::min(from, length) - reached;
-    reached = std::max(reached, std::min(to, length));
-  }
-  return missing + std::max(0.0, length - reached);
+  return uncovered_length(length, std::move(parts));
 }
 
 // Expects that both lists hold the same lines, however divided into pieces.
