@@ -26,7 +26,8 @@ struct LightingArguments {
   std::vector<std::string> outputs, observers;
   GridArguments grids;
   std::vector<NamedNumber> watts;
-  double maintenance_factor = 1.0;
+  std::optional<double> maintenance_factor;
+  std::string areas, activity, activities;
   int rays = 1024;
   std::optional<LuxRange> range;
   std::string picture;  // camera; empty: the first; no_picture: none
@@ -46,6 +47,9 @@ ReportRequest request_of(const LightingArguments& arguments, const Scene& scene)
                         .observers = arguments.observers,
                         .watts = arguments.watts,
                         .maintenance_factor = arguments.maintenance_factor,
+                        .areas = arguments.areas,
+                        .activity = arguments.activity,
+                        .activities = arguments.activities,
                         .rays = arguments.rays,
                         .has_picture = needs_picture(arguments)};
   if (arguments.picture != no_picture) request.camera = arguments.picture;
@@ -104,7 +108,8 @@ Action add_report(CLI::App& command) {
   arguments->grids.add_to(command);
   command
       .add_option("--maintenance", arguments->maintenance_factor,
-                  "maintenance factor of electric light, above 0 up to 1 (default 1)")
+                  "maintenance factor of electric light, above 0 up to 1 (default: the scene file's, or "
+                  "1)")
       ->type_name("FACTOR")
       ->check(CLI::Range(1e-6, 1.0).description(""));  // no ":FLOAT in ..." in --help
   command
@@ -113,6 +118,18 @@ Action add_report(CLI::App& command) {
       ->type_name("CAMERA")
       ->type_size(1)
       ->allow_extra_args(false);
+  command
+      .add_option("--activity", arguments->activity,
+                  "hold all working planes to EN 12464-1 for this activity: writing, corridor, ...")
+      ->type_name("KEY");
+  command
+      .add_option("--areas", arguments->areas,
+                  "grids and areas of EN 12464-1 and EN 1838, in place of the scene file's")
+      ->type_name("FILE.toml");
+  command
+      .add_option("--activities", arguments->activities,
+                  "table of activities in place of the program's")
+      ->type_name("FILE.toml");
   command
       .add_option_function<std::vector<std::string>>(
           "--watts",

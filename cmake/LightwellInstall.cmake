@@ -1,4 +1,4 @@
-# find_package(lightwell): targets lightwell::scene, ::mesh, ::radiosity, ::raytrace, ::daylight, ::export, ::validation and, if built, ::viewer.
+# find_package(lightwell): targets lightwell::scene, ::mesh, ::radiosity, ::raytrace, ::standards, ::daylight, ::export, ::validation and, if built, ::viewer.
 include(CMakePackageConfigHelpers)
 set(lightwell_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lightwell)
 

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "mesh/patches/mesh_bounds.h"
+#include "raytrace/readings/cylinder.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 
@@ -97,62 +99,98 @@ double greatest_grid_spacing(double length) {
   return std::min(most, 0.2 * std::pow(5.0, std::log10(length)));
 }
 
-LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
-                 const LuxGridOptions& options) {
-  const Surface& named = scene.surfaces[static_cast<std::size_t>(surface)];
-  const auto* mesh = std::get_if<PolygonMesh>(&named.shape);
-  if (!mesh || mesh->facets.empty()) {
-    throw InputError(fmt::format(
-        "surface '{}' is round; over it there is no plane grid; name a plane surface", named.name));
+namespace {
+
+/// The plane that a grid covers, and its outline in the grid's coordinates from `plane.point`.
+struct GridPlane {
+  MeshPlane plane{};
+  FlatOutline outline{};
+  Eigen::Vector2d low{}, high{};  ///< corners of the rectangle of the grid, margin left out
+};
+
+// Turns the axes of the plan of a wall, so that the plan stands upright.
+void stand_upright(const Eigen::Vector3d& up, LuxGrid& grid) {
+  constexpr double level = 0.1;  // sine of the slope of a plane that counts as level
+  if (std::max(std::abs(grid.u.dot(up)), std::abs(grid.v.dot(up))) <= level) return;
+  if (std::abs(grid.u.dot(up)) > std::abs(grid.v.dot(up))) {
+    grid.u = std::exchange(grid.v, Eigen::Vector3d(grid.u));
+    grid.u = -grid.u;
   }
-  const MeshPlane plane = largest(planes_of(*mesh, scene_bounds(scene).diagonal()), up);
-  const std::vector<Edge> edges = outline_of(plane);
-  const auto place = [&](int v) { return mesh->vertices[static_cast<std::size_t>(v)]; };
-  LuxGrid grid{.name = named.name, .options = options, .area = plane.area};
+  if (grid.v.dot(up) < 0.0) {
+    grid.u = -grid.u;
+    grid.v = -grid.v;
+  }
+}
+
+// Sets the axes of a grid over the edges of an outline: u follows the longest edge.
+void set_axes(const PolygonMesh& mesh, const std::vector<Edge>& edges, const MeshPlane& plane,
+              const Eigen::Vector3d& up, LuxGrid& grid) {
   double longest = 0.0;
   for (const auto& [a, b] : edges) {
-    const Eigen::Vector3d along = place(b) - place(a);
+    const Eigen::Vector3d along =
+        mesh.vertices[static_cast<std::size_t>(b)] - mesh.vertices[static_cast<std::size_t>(a)];
     // The first of equally long edges is kept, in spite of rounding.
     if (along.norm() <= longest * (1.0 + 1e-9)) continue;
     longest = along.norm();
     grid.u = along.normalized();
   }
   grid.v = plane.normal.cross(grid.u);
-  // Plans of walls stand upright.
-  constexpr double level = 0.1;  // sine of the slope of a plane that counts as level
-  if (std::max(std::abs(grid.u.dot(up)), std::abs(grid.v.dot(up))) > level) {
-    if (std::abs(grid.u.dot(up)) > std::abs(grid.v.dot(up))) {
-      grid.u = std::exchange(grid.v, Eigen::Vector3d(grid.u));
-      grid.u = -grid.u;
-    }
-    if (grid.v.dot(up) < 0.0) {
-      grid.u = -grid.u;
-      grid.v = -grid.v;
-    }
-  }
-  FlatOutline outline;
+  stand_upright(up, grid);
+}
+
+// Cuts the rectangle of the grid down to that of a box.
+void keep_part(const Eigen::AlignedBox3d& part, const LuxGrid& grid, GridPlane& found) {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Eigen::Vector3d p =
+        part.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)) - found.plane.point;
+    const Eigen::Vector2d at(grid.u.dot(p), grid.v.dot(p));
+    low = low.cwiseMin(at);
+    high = high.cwiseMax(at);
+  }
+  found.low = found.low.cwiseMax(low);
+  found.high = found.high.cwiseMin(high);
+}
+
+// Finds the plane and the rectangle of a grid over a surface, and sets its axes.
+GridPlane plane_of_grid(const Scene& scene, const PolygonMesh& mesh, const Eigen::Vector3d& up,
+                        LuxGrid& grid) {
+  GridPlane found{.plane = largest(planes_of(mesh, scene_bounds(scene).diagonal()), up)};
+  MeshPlane& plane = found.plane;
+  const std::vector<Edge> edges = outline_of(plane);
+  if (grid.options.towards && plane.normal.dot(*grid.options.towards - plane.point) < 0.0) {
+    plane.normal = -plane.normal;
+  }
+  set_axes(mesh, edges, plane, up, grid);
+  found.low.setConstant(std::numeric_limits<double>::infinity());
+  found.high = -found.low;
   const auto flat = [&](int v) {
-    const Eigen::Vector3d p = place(v) - plane.point;
+    const Eigen::Vector3d p = mesh.vertices[static_cast<std::size_t>(v)] - plane.point;
     return Eigen::Vector2d(grid.u.dot(p), grid.v.dot(p));
   };
   for (const auto& [a, b] : edges) {
-    outline.edges.emplace_back(flat(a), flat(b));
-    low = low.cwiseMin(flat(a));
-    high = high.cwiseMax(flat(a));
+    found.outline.edges.emplace_back(flat(a), flat(b));
+    found.low = found.low.cwiseMin(flat(a));
+    found.high = found.high.cwiseMax(flat(a));
   }
-  low.array() += options.margin;
-  high.array() -= options.margin;
-  const Eigen::Vector2d size = high - low;
-  if (!(size.minCoeff() > 0.0)) {
-    throw InputError(
-        fmt::format("nothing is left of surface '{}' within a margin of {:g} m; give a smaller one",
-                    named.name, options.margin));
+  found.low.array() += grid.options.margin;
+  found.high.array() -= grid.options.margin;
+  if (grid.options.part) keep_part(*grid.options.part, grid, found);
+  if (!((found.high - found.low).minCoeff() > 0.0)) {
+    throw InputError(fmt::format(
+        "nothing is left of surface '{}' within a margin of {:g} m{}", grid.name,
+        grid.options.margin,
+        grid.options.part ? " and the part that is asked for; check both" : "; give a smaller one"));
   }
+  return found;
+}
+
+// Divides the rectangle of a grid into cells.
+void set_cells(const Eigen::Vector2d& size, LuxGrid& grid) {
   const double longer = size.maxCoeff(), shorter = size.minCoeff();
-  const double step = options.spacing > 0.0
-                          ? options.spacing
+  const double step = grid.options.spacing > 0.0
+                          ? grid.options.spacing
                           : greatest_grid_spacing(longer > 2.0 * shorter ? shorter : longer);
   grid.options.spacing = step;
   const auto count = [&](double length) {
@@ -162,7 +200,7 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
       throw InputError(
           fmt::format("a spacing of {:g} m is too fine for surface '{}', which is {:.4g} m long: "
                       "a grid has at most {} points a side",
-                      step, named.name, longer, most));
+                      step, grid.name, longer, most));
     }
     return std::max(1, static_cast<int>(cells));
   };
@@ -170,6 +208,23 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
   grid.rows = count(size.y());
   grid.step_u = size.x() / grid.columns;
   grid.step_v = size.y() / grid.rows;
+}
+
+}  // namespace
+
+LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
+                 const LuxGridOptions& options) {
+  const Surface& named = scene.surfaces[static_cast<std::size_t>(surface)];
+  const auto* mesh = std::get_if<PolygonMesh>(&named.shape);
+  if (!mesh || mesh->facets.empty()) {
+    throw InputError(fmt::format(
+        "surface '{}' is round; over it there is no plane grid; name a plane surface", named.name));
+  }
+  LuxGrid grid{.name = named.name, .surface = surface, .options = options};
+  const auto [plane, outline, low, high] = plane_of_grid(scene, *mesh, up, grid);
+  const Eigen::Vector2d size = high - low;
+  grid.area = options.part ? size.prod() : plane.area;
+  set_cells(size, grid);
   grid.corner = plane.point + low.x() * grid.u + low.y() * grid.v + options.height * plane.normal;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
@@ -185,6 +240,49 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
         "no point of the grid lies on surface '{}'; give a smaller margin or spacing", named.name));
   }
   return grid;
+}
+
+namespace {
+
+// Returns the grid with those of its points alone for which `stays` is true.
+LuxGrid with_points(const LuxGrid& grid, const std::function<bool(const Probe&)>& stays) {
+  LuxGrid some = grid;
+  some.cell.clear();
+  some.points.clear();
+  for (std::size_t i = 0; i < grid.points.size(); ++i) {
+    if (!stays(grid.points[i])) continue;
+    some.cell.push_back(grid.cell[i]);
+    some.points.push_back(grid.points[i]);
+  }
+  return some;
+}
+
+}  // namespace
+
+LuxGrid without_points_over(const LuxGrid& other, LuxGrid grid) {
+  return with_points(grid, [&](const Probe& point) {
+    const Eigen::Vector3d p = point.position - other.corner;
+    const double u = p.dot(other.u), v = p.dot(other.v);
+    return u < 0.0 || v < 0.0 || u > other.columns * other.step_u || v > other.rows * other.step_v;
+  });
+}
+
+void measure_as(GridQuantity quantity, const Eigen::Vector3d& up, const Eigen::Vector3d& facing,
+                LuxGrid& grid) {
+  grid.quantity = quantity;
+  grid.upright = up;
+  if (quantity == GridQuantity::planar || quantity == GridQuantity::cylindrical) return;
+  const Eigen::Vector3d level = facing - facing.dot(up) * up;
+  constexpr double upright = 1e-3;  // sine of the least slope that still says where to look
+  if (!(level.norm() > upright)) {
+    throw InputError(fmt::format(
+        "grid '{}' measures upright planes, and faces straight up or down; give 'facing' a level "
+        "direction, such as [1, 0, 0]",
+        grid.name));
+  }
+  grid.facing = level.normalized();
+  if (quantity != GridQuantity::vertical) return;
+  for (Probe& point : grid.points) point.normal = grid.facing;
 }
 
 LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
@@ -218,14 +316,7 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
     return std::ranges::any_of(
         places, [&](const Eigen::Vector3d& place) { return is_inside(place, point.normal); });
   };
-  LuxGrid open = grid;
-  open.cell.clear();
-  open.points.clear();
-  for (std::size_t i = 0; i < grid.points.size(); ++i) {
-    if (is_buried(grid.points[i])) continue;
-    open.cell.push_back(grid.cell[i]);
-    open.points.push_back(grid.points[i]);
-  }
+  LuxGrid open = with_points(grid, [&](const Probe& point) { return !is_buried(point); });
   return open.points.empty() ? grid : open;
 }
 
@@ -281,18 +372,16 @@ LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const RadiositySolution& solution,
                       const LuxGrid& grid, double factor, const GatherOptions& options) {
   const auto count = static_cast<Eigen::Index>(grid.points.size());
-  ProbeBounds bounds;
-  const BandArray E =
-      probe_irradiance(scene, caster, direct_light, solution, grid.points, options, &bounds);
-  LuxField field{.lux = Eigen::ArrayXd(count), .lux_within = factor * bounds.lux_within};
-  for (Eigen::Index i = 0; i < count; ++i) {
-    field.lux[i] = factor * luminous(scene.bands, E.row(i).transpose());
-  }
+  const LuxReadings read = grid.quantity == GridQuantity::cylindrical ||
+                                   grid.quantity == GridQuantity::semicylindrical
+                               ? read_cylinders({scene, caster, direct_light}, solution, grid, options)
+                               : read_planes({scene, caster, direct_light}, solution, grid, options);
+  LuxField field{.lux = factor * read.lux, .lux_within = factor * read.lux_within};
   summarise(field);
   if (!(field.mean > 0.0)) return field;
   field.point_within = relative_bound(field);
   const Eigen::ArrayXd within = field.lux_within.isNaN().select(0.0, field.lux_within);
-  const Eigen::ArrayXd shared = factor * bounds.read_within;
+  const Eigen::ArrayXd shared = factor * read.read_within;
   const double noise = (within.square() - shared.square()).max(0.0).sum();
   field.mean_within =
       std::hypot(std::sqrt(noise) / static_cast<double>(count), shared.mean()) / field.mean;

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "raytrace/readings/probe.h"
+#include "scene/grid_quantity.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -17,11 +20,22 @@ struct LuxGridOptions {
   double height = 0.0;   ///< m above the surface, along its normal
   double margin = 0.0;   ///< m, width of the strip along the outline without points, >= 0
   double spacing = 0.0;  ///< m, greatest distance between points; 0: that of EN 12464-1
+  /// Part of the surface that the grid covers, m: the rectangle of a box, which may be flat. Its
+  /// extent across the surface does not matter. Empty: all of the surface.
+  std::optional<Eigen::AlignedBox3d> part{};
+  /// Point, m, that the grid's plane faces: with the front or the back of the surface. Empty: the
+  /// front.
+  std::optional<Eigen::Vector3d> towards{};
 };
 
 /// Points over a plane surface at which illuminance is measured: the centres of equal cells.
 struct LuxGrid {
   std::string name{};
+  int surface = 0;  ///< index into Scene::surfaces
+  GridQuantity quantity = GridQuantity::planar;
+  Eigen::Vector3d upright = Eigen::Vector3d::UnitZ();  ///< unit, axis of cylinders
+  Eigen::Vector3d facing = Eigen::Vector3d::UnitX();   ///< unit, across `upright`
+  bool is_direct_only = false;       ///< true: reflected light does not count
   LuxGridOptions options{};                          ///< with the standard's spacing in place of 0
   Eigen::Vector3d corner = Eigen::Vector3d::Zero();  ///< m, outer corner of the first cell
   Eigen::Vector3d u = Eigen::Vector3d::UnitX(), v = Eigen::Vector3d::UnitY();  ///< unit, in plane
@@ -39,7 +53,7 @@ struct LuxGrid {
 /// The spacing follows from the longer side, or from the shorter side if their ratio exceeds 2:1
 /// (EN 12464-1). Throws InputError if:
 /// - the surface is a round shape;
-/// - the margin leaves nothing, or no point lies within the outline;
+/// - the margin or the part leaves nothing, or no point lies within the outline;
 /// - a side would have more than 1000 points.
 LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
                  const LuxGridOptions& options = {});
@@ -50,6 +64,16 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
 /// points are buried, the scene's surfaces face away from its rooms, and the grid is returned as it
 /// is.
 LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid);
+
+/// Returns the grid without the points over the rectangle of another one, such as the surroundings
+/// of a task area without the task area.
+LuxGrid without_points_over(const LuxGrid& other, LuxGrid grid);
+
+/// Makes a grid measure another quantity than planar illuminance. `up` and `facing` are unit
+/// vectors; `facing` is made level, and matters to planes and half cylinders alone. Throws
+/// InputError if `facing` is upright.
+void measure_as(GridQuantity quantity, const Eigen::Vector3d& up, const Eigen::Vector3d& facing,
+                LuxGrid& grid);
 
 /// Illuminance over a grid, lx.
 struct LuxField {
@@ -75,7 +99,8 @@ double bound_at(const LuxField& field, double lux);
 LuxField sum_of(const LuxField& a, const LuxField& b);
 
 /// Illuminance at the points of a grid, times `factor` (for example a maintenance factor). The
-/// gathers are those of probe_irradiance() with bounds.
+/// gathers are those of probe_irradiance() with bounds; of a grid of cylinders, those of
+/// cylinder_probes().
 LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const RadiositySolution& solution,
                       const LuxGrid& grid, double factor, const GatherOptions& options);

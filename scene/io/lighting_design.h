@@ -1,10 +1,13 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "scene/grid_quantity.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -24,12 +27,48 @@ struct CalculationGrid {
   double height = 0.0;             ///< m above the surface, >= 0
   std::optional<double> margin{};  ///< m, width of the outline strip without points; empty: usual
   double spacing = 0.0;            ///< m between points, at most; 0: the usual spacing
+  /// Box, m, whose rectangle on the surface is the part that counts; empty: all of the surface.
+  std::optional<Eigen::AlignedBox3d> part{};
+  std::vector<int> leaves_out{};  ///< earlier grids, over whose rectangles there are no points
+  GridQuantity quantity = GridQuantity::planar;
+  Eigen::Vector3d facing = Eigen::Vector3d::UnitX();  ///< of vertical and semicylindrical
+};
+
+/// Kinds of areas that EN 1838 lights in an emergency.
+enum class EmergencyArea {
+  escape_route,       ///< at most 2 m wide
+  open_area,          ///< of more than 60 m^2, in which people could panic
+  high_risk_task_area ///< where a dangerous process must be brought to an end
+};
+
+/// An area that is held to the limits of a standard (an [[areas]] table): to those of EN 12464-1
+/// for an activity, or to those of EN 1838 in an emergency.
+struct DesignArea {
+  std::string name{};
+  std::string activity{};                    ///< key of an activity; empty in an emergency
+  bool is_raised = false;                    ///< held to the activity's raised illuminance
+  std::optional<EmergencyArea> emergency{};  ///< empty for an activity
+  double usual_lux = 0.0;                    ///< lx without emergency, of a high-risk task area
+  int grid = 0;                              ///< index into LightingDesign::grids
+  std::optional<int> surround{}, background{};  ///< likewise
+  std::vector<int> walls{}, ceilings{};         ///< indices into Scene::surfaces
+  std::vector<std::string> observers{};         ///< cameras for whose eyes glare is rated
+  double eye_height = 1.2;  ///< m above the grid's surface, of cylindrical illuminance
+};
+
+/// Parts of a maintenance factor, each in (0,1] (CIE 97:2005).
+struct MaintenanceParts {
+  double lamp_flux = 1.0, lamp_survival = 1.0, luminaire = 1.0, room = 1.0;
+
+  double factor() const { return lamp_flux * lamp_survival * luminaire * room; }
 };
 
 /// The part of a scene file that describes the lighting design. A LightingDesign changes no
 /// solution.
 struct LightingDesign {
   std::vector<CalculationGrid> grids{};
+  std::vector<DesignArea> areas{};
+  std::optional<MaintenanceParts> maintenance{};  ///< the [maintenance] table
   // Indexed like Scene::lamps; empty without lamps, or where the format holds no such data.
   std::vector<double> watts{};  ///< electric power; 0: unknown
   /// Height in m of the luminous sides in the lamp's photometric file.
@@ -38,11 +77,17 @@ struct LightingDesign {
   ReportHeading heading{};
 };
 
-/// Reads the design from the file of `scene`: the [[grids]] tables, the [report] table and the
-/// photometric files and electric power of the [[lamps]] tables. The power of a lamp is its key
+/// Reads the design from the file of `scene`: the tables [[grids]], [[areas]], [maintenance] and
+/// [report], and the photometric files and electric power of the [[lamps]] tables. The power of a lamp is its key
 /// `watts`, else the power in its photometric file. The photometric file's power is ignored where
 /// the key `lumens` rescales the flux, since the lamp is another luminaire then. Empty for formats
 /// other than the native one. Throws what read_scene throws.
 LightingDesign read_lighting_design(const Scene& scene);
+
+/// Reads the tables [[grids]], [[areas]], [maintenance] and [report] of a TOML file beside a scene of
+/// any format into `design`, in place of those that it holds. Throws InputError naming file, line
+/// and remedy.
+void read_design_tables(const std::filesystem::path& file, const Scene& scene,
+                        LightingDesign& design);
 
 }  // namespace lightwell

@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <utility>
 
 #include "scene/io/comma_fields.h"
+#include "viewer/report/plan_svg.h"
 
 namespace lightwell {
 namespace {
@@ -78,6 +80,36 @@ Json luminaire_json(const LuminaireRow& row) {
   return json;
 }
 
+Json requirement_json(const Requirement& requirement) {
+  Json json = {{"area", requirement.area},
+               {"place", requirement.place},
+               {"figure", figure_symbol(requirement.figure)},
+               {requirement.is_upper ? "at_most" : "at_least", requirement.limit},
+               {"value", nullptr},
+               {"within", requirement.within},
+               {"recommended", requirement.is_recommended},
+               {"verdict", standing_name(standing_of(requirement))}};
+  if (requirement.value && std::isfinite(*requirement.value)) json["value"] = *requirement.value;
+  return json;
+}
+
+// An area's verdict, and a line for each limit that is not surely kept.
+std::string area_text(std::span<const Requirement> of_area) {
+  std::string text =
+      fmt::format("{}: {}\n", of_area.front().area, standing_name(standing_of(of_area)));
+  for (const Requirement& requirement : of_area) {
+    const Standing standing = standing_of(requirement);
+    if (standing == Standing::met) continue;
+    text += fmt::format("  {}{}: {} {} of {} ± {:.2g}, {} {}\n",
+                        requirement.is_recommended ? "recommended, " : "",
+                        standing_name(standing), figure_symbol(requirement.figure),
+                        figure_text(requirement.figure, *requirement.value), requirement.place,
+                        requirement.within, requirement.is_upper ? "at most" : "at least",
+                        figure_text(requirement.figure, requirement.limit));
+  }
+  return text;
+}
+
 const char* content_name(LightContent content) {
   switch (content) {
     case LightContent::electric:
@@ -107,11 +139,35 @@ nlohmann::ordered_json figures_json(const LightingReport& report) {
   }
   for (const Observer& observer : report.observers) observers.push_back(observer_json(observer));
   for (const LuminaireRow& row : report.luminaires) lamps.push_back(luminaire_json(row));
-  return {{"contains", content_name(report.content)},
-          {"maintenance_factor", report.maintenance_factor},
-          {"luminaires", std::move(lamps)},
-          {"surfaces", std::move(surfaces)},
-          {"observers", std::move(observers)}};
+  Json figures = {{"contains", content_name(report.content)},
+                  {"maintenance_factor", report.maintenance_factor},
+                  {"luminaires", std::move(lamps)},
+                  {"surfaces", std::move(surfaces)},
+                  {"observers", std::move(observers)}};
+  if (report.requirements.empty()) return figures;
+  Json requirements = Json::array();
+  for (const Requirement& requirement : report.requirements) {
+    requirements.push_back(requirement_json(requirement));
+  }
+  figures["requirements"] = std::move(requirements);
+  figures["verdict"] = standing_name(standing_of(report.requirements));
+  return figures;
+}
+
+std::string figure_text(Figure figure, double value) {
+  switch (figure) {
+    case Figure::uniformity:
+    case Figure::modelling:
+      return fmt::format("{:.2f}", value);
+    case Figure::glare:
+    case Figure::diversity:
+      return fmt::format("{:.1f}", value);
+    case Figure::mean:
+    case Figure::least:
+    case Figure::cylindrical:
+      break;
+  }
+  return lux_text(value);
 }
 
 std::string points_csv(const LightingReport& report) {
@@ -164,6 +220,7 @@ std::string figures_text(const LightingReport& report) {
                 ? fmt::format("{}: UGR {:.1f}\n", observer.name, *observer.glare.ugr)
                 : fmt::format("{}: no luminaire in sight, so no UGR\n", observer.name);
   }
+  for (const auto& of_area : by_area(report.requirements)) text += area_text(of_area);
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include "raytrace/readings/lux_grid.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/luminaires/luminaire_file.h"
+#include "standards/requirement.h"
 #include "viewer/export/appearance.h"
 #include "viewer/report/plan_lines.h"
 
@@ -78,6 +79,8 @@ struct LightingReport {
   std::vector<LuminaireRow> luminaires{};
   std::vector<CalculationSurface> surfaces{};
   std::vector<Observer> observers{};
+  /// Limits of standards, by areas of the design, and the figures that are held to them.
+  std::vector<Requirement> requirements{};
   std::optional<ReportPicture> picture{};
 };
 

@@ -14,8 +14,10 @@
 #include "raytrace/scene_renderer.h"
 #include "scene/errors.h"
 #include "scene/io/text_file.h"
+#include "standards/activities.h"
 #include "viewer/export/start_view.h"
 #include "viewer/export/write_whole.h"
+#include "viewer/report/area_grids.h"
 #include "viewer/report/figures.h"
 #include "viewer/report/measure.h"
 #include "viewer/report/page.h"
@@ -98,6 +100,28 @@ std::optional<ReportPicture> picture_of(const ReportRequest& asked, const Scene&
       .png = encode_png(camera.width, camera.height, tone_map(image, scene.bands, tone))};
 }
 
+double maintenance_factor(const ReportPlan& plan) {
+  const MaintenanceParts parts = plan.design.maintenance.value_or(MaintenanceParts{});
+  return plan.request.maintenance_factor.value_or(parts.factor());
+}
+
+// The areas of the design, and one for each working plane that has none if all are asked for.
+std::vector<DesignArea> areas_of(const ReportPlan& plan, const std::vector<LuxGrid>& grids) {
+  std::vector<DesignArea> areas = plan.design.areas;
+  if (plan.request.activity.empty()) return areas;
+  for (int g = 0; g < static_cast<int>(grids.size()); ++g) {
+    const LuxGrid& grid = grids[static_cast<std::size_t>(g)];
+    const bool is_plane = grid.options.height > 0.0 && grid.quantity == GridQuantity::planar;
+    const bool has_area = std::ranges::find(areas, g, &DesignArea::grid) != areas.end();
+    if (!is_plane || has_area) continue;
+    areas.push_back({.name = grid.name,
+                     .activity = plan.request.activity,
+                     .grid = g,
+                     .observers = plan.request.observers});
+  }
+  return areas;
+}
+
 // Heading and provenance of a report, without measurements.
 LightingReport report_of(const ReportPlan& plan, const Scene& scene, const SolvedScene& solved) {
   LightingReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
@@ -105,7 +129,7 @@ LightingReport report_of(const ReportPlan& plan, const Scene& scene, const Solve
                       .provenance = solved.solution.provenance,
                       .metres_per_unit = scene.metres_per_unit,
                       .unit_name = scene.unit_name,
-                      .maintenance_factor = plan.request.maintenance_factor,
+                      .maintenance_factor = maintenance_factor(plan),
                       .rays = plan.request.rays,
                       .error_estimate = solved.solution.error_estimate};
   if (scene.sky) {
@@ -124,6 +148,17 @@ ReportPlan plan_report(const Scene& scene, ReportRequest request) {
                     scene.file.string()));
   }
   ReportPlan plan{.design = read_lighting_design(scene)};
+  if (!request.areas.empty()) read_design_tables(request.areas, scene, plan.design);
+  plan.activities =
+      request.activities.empty() ? usual_activities() : read_activities(request.activities);
+  if (!request.activity.empty()) find_activity(plan.activities, request.activity, "all planes");
+  for (const DesignArea& area : plan.design.areas) {
+    for (const std::string& name : area.observers) {
+      const bool is_known =
+          std::ranges::find(request.observers, name) != request.observers.end();
+      if (!is_known) request.observers.push_back(name);
+    }
+  }
   for (const std::string& name : request.observers) plan.eyes.push_back(choose_camera(scene, name));
   if (!request.camera.empty()) choose_camera(scene, request.camera);
   plan.request = std::move(request);
@@ -138,7 +173,7 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   set_watts(made.luminaires, plan.request.watts, scene);
   Measurements what;
   what.eyes = plan.eyes;
-  what.maintenance_factor = plan.request.maintenance_factor;
+  what.maintenance_factor = made.maintenance_factor;
   what.gathering.rays = plan.request.rays;
   what.luminous_heights = plan.design.luminous_height;
   what.between = [&] { report(progress, "measure", 0.0); };
@@ -146,12 +181,17 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   // Requests name surfaces of the file, which merge_planar_regions() may have joined with others:
   // names->apart() separates them again.
   const ElementCaster caster(solved.mesh);
-  for (LuxGrid& grid :
-       requested_grids(plan.request.grids, plan.design.grids, names ? names->apart(scene) : scene,
-                       guess_up_axis(scene.cameras, mesh_bounds(solved.mesh)))) {
+  const Scene apart = names ? names->apart(scene) : scene;
+  const Eigen::Vector3d up = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
+  std::vector<LuxGrid> grids = requested_grids(plan.request.grids, plan.design.grids, apart, up);
+  const std::vector<DesignArea> areas = areas_of(plan, grids);
+  const std::vector<AreaGrids> of_areas =
+      add_area_grids(areas, plan.activities, apart, up, grids);
+  for (LuxGrid& grid : grids) {
     what.grids.push_back(without_buried_points(caster, std::move(grid)));
   }
   measure(scene, solved, what, made);
+  made.requirements = judge_areas(areas, plan.activities, of_areas, made);
   made.picture = picture_of(plan.request, scene, solved, progress);
   return made;
 }

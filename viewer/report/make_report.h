@@ -7,6 +7,7 @@
 
 #include "mesh/cleaning/joined_surfaces.h"
 #include "radiosity/solution/solution.h"
+#include "scene/io/activity_file.h"
 #include "scene/progress.h"
 #include "viewer/report/lighting_report.h"
 #include "viewer/report/requested_grids.h"
@@ -19,7 +20,11 @@ struct ReportRequest {
   GridRequest grids{};                   ///< measured on
   std::vector<std::string> observers{};  ///< cameras for whose eyes glare is rated
   std::vector<NamedNumber> watts{};      ///< electric power of each luminaire of the name, W, > 0
-  double maintenance_factor = 1.0;       ///< of electric light, (0,1]
+  /// Maintenance factor of electric light, (0,1]; empty: that of the design, or 1.
+  std::optional<double> maintenance_factor{};
+  std::filesystem::path areas{};       ///< file with tables of the design; empty: the scene's
+  std::string activity{};              ///< of all working planes without an area; empty: none
+  std::filesystem::path activities{};  ///< table of activities; empty: usual_activities()
   int rays = 1024;                       ///< of the gather at each point, a power of two
   bool has_picture = false;
   std::string camera{};  ///< of the picture; empty: the first
@@ -29,15 +34,16 @@ struct ReportRequest {
 struct ReportPlan {
   ReportRequest request{};
   LightingDesign design{};
-  std::vector<Camera> eyes{};  ///< of the observers
+  std::vector<Activity> activities{};
+  std::vector<Camera> eyes{};  ///< of the observers, those of areas included
 
   /// True if there is nothing to measure.
   bool is_empty() const { return design.grids.empty() && request.grids.is_empty() && eyes.empty(); }
 };
 
 /// Reads the lighting design of a scene and looks names of cameras up, before anything is computed.
-/// Throws InputError for a scene without units of light, for a name that is not there, and as
-/// read_lighting_design() does.
+/// Throws InputError for a scene without units of light, for a name or an activity that is not
+/// there, and as read_lighting_design() and read_activities() do.
 ReportPlan plan_report(const Scene& scene, ReportRequest request);
 
 /// A scene after merge_planar_regions(), and the surfaces that it joined; null: none.

@@ -1,6 +1,7 @@
 #include "viewer/report/measure.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "radiosity/solution/relight.h"
@@ -43,11 +44,26 @@ struct MeasurableScene {
   DirectLight lights;
 };
 
+// The solution without reflected light, for grids that leave it out.
+std::optional<RadiositySolution> without_reflections(const RadiositySolution& solution,
+                                                     const std::vector<LuxGrid>& grids) {
+  if (std::ranges::none_of(grids, &LuxGrid::is_direct_only)) return {};
+  RadiositySolution dark = solution;
+  for (BandArray* light :
+       {&dark.direct_irradiance, &dark.indirect_irradiance, &dark.caustic_irradiance}) {
+    light->setZero();
+  }
+  return dark;
+}
+
 std::vector<LuxField> fields(const MeasurableScene& lit, const Measurements& what, double factor) {
+  const RadiositySolution& all = lit.solved.solution;
+  const std::optional<RadiositySolution> dark = without_reflections(all, what.grids);
   std::vector<LuxField> fields;
   for (const LuxGrid& grid : what.grids) {
-    fields.push_back(measure_grid(lit.scene, lit.caster, lit.lights, lit.solved.solution, grid,
-                                  factor, what.gathering));
+    fields.push_back(measure_grid(lit.scene, lit.caster, lit.lights,
+                                  grid.is_direct_only ? *dark : all, grid, factor,
+                                  what.gathering));
     if (what.between) what.between();
   }
   return fields;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 
@@ -30,11 +32,23 @@ std::vector<LuxGrid> requested_grids(const GridRequest& asked,
   const double margin = asked.margin.value_or(strip);
   for (const CalculationGrid& grid : of_file) {
     const double usual = grid.height > 0.0 ? margin : 0.0;
-    grids.push_back(lux_grid(scene, grid.surface, up,
-                             {.height = grid.height,
-                              .margin = grid.margin.value_or(usual),
-                              .spacing = grid.spacing > 0.0 ? grid.spacing : spacing}));
-    grids.back().name = grid.name;
+    LuxGrid made = lux_grid(scene, grid.surface, up,
+                            {.height = grid.height,
+                             .margin = grid.margin.value_or(usual),
+                             .spacing = grid.spacing > 0.0 ? grid.spacing : spacing,
+                             .part = grid.part});
+    made.name = grid.name;
+    for (const int other : grid.leaves_out) {
+      made = without_points_over(grids[static_cast<std::size_t>(other)], std::move(made));
+    }
+    if (made.points.empty()) {
+      throw InputError(fmt::format(
+          "{}: grid '{}' has no points beside those of the grids that it leaves out; give it a "
+          "larger part, or a smaller spacing",
+          scene.file.string(), grid.name));
+    }
+    measure_as(grid.quantity, up, grid.facing, made);
+    grids.push_back(std::move(made));
   }
   for (const std::string& name : asked.surfaces) {
     grids.push_back(lux_grid(scene, find_surface(scene, name), up, {.spacing = spacing}));

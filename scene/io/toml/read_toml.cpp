@@ -68,7 +68,7 @@ Scene read_toml(const std::filesystem::path& path) {
   const TomlValue all(file.path(), root, "");
   const TomlTable document =
       all.table({"title", "unit", "bands", "materials", "motions", "surfaces", "lamps", "sky",
-                 "cameras", "grids", "report", "windows"});
+                 "cameras", "grids", "areas", "maintenance", "report", "windows"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
@@ -120,8 +120,8 @@ Scene read_toml(const std::filesystem::path& path) {
   }
   settle_toml_motions(document, have_shutter, scene);
   // Grids and headings do not affect the light; reading them here reports their errors early.
-  if (const auto grids = document.find("grids")) read_toml_grids(*grids, scene);
-  if (const auto report = document.find("report")) read_toml_heading(*report);
+  LightingDesign design;
+  read_toml_design(document.value(), scene, design);
   validate(scene);
   return scene;
 }
@@ -132,13 +132,21 @@ LightingDesign read_lighting_design(const Scene& scene) {
   const toml::table root = parse_toml(file);
   const TomlValue all(file.path(), root, "");
   LightingDesign design;
-  if (const auto grids = all.member("grids")) design.grids = read_toml_grids(*grids, scene);
-  if (const auto report = all.member("report")) design.heading = read_toml_heading(*report);
+  read_toml_design(all, scene, design);
   if (const auto lamps = all.member("lamps")) {
     LuminaireFiles files;
     for (const auto& lamp : lamps->elements("lamp")) read_toml_lamp_design(lamp, files, design);
   }
   return design;
+}
+
+void read_design_tables(const std::filesystem::path& path, const Scene& scene,
+                        LightingDesign& design) {
+  const TextFile file(path);
+  const toml::table root = parse_toml(file);
+  const TomlTable document =
+      TomlValue(file.path(), root, "").table({"grids", "areas", "maintenance", "report"});
+  read_toml_design(document.value(), scene, design);
 }
 
 }  // namespace lightwell

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "scene/io/luminaires/luminaire_file.h"
+#include "scene/io/matches_glob.h"
 #include "scene/io/nearest_name.h"
 
 namespace lightwell {
@@ -21,31 +22,171 @@ int find_surface(const TomlValue& value, const Scene& scene) {
                          did_you_mean(name, known)));
 }
 
-}  // namespace
+GridQuantity read_quantity(const TomlValue& value) {
+  const std::string word = value.one_of({"planar", "vertical", "cylindrical", "semicylindrical"});
+  return word == "vertical"          ? GridQuantity::vertical
+         : word == "cylindrical"     ? GridQuantity::cylindrical
+         : word == "semicylindrical" ? GridQuantity::semicylindrical
+                                     : GridQuantity::planar;
+}
 
-std::vector<CalculationGrid> read_toml_grids(const TomlValue& grids, const Scene& scene) {
+Eigen::AlignedBox3d read_part(const TomlValue& value, double metres) {
+  const TomlTable table = value.table({"min", "max"});
+  const Eigen::AlignedBox3d part(metres * table.require("min").vector(),
+                                 metres * table.require("max").vector());
+  if (part.isEmpty()) value.fail("has a min that exceeds its max; exchange them");
+  return part;
+}
+
+// The grid of a name among `grids`; `where` says where they stand.
+int find_grid(const TomlValue& value, const std::vector<CalculationGrid>& grids,
+              const char* where = "") {
+  const std::string name = value.name();
+  std::vector<std::string> known;
+  for (std::size_t i = 0; i < grids.size(); ++i) {
+    if (grids[i].name == name) return static_cast<int>(i);
+    known.push_back(grids[i].name);
+  }
+  value.fail(fmt::format("is '{}', and there is no [[grids]] table of that name{}.{}", name, where,
+                         did_you_mean(name, known)));
+}
+
+CalculationGrid read_grid(const TomlValue& value, const Scene& scene,
+                          const std::vector<CalculationGrid>& earlier) {
+  const auto given = value.member("name");
+  CalculationGrid grid{.name = given ? given->name() : fmt::format("grid{}", earlier.size() + 1)};
+  const TomlTable table = value.renamed(fmt::format("grid '{}'", grid.name))
+                              .table({"name", "surface", "height", "margin", "spacing", "part",
+                                      "leaves_out", "measures", "facing"});
+  if (std::ranges::find(earlier, grid.name, &CalculationGrid::name) != earlier.end()) {
+    table.fail("has the name of another grid; give each its own");
+  }
+  const double metres = scene.metres_per_unit;
+  grid.surface = find_surface(table.require("surface"), scene);
+  if (const auto height = table.find("height")) grid.height = metres * height->number_at_least(0);
+  if (const auto margin = table.find("margin")) grid.margin = metres * margin->number_at_least(0);
+  if (const auto spacing = table.find("spacing")) grid.spacing = metres * spacing->positive();
+  if (const auto part = table.find("part")) grid.part = read_part(*part, metres);
+  if (const auto names = table.find("leaves_out")) {
+    for (const TomlValue& name : names->elements("grid")) {
+      grid.leaves_out.push_back(find_grid(name, earlier, " before it"));
+    }
+  }
+  if (const auto measures = table.find("measures")) grid.quantity = read_quantity(*measures);
+  const bool has_direction = grid.quantity == GridQuantity::vertical ||
+                             grid.quantity == GridQuantity::semicylindrical;
+  if (has_direction != table.has("facing")) {
+    table.fail(has_direction ? "measures in one direction, and needs 'facing', such as [1, 0, 0]"
+                             : "has 'facing', which only a grid that measures \"vertical\" or "
+                               "\"semicylindrical\" has; remove it");
+  }
+  if (const auto facing = table.find("facing")) {
+    grid.facing = facing->vector();
+    if (!(grid.facing.norm() > 0.0)) facing->fail("is zero; give a direction");
+    grid.facing.normalize();
+  }
+  return grid;
+}
+
+std::vector<CalculationGrid> read_grids(const TomlValue& grids, const Scene& scene) {
   if (!grids.is_array()) grids.fail("must be an array of tables; write [[grids]]");
   std::vector<CalculationGrid> result;
   for (const TomlValue& value : grids.elements("grid")) {
-    const auto given = value.member("name");
-    CalculationGrid grid{.name = given ? given->name() : fmt::format("grid{}", result.size() + 1)};
-    const TomlTable table = value.renamed(fmt::format("grid '{}'", grid.name))
-                                .table({"name", "surface", "height", "margin", "spacing"});
-    const auto is_taken = [&](const CalculationGrid& other) { return other.name == grid.name; };
-    if (std::ranges::any_of(result, is_taken)) {
-      table.fail("has the name of another grid; give each its own");
-    }
-    const double metres = scene.metres_per_unit;
-    grid.surface = find_surface(table.require("surface"), scene);
-    if (const auto height = table.find("height")) grid.height = metres * height->number_at_least(0);
-    if (const auto margin = table.find("margin")) grid.margin = metres * margin->number_at_least(0);
-    if (const auto spacing = table.find("spacing")) grid.spacing = metres * spacing->positive();
-    result.push_back(std::move(grid));
+    result.push_back(read_grid(value, scene, result));
   }
   return result;
 }
 
-ReportHeading read_toml_heading(const TomlValue& report) {
+std::vector<std::string> read_observers(const TomlValue& value, const Scene& scene) {
+  std::vector<std::string> names, known;
+  for (const Camera& camera : scene.cameras) known.push_back(camera.name);
+  for (const TomlValue& observer : value.elements("observer")) {
+    names.push_back(observer.name());
+    if (std::ranges::find(known, names.back()) == known.end()) {
+      observer.fail(fmt::format("is '{}', and there is no camera of that name.{}", names.back(),
+                                did_you_mean(names.back(), known)));
+    }
+  }
+  return names;
+}
+
+EmergencyArea read_emergency(const TomlValue& value) {
+  const std::string word = value.one_of({"escape route", "open area", "high-risk task area"});
+  return word == "escape route" ? EmergencyArea::escape_route
+         : word == "open area"  ? EmergencyArea::open_area
+                                : EmergencyArea::high_risk_task_area;
+}
+
+// Reads what an area has beside its grid, for an activity.
+void read_activity(const TomlTable& table, const Scene& scene,
+                   const std::vector<CalculationGrid>& grids, DesignArea& area) {
+  area.activity = table.require("activity").name();
+  if (const auto raised = table.find("raised")) area.is_raised = raised->boolean();
+  if (const auto grid = table.find("surround")) area.surround = find_grid(*grid, grids);
+  if (const auto grid = table.find("background")) area.background = find_grid(*grid, grids);
+  if (const auto walls = table.find("walls")) area.walls = matching_surfaces(*walls, scene);
+  if (const auto ceiling = table.find("ceiling")) {
+    area.ceilings = matching_surfaces(*ceiling, scene);
+  }
+  if (const auto names = table.find("observers")) area.observers = read_observers(*names, scene);
+  if (const auto height = table.find("eye_height")) {
+    area.eye_height = scene.metres_per_unit * height->positive();
+  }
+}
+
+DesignArea read_area(const TomlValue& value, const Scene& scene,
+                     const std::vector<CalculationGrid>& grids,
+                     const std::vector<DesignArea>& earlier) {
+  const auto given = value.member("name");
+  DesignArea area{.name = given ? given->name() : fmt::format("area{}", earlier.size() + 1)};
+  const TomlValue named = value.renamed(fmt::format("area '{}'", area.name));
+  if (std::ranges::find(earlier, area.name, &DesignArea::name) != earlier.end()) {
+    named.fail("has the name of another area; give each its own");
+  }
+  if (!named.member("emergency")) {
+    const TomlTable table = named.table({"name", "activity", "raised", "grid", "surround",
+                                         "background", "walls", "ceiling", "observers",
+                                         "eye_height"});
+    area.grid = find_grid(table.require("grid"), grids);
+    read_activity(table, scene, grids, area);
+    return area;
+  }
+  const TomlTable table = named.table({"name", "emergency", "grid", "usual_lux"});
+  area.grid = find_grid(table.require("grid"), grids);
+  area.emergency = read_emergency(table.require("emergency"));
+  const bool needs_usual = area.emergency == EmergencyArea::high_risk_task_area;
+  if (needs_usual != table.has("usual_lux")) {
+    table.fail(needs_usual ? "needs 'usual_lux', the maintained illuminance without emergency"
+                           : "has 'usual_lux', which only a high-risk task area has; remove it");
+  }
+  if (const auto usual = table.find("usual_lux")) area.usual_lux = usual->positive();
+  return area;
+}
+
+std::vector<DesignArea> read_areas(const TomlValue& areas, const Scene& scene,
+                                   const std::vector<CalculationGrid>& grids) {
+  if (!areas.is_array()) areas.fail("must be an array of tables; write [[areas]]");
+  std::vector<DesignArea> result;
+  for (const TomlValue& value : areas.elements("area")) {
+    result.push_back(read_area(value, scene, grids, result));
+  }
+  return result;
+}
+
+MaintenanceParts read_maintenance(const TomlValue& value) {
+  const TomlTable table = value.table({"lamp_flux", "lamp_survival", "luminaire", "room"});
+  const auto part = [&](const char* key) {
+    constexpr double least = 1e-3;
+    const auto given = table.find(key);
+    return given ? given->number_within(least, 1.0) : 1.0;
+  };
+  return {.lamp_flux = part("lamp_flux"),
+          .lamp_survival = part("lamp_survival"),
+          .luminaire = part("luminaire"),
+          .room = part("room")};
+}
+
+ReportHeading read_heading(const TomlValue& report) {
   const TomlTable table = report.table({"project", "client", "author", "date", "remarks"});
   const auto text = [&](const char* key) {
     const auto value = table.find(key);
@@ -56,6 +197,19 @@ ReportHeading read_toml_heading(const TomlValue& report) {
           .author = text("author"),
           .date = text("date"),
           .remarks = text("remarks")};
+}
+
+}  // namespace
+
+void read_toml_design(const TomlValue& document, const Scene& scene, LightingDesign& design) {
+  if (const auto grids = document.member("grids")) design.grids = read_grids(*grids, scene);
+  if (const auto areas = document.member("areas")) {
+    design.areas = read_areas(*areas, scene, design.grids);
+  }
+  if (const auto parts = document.member("maintenance")) {
+    design.maintenance = read_maintenance(*parts);
+  }
+  if (const auto report = document.member("report")) design.heading = read_heading(*report);
 }
 
 void read_toml_lamp_design(const TomlValue& lamp, LuminaireFiles& files, LightingDesign& design) {
@@ -75,6 +229,37 @@ void read_toml_lamp_design(const TomlValue& lamp, LuminaireFiles& files, Lightin
   design.watts.push_back(watts);
   design.luminous_height.push_back(luminous_height);
   design.files.push_back(std::move(luminaire));
+}
+
+std::vector<int> matching_surfaces(const TomlValue& patterns, const Scene& scene) {
+  std::vector<char> taken(scene.surfaces.size(), 0);
+  const auto values =
+      patterns.is_array() ? patterns.elements("pattern") : std::vector<TomlValue>{patterns};
+  for (const TomlValue& value : values) {
+    const std::string glob = value.name();
+    bool matches_any = false;
+    std::vector<std::string> known;
+    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+      const Surface& surface = scene.surfaces[s];
+      const std::string& material =
+          scene.materials[static_cast<std::size_t>(surface.material)].name;
+      if (matches_glob(glob, surface.name) || matches_glob(glob, material)) {
+        matches_any = true;
+        taken[s] = 1;
+      }
+      known.push_back(surface.name);
+    }
+    if (!matches_any) {
+      value.fail(fmt::format("is '{}', and no surface or material of the scene matches that.{}",
+                             glob, did_you_mean(glob, known)));
+    }
+  }
+  std::vector<int> surfaces;
+  for (std::size_t s = 0; s < taken.size(); ++s) {
+    if (taken[s] != 0) surfaces.push_back(static_cast<int>(s));
+  }
+  if (surfaces.empty()) patterns.fail("is empty; name at least one surface");
+  return surfaces;
 }
 
 }  // namespace lightwell

@@ -3,17 +3,21 @@
 #include <filesystem>
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "scene/io/lighting_design.h"
 #include "scene/io/toml/toml_value.h"
 
 namespace lightwell {
 
-/// Reads the [[grids]] of a native file. The surfaces of `scene` must be complete.
-std::vector<CalculationGrid> read_toml_grids(const TomlValue& grids, const Scene& scene);
+/// Reads the tables [[grids]], [[areas]], [maintenance] and [report] that a document has, in place
+/// of those of `design`. The surfaces and cameras of `scene` must be complete.
+void read_toml_design(const TomlValue& document, const Scene& scene, LightingDesign& design);
 
-/// Reads the [report] table of a native file.
-ReportHeading read_toml_heading(const TomlValue& report);
+/// Returns the surfaces that a pattern, or an array of patterns, names by their own names or by
+/// those of their materials: indices into Scene::surfaces, rising. Throws InputError for a pattern
+/// that matches nothing, and for an empty array.
+std::vector<int> matching_surfaces(const TomlValue& patterns, const Scene& scene);
 
 /// Photometric files by path and lamp set, so that each is read once.
 using LuminaireFiles = std::map<std::pair<std::filesystem::path, int>, SharedLuminaireFile>;

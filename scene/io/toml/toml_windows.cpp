@@ -9,9 +9,9 @@
 #include "scene/errors.h"
 #include "scene/io/comma_fields.h"
 #include "scene/io/dashed_pair.h"
-#include "scene/io/matches_glob.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/text_file.h"
+#include "scene/io/toml/toml_design.h"
 #include "scene/io/toml/toml_document.h"
 #include "scene/io/toml/toml_materials.h"
 #include "scene/io/weather/weather_file.h"
@@ -186,38 +186,6 @@ void read_states(const TomlValue& states, const std::vector<Material>& materials
     states.fail(
         fmt::format("has {} states; give at most {}", group.states.size(), most_window_states));
   }
-}
-
-// The surfaces that patterns name, by their own names or by those of their materials.
-std::vector<int> matching_surfaces(const TomlValue& patterns, const Scene& scene) {
-  std::vector<char> taken(scene.surfaces.size(), 0);
-  const auto values =
-      patterns.is_array() ? patterns.elements("pattern") : std::vector<TomlValue>{patterns};
-  for (const TomlValue& value : values) {
-    const std::string glob = value.name();
-    bool matches_any = false;
-    std::vector<std::string> known;
-    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-      const Surface& surface = scene.surfaces[s];
-      const std::string& material =
-          scene.materials[static_cast<std::size_t>(surface.material)].name;
-      if (matches_glob(glob, surface.name) || matches_glob(glob, material)) {
-        matches_any = true;
-        taken[s] = 1;
-      }
-      known.push_back(surface.name);
-    }
-    if (!matches_any) {
-      value.fail(fmt::format("is '{}', and no surface or material of the scene matches that.{}",
-                             glob, did_you_mean(glob, known)));
-    }
-  }
-  std::vector<int> surfaces;
-  for (std::size_t s = 0; s < taken.size(); ++s) {
-    if (taken[s] != 0) surfaces.push_back(static_cast<int>(s));
-  }
-  if (surfaces.empty()) patterns.fail("is empty; name the surfaces that change");
-  return surfaces;
 }
 
 // Refuses a group that shares its name or a surface with an earlier one.

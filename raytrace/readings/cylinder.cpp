@@ -1,0 +1,83 @@
+#include "raytrace/readings/cylinder.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lightwell {
+namespace {
+
+LuxReadings read_probes(const LitScene& lit, const RadiositySolution& solution,
+                        const std::vector<Probe>& probes, const GatherOptions& options) {
+  ProbeBounds bounds;
+  const BandArray E = probe_irradiance(lit.scene, lit.caster, lit.direct_light, solution, probes,
+                                       options, &bounds);
+  LuxReadings read{.lux = Eigen::ArrayXd(E.rows()),
+                   .lux_within = bounds.lux_within,
+                   .read_within = bounds.read_within};
+  for (Eigen::Index i = 0; i < E.rows(); ++i) {
+    read.lux[i] = luminous(lit.scene.bands, E.row(i).transpose());
+  }
+  return read;
+}
+
+}  // namespace
+
+std::vector<Probe> cylinder_probes(const LuxGrid& grid, const Eigen::Vector3d& position) {
+  const bool is_half = grid.quantity == GridQuantity::semicylindrical;
+  const Eigen::Vector3d ahead =
+      is_half ? grid.facing : Eigen::Vector3d(grid.upright.unitOrthogonal());
+  const Eigen::Vector3d aside = grid.upright.cross(ahead);
+  const double around = is_half ? std::numbers::pi : 2.0 * std::numbers::pi;
+  std::vector<Probe> probes;
+  for (int i = 0; i < planes_of_a_cylinder; ++i) {
+    const double angle = around * ((i + 0.5) / planes_of_a_cylinder - 0.5);
+    probes.push_back({.position = position,
+                      .normal = std::cos(angle) * ahead + std::sin(angle) * aside});
+  }
+  return probes;
+}
+
+LuxReadings read_cylinders(const LitScene& lit, const RadiositySolution& solution,
+                           const LuxGrid& grid, const GatherOptions& options) {
+  std::vector<Probe> probes;
+  for (const Probe& point : grid.points) {
+    const std::vector<Probe> around = cylinder_probes(grid, point.position);
+    probes.insert(probes.end(), around.begin(), around.end());
+  }
+  // The noise of n planes averages out, and light that one plane misses another one finds.
+  constexpr int rays_over_plane = 8, fewest = 64;
+  GatherOptions of_plane = options;
+  of_plane.rays = std::min(options.rays, std::max(fewest, options.rays / rays_over_plane));
+  const LuxReadings planes = read_probes(lit, solution, probes, of_plane);
+  constexpr int n = planes_of_a_cylinder;
+  constexpr double step = std::numbers::pi / n;
+  const bool is_half = grid.quantity == GridQuantity::semicylindrical;
+  const double of_steps = step * step / (is_half ? 8.0 : 12.0);
+  const auto count = static_cast<Eigen::Index>(grid.points.size());
+  LuxReadings read{.lux = Eigen::ArrayXd(count),
+                   .lux_within = Eigen::ArrayXd(count),
+                   .read_within = Eigen::ArrayXd(count)};
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Eigen::ArrayXd within = planes.lux_within.segment(i * n, n);
+    const Eigen::ArrayXd shared = planes.read_within.segment(i * n, n);
+    read.lux[i] = planes.lux.segment(i * n, n).mean();
+    // A plane for which nothing is known (NaN) got no light.
+    const double noise =
+        within.isNaN().select(0.0, (within.square() - shared.square()).max(0.0)).sum();
+    read.read_within[i] = shared.mean();
+    read.lux_within[i] = within.isNaN().all()
+                             ? within[0]
+                             : std::hypot(std::sqrt(noise) / n, read.read_within[i]) +
+                                   of_steps * read.lux[i];
+  }
+  return read;
+}
+
+LuxReadings read_planes(const LitScene& lit, const RadiositySolution& solution, const LuxGrid& grid,
+                        const GatherOptions& options) {
+  return read_probes(lit, solution, grid.points, options);
+}
+
+}  // namespace lightwell

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "radiosity/direct_light/lit_scene.h"
+#include "raytrace/readings/lux_grid.h"
+
+namespace lightwell {
+
+/// Illuminance at the points of a grid, lx, with bounds as those of ProbeBounds.
+struct LuxReadings {
+  Eigen::ArrayXd lux{}, lux_within{}, read_within{};
+};
+
+/// Planes around a cylinder, or around half of one, over which its illuminance is a mean.
+inline constexpr int planes_of_a_cylinder = 25;
+
+/// Probes whose mean is the illuminance of the side of an upright cylinder, or of the half of it
+/// that faces `grid.facing`:
+///
+///     E_z = (1/pi) int L sin(beta) dw                    mean over the whole side
+///     E_sz = (1/pi) int L sin(beta) (1 + cos(alpha)) dw  mean over half of it
+///
+/// where beta is the angle from `grid.upright`, and alpha that around it from `grid.facing`.
+///
+/// An odd number n of planes: for light from one direction, the mean of n planes around a cylinder
+/// differs from E_z by at most (pi/n)^2 / 12 of it, and that around half a cylinder from E_sz by at
+/// most (pi/n)^2 / 8 of E_z. An even n would leave four times as much around the whole.
+std::vector<Probe> cylinder_probes(const LuxGrid& grid, const Eigen::Vector3d& position);
+
+/// Readings of cylinders, see cylinder_probes(). The bounds contain the error of the finite number
+/// of planes for a single small lamp. Each plane takes an eighth of the rays of `options`.
+LuxReadings read_cylinders(const LitScene& lit, const RadiositySolution& solution,
+                           const LuxGrid& grid, const GatherOptions& options);
+
+/// Readings of the planes at the points of a grid.
+LuxReadings read_planes(const LitScene& lit, const RadiositySolution& solution, const LuxGrid& grid,
+                        const GatherOptions& options);
+
+}  // namespace lightwell

@@ -1,0 +1,125 @@
+#include "standards/requirement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lightwell {
+namespace {
+
+// Bound of a point of a field; 0 where no light was found at all, so that nothing is known.
+double known_bound(const LuxField& field, double lux) {
+  const double within = bound_at(field, lux);
+  return std::isfinite(within) ? within : 0.0;
+}
+
+double share(double part, double whole) {
+  return whole > 0.0 ? part / whole : 0.0;
+}
+
+}  // namespace
+
+const char* figure_symbol(Figure figure) {
+  switch (figure) {
+    case Figure::mean:
+      return "E_m";
+    case Figure::least:
+      return "E_min";
+    case Figure::uniformity:
+      return "U_0";
+    case Figure::diversity:
+      return "E_max / E_min";
+    case Figure::cylindrical:
+      return "E_m,z";
+    case Figure::modelling:
+      return "E_m,z / E_m";
+    case Figure::glare:
+      break;
+  }
+  return "UGR";
+}
+
+const char* standing_name(Standing standing) {
+  switch (standing) {
+    case Standing::met:
+      return "met";
+    case Standing::missed:
+      return "missed";
+    case Standing::too_close:
+      break;
+  }
+  return "too close to tell";
+}
+
+Standing standing_of(const Requirement& requirement) {
+  if (!requirement.value) return Standing::met;
+  const double above = *requirement.value - requirement.limit;
+  const double spare = requirement.is_upper ? -above : above;
+  if (std::abs(spare) < requirement.within) return Standing::too_close;
+  return spare >= 0.0 ? Standing::met : Standing::missed;
+}
+
+std::vector<std::span<const Requirement>> by_area(std::span<const Requirement> requirements) {
+  std::vector<std::span<const Requirement>> areas;
+  for (std::size_t begin = 0; begin < requirements.size();) {
+    std::size_t end = begin;
+    while (end < requirements.size() && requirements[end].area == requirements[begin].area) ++end;
+    areas.push_back(requirements.subspan(begin, end - begin));
+    begin = end;
+  }
+  return areas;
+}
+
+Standing standing_of(std::span<const Requirement> requirements) {
+  Standing worst = Standing::met;
+  for (const Requirement& requirement : requirements) {
+    if (requirement.is_recommended) continue;
+    const Standing standing = standing_of(requirement);
+    if (standing == Standing::missed) return Standing::missed;
+    if (standing == Standing::too_close) worst = Standing::too_close;
+  }
+  return worst;
+}
+
+Requirement mean_at_least(double limit, const GridField& of) {
+  const LuxField& field = *of.field;
+  return {.place = of.name,
+          .figure = Figure::mean,
+          .limit = limit,
+          .value = field.mean,
+          .within = field.mean_within * field.mean};
+}
+
+Requirement uniformity_at_least(double limit, const GridField& of) {
+  const LuxField& field = *of.field;
+  return {.place = of.name,
+          .figure = Figure::uniformity,
+          .limit = limit,
+          .value = field.uniformity,
+          .within = share(known_bound(field, field.least), field.mean) +
+                    field.uniformity * field.mean_within};
+}
+
+Requirement least_at_least(double limit, const GridField& of) {
+  const LuxField& field = *of.field;
+  return {.place = of.name,
+          .figure = Figure::least,
+          .limit = limit,
+          .value = field.least,
+          .within = known_bound(field, field.least)};
+}
+
+Requirement diversity_at_most(double limit, const GridField& of) {
+  const LuxField& field = *of.field;
+  Requirement made{.place = of.name, .figure = Figure::diversity, .is_upper = true, .limit = limit};
+  if (!(field.least > 0.0)) {
+    made.value = std::numeric_limits<double>::infinity();
+    return made;
+  }
+  made.value = field.greatest / field.least;
+  made.within = *made.value * (share(known_bound(field, field.greatest), field.greatest) +
+                               share(known_bound(field, field.least), field.least));
+  return made;
+}
+
+}  // namespace lightwell

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "raytrace/readings/lux_grid.h"
+
+namespace lightwell {
+
+/// Figures that standards limit.
+enum class Figure {
+  mean,        ///< E_m, lx
+  least,       ///< E_min, lx
+  uniformity,  ///< U_0 = E_min / E_m
+  diversity,   ///< E_max / E_min
+  cylindrical, ///< mean cylindrical illuminance E_m,z, lx
+  modelling,   ///< cylindrical over horizontal illuminance of the same points
+  glare        ///< unified glare rating R_UG
+};
+
+/// Symbol of a figure: "E_m".
+const char* figure_symbol(Figure figure);
+
+/// How a figure stands to its limit.
+enum class Standing {
+  met,       ///< by more than the error of the figure
+  missed,    ///< by more than the error of the figure
+  too_close  ///< the limit lies within the error of the figure
+};
+
+/// A limit of a standard, and the figure that is held to it.
+struct Requirement {
+  std::string area{};   ///< of the design
+  std::string place{};  ///< that was measured: a grid, a wall, an observer
+  Figure figure = Figure::mean;
+  bool is_upper = false;           ///< true: the figure must not exceed the limit
+  bool is_recommended = false;     ///< true: the standard advises, and does not require
+  double limit = 0.0;
+  std::optional<double> value{};   ///< empty: there is nothing to rate, such as glare without luminaires
+  double within = 0.0;             ///< bound of the error of `value`, with odds of about 19 to 1
+};
+
+/// "met", "missed" or "too close to tell".
+const char* standing_name(Standing standing);
+
+/// How a requirement stands. A requirement without a value is met.
+Standing standing_of(const Requirement& requirement);
+
+/// How requirements stand together, recommendations left out: missed if one is missed, too close if
+/// one is too close and none is missed.
+Standing standing_of(std::span<const Requirement> requirements);
+
+/// Runs of requirements that belong to one area, in their order.
+std::vector<std::span<const Requirement>> by_area(std::span<const Requirement> requirements);
+
+/// A field of a grid with the name of the grid.
+struct GridField {
+  std::string name{};
+  const LuxField* field = nullptr;
+};
+
+/// Requirement for the mean of a field, and for the uniformity of a field. The bound of U_0 is the
+/// sum of the relative bounds of E_min and E_m.
+Requirement mean_at_least(double limit, const GridField& of);
+Requirement uniformity_at_least(double limit, const GridField& of);
+/// Requirement for the darkest point of a field.
+Requirement least_at_least(double limit, const GridField& of);
+/// Requirement for E_max / E_min of a field. The bound is the sum of the relative bounds of both.
+Requirement diversity_at_most(double limit, const GridField& of);
+
+}  // namespace lightwell

@@ -1,0 +1,81 @@
+#include "standards/requirement.h"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+
+namespace lightwell::requirement_test {
+namespace {
+
+/// Four points, of which the darkest is known to 4 lx and the brightest to 10 lx; their mean, 250
+/// lx, to 2 %.
+LuxField four_points() {
+  LuxField field = field_of(Eigen::Array4d(100, 200, 300, 400));
+  field.lux_within = Eigen::Array4d(4, 5, 6, 10);
+  field.mean_within = 0.02;
+  return field;
+}
+
+/// The mean is 250 +- 5 lx.
+TEST(Requirement, IsMetOrMissedByMoreThanItsError) {
+  const LuxField field = four_points();
+  const GridField of{"desk", &field};
+  EXPECT_EQ(standing_of(mean_at_least(244.0, of)), Standing::met);
+  EXPECT_EQ(standing_of(mean_at_least(246.0, of)), Standing::too_close);
+  EXPECT_EQ(standing_of(mean_at_least(254.0, of)), Standing::too_close);
+  EXPECT_EQ(standing_of(mean_at_least(256.0, of)), Standing::missed);
+}
+
+/// U_0 = 100/250 = 0.40, E_max/E_min = 4. Relative bounds: E_min 4 %, E_m 2 %, E_max 2.5 %. The
+/// tolerances are those of arithmetic on numbers of a few units.
+TEST(Requirement, OfARatioAddsTheErrorsOfBoth) {
+  const LuxField field = four_points();
+  const GridField of{"desk", &field};
+  const Requirement uniformity = uniformity_at_least(0.6, of);
+  EXPECT_NEAR(*uniformity.value, 0.40, 1e-12);
+  EXPECT_NEAR(uniformity.within, 0.40 * (0.04 + 0.02), 1e-12);
+  EXPECT_EQ(standing_of(uniformity), Standing::missed);
+  const Requirement diversity = diversity_at_most(40.0, of);
+  EXPECT_NEAR(*diversity.value, 4.0, 1e-12);
+  EXPECT_NEAR(diversity.within, 4.0 * (0.04 + 0.025), 1e-12);
+  EXPECT_EQ(standing_of(diversity), Standing::met);
+}
+
+/// The error of a point without any light is not known; the limit is missed all the same.
+TEST(Requirement, IsMissedInTheDark) {
+  LuxField field = field_of(Eigen::Array3d(0, 10, 20));
+  const GridField of{"stairs", &field};
+  EXPECT_EQ(standing_of(least_at_least(1.0, of)), Standing::missed);
+  EXPECT_EQ(standing_of(diversity_at_most(40.0, of)), Standing::missed);
+  EXPECT_EQ(standing_of(uniformity_at_least(0.1, of)), Standing::missed);
+}
+
+TEST(Requirement, WithoutAFigureIsMet) {
+  EXPECT_EQ(standing_of(Requirement{.figure = Figure::glare, .is_upper = true, .limit = 19.0}),
+            Standing::met);
+}
+
+/// A missed limit weighs more than one that is too close; a recommendation does not count.
+TEST(Requirement, StandsWithOthersAsTheWorstOfThem) {
+  const Requirement met{.limit = 1.0, .value = 2.0};
+  const Requirement close{.limit = 1.0, .value = 2.0, .within = 3.0};
+  const Requirement missed{.limit = 3.0, .value = 2.0};
+  Requirement advice = missed;
+  advice.is_recommended = true;
+  EXPECT_EQ(standing_of(std::array{met, advice}), Standing::met);
+  EXPECT_EQ(standing_of(std::array{met, close}), Standing::too_close);
+  EXPECT_EQ(standing_of(std::array{close, missed, met}), Standing::missed);
+}
+
+TEST(Requirement, OfOneAreaAreToldTogether) {
+  const std::array all = {Requirement{.area = "a"}, Requirement{.area = "a"},
+                          Requirement{.area = "b"}};
+  const auto areas = by_area(all);
+  ASSERT_EQ(areas.size(), 2u);
+  EXPECT_EQ(areas[0].size(), 2u);
+  EXPECT_EQ(areas[1].front().area, "b");
+}
+
+}  // namespace
+}  // namespace lightwell::requirement_test

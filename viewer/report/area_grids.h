@@ -1,0 +1,35 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "scene/io/activity_file.h"
+#include "standards/requirement.h"
+#include "viewer/report/lighting_report.h"
+
+namespace lightwell {
+
+/// Indices into LightingReport::surfaces of what was measured for a design area.
+struct AreaGrids {
+  std::optional<int> task{}, surround{}, background{};
+  std::vector<int> walls{}, ceilings{};
+  std::optional<int> cylindrical{}, horizontal{};  ///< at the height of eyes
+  std::optional<int> emergency{}, centre_line{};
+};
+
+/// Adds to the `grids` that the areas name (by index) those that the areas need besides: walls,
+/// ceilings, cylinders at the height of eyes, and those of direct light.
+/// Returns an entry for each area. Throws InputError for an activity that is not in the table, for
+/// an escape route wider than EN 1838 has them, and what lux_grid() throws.
+std::vector<AreaGrids> add_area_grids(const std::vector<DesignArea>& areas,
+                                      const std::vector<Activity>& activities, const Scene& scene,
+                                      const Eigen::Vector3d& up, std::vector<LuxGrid>& grids);
+
+/// The limits that the areas are held to, and the measured figures. `of` is that of
+/// add_area_grids().
+std::vector<Requirement> judge_areas(const std::vector<DesignArea>& areas,
+                                     const std::vector<Activity>& activities,
+                                     const std::vector<AreaGrids>& of,
+                                     const LightingReport& report);
+
+}  // namespace lightwell
