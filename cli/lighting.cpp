@@ -107,9 +107,10 @@ Action add_report(CLI::App& command) {
       ->check(with_extension({".html", ".json", ".csv"}));
   arguments->grids.add_to(command);
   command
-      .add_option("--maintenance", arguments->maintenance_factor,
-                  "maintenance factor of electric light, above 0 up to 1 (default: the scene file's, or "
-                  "1)")
+      .add_option(
+          "--maintenance", arguments->maintenance_factor,
+          "maintenance factor of electric light, above 0 up to 1 (default: the scene file's, or "
+          "1)")
       ->type_name("FACTOR")
       ->check(CLI::Range(1e-6, 1.0).description(""));  // no ":FLOAT in ..." in --help
   command

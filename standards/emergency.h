@@ -18,7 +18,7 @@ struct EmergencyLight {
   EmergencyArea kind = EmergencyArea::escape_route;
   GridField area{};         ///< all of the area; of a route, the middle half of its width
   GridField centre_line{};  ///< of a route
-  double usual_lux = 0.0;    ///< of a high-risk task area, without emergency
+  double usual_lux = 0.0;   ///< of a high-risk task area, without emergency
 };
 
 /// The limits of EN 1838:2013:

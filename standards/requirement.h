@@ -11,13 +11,13 @@ namespace lightwell {
 
 /// Figures that standards limit.
 enum class Figure {
-  mean,        ///< E_m, lx
-  least,       ///< E_min, lx
-  uniformity,  ///< U_0 = E_min / E_m
-  diversity,   ///< E_max / E_min
-  cylindrical, ///< mean cylindrical illuminance E_m,z, lx
-  modelling,   ///< cylindrical over horizontal illuminance of the same points
-  glare        ///< unified glare rating R_UG
+  mean,         ///< E_m, lx
+  least,        ///< E_min, lx
+  uniformity,   ///< U_0 = E_min / E_m
+  diversity,    ///< E_max / E_min
+  cylindrical,  ///< mean cylindrical illuminance E_m,z, lx
+  modelling,    ///< cylindrical over horizontal illuminance of the same points
+  glare         ///< unified glare rating R_UG
 };
 
 /// Symbol of a figure: "E_m".
@@ -35,11 +35,12 @@ struct Requirement {
   std::string area{};   ///< of the design
   std::string place{};  ///< that was measured: a grid, a wall, an observer
   Figure figure = Figure::mean;
-  bool is_upper = false;           ///< true: the figure must not exceed the limit
-  bool is_recommended = false;     ///< true: the standard advises, and does not require
+  bool is_upper = false;        ///< true: the figure must not exceed the limit
+  bool is_recommended = false;  ///< true: the standard advises, and does not require
   double limit = 0.0;
-  std::optional<double> value{};   ///< empty: there is nothing to rate, such as glare without luminaires
-  double within = 0.0;             ///< bound of the error of `value`, with odds of about 19 to 1
+  std::optional<double>
+      value{};          ///< empty: there is nothing to rate, such as glare without luminaires
+  double within = 0.0;  ///< bound of the error of `value`, with odds of about 19 to 1
 };
 
 /// "met", "missed" or "too close to tell".

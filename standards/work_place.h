@@ -27,9 +27,9 @@ struct WorkPlace {
   double error_estimate = 0.0;  ///< of the solution, relative RMS; 0: unknown
 };
 
-/// Least mean illuminance of the immediate surroundings of a task area, lx, for the one that the task
-/// asks for (EN 12464-1:2021, table of clause 5.3.4: 500 for 750 and more, 300 for 500, 200 for 300,
-/// 150 for 200; that of the task below).
+/// Least mean illuminance of the immediate surroundings of a task area, lx, for the one that the
+/// task asks for (EN 12464-1:2021, table of clause 5.3.4: 500 for 750 and more, 300 for 500, 200
+/// for 300, 150 for 200; that of the task below).
 double surround_mean(double task_mean);
 
 /// The limits of EN 12464-1 that were measured:
@@ -38,7 +38,8 @@ double surround_mean(double task_mean);
 /// - walls and ceilings: E_m of the activity and U_0 0.10;
 /// - cylindrical illuminance: E_m,z of the activity and U_0 0.10; recommended: a modelling index
 ///   E_m,z / E_m from 0.30 to 0.60;
-/// - R_UG of each observer. Its bound is that of the background's luminance, which is taken as twice
+/// - R_UG of each observer. Its bound is that of the background's luminance, which is taken as
+/// twice
 ///   the error estimate of the solution: 8 / ln 10 times the relative bound.
 std::vector<Requirement> work_place_requirements(const WorkPlace& place, const Activity& activity,
                                                  bool is_raised);

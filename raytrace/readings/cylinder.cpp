@@ -11,8 +11,8 @@ namespace {
 LuxReadings read_probes(const LitScene& lit, const RadiositySolution& solution,
                         const std::vector<Probe>& probes, const GatherOptions& options) {
   ProbeBounds bounds;
-  const BandArray E = probe_irradiance(lit.scene, lit.caster, lit.direct_light, solution, probes,
-                                       options, &bounds);
+  const BandArray E =
+      probe_irradiance(lit.scene, lit.caster, lit.direct_light, solution, probes, options, &bounds);
   LuxReadings read{.lux = Eigen::ArrayXd(E.rows()),
                    .lux_within = bounds.lux_within,
                    .read_within = bounds.read_within};
@@ -33,8 +33,8 @@ std::vector<Probe> cylinder_probes(const LuxGrid& grid, const Eigen::Vector3d& p
   std::vector<Probe> probes;
   for (int i = 0; i < planes_of_a_cylinder; ++i) {
     const double angle = around * ((i + 0.5) / planes_of_a_cylinder - 0.5);
-    probes.push_back({.position = position,
-                      .normal = std::cos(angle) * ahead + std::sin(angle) * aside});
+    probes.push_back(
+        {.position = position, .normal = std::cos(angle) * ahead + std::sin(angle) * aside});
   }
   return probes;
 }
@@ -67,10 +67,10 @@ LuxReadings read_cylinders(const LitScene& lit, const RadiositySolution& solutio
     const double noise =
         within.isNaN().select(0.0, (within.square() - shared.square()).max(0.0)).sum();
     read.read_within[i] = shared.mean();
-    read.lux_within[i] = within.isNaN().all()
-                             ? within[0]
-                             : std::hypot(std::sqrt(noise) / n, read.read_within[i]) +
-                                   of_steps * read.lux[i];
+    read.lux_within[i] =
+        within.isNaN().all()
+            ? within[0]
+            : std::hypot(std::sqrt(noise) / n, read.read_within[i]) + of_steps * read.lux[i];
   }
   return read;
 }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <limits>
 #include <map>
@@ -178,10 +179,10 @@ GridPlane plane_of_grid(const Scene& scene, const PolygonMesh& mesh, const Eigen
   found.high.array() -= grid.options.margin;
   if (grid.options.part) keep_part(*grid.options.part, grid, found);
   if (!((found.high - found.low).minCoeff() > 0.0)) {
-    throw InputError(fmt::format(
-        "nothing is left of surface '{}' within a margin of {:g} m{}", grid.name,
-        grid.options.margin,
-        grid.options.part ? " and the part that is asked for; check both" : "; give a smaller one"));
+    throw InputError(fmt::format("nothing is left of surface '{}' within a margin of {:g} m{}",
+                                 grid.name, grid.options.margin,
+                                 grid.options.part ? " and the part that is asked for; check both"
+                                                   : "; give a smaller one"));
   }
   return found;
 }
@@ -265,6 +266,23 @@ LuxGrid without_points_over(const LuxGrid& other, LuxGrid grid) {
     const double u = p.dot(other.u), v = p.dot(other.v);
     return u < 0.0 || v < 0.0 || u > other.columns * other.step_u || v > other.rows * other.step_v;
   });
+}
+
+LuxGrid points_seen_from(const ElementCaster& caster, const LuxGrid& eyes, const LuxGrid& grid) {
+  constexpr std::size_t most = 64;
+  constexpr double before = 1.0 - 1e-4;  // rays end before the surface of the point
+  const std::size_t count = std::min(most, eyes.points.size());
+  std::vector<Ray> rays(count);
+  std::vector<std::uint8_t> blocked(count);
+  const LuxGrid seen = with_points(grid, [&](const Probe& point) {
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector3d& eye = eyes.points[i * eyes.points.size() / count].position;
+      rays[i] = {.origin = eye, .direction = point.position - eye, .t_max = before};
+    }
+    caster.occluded(rays, blocked);
+    return std::ranges::any_of(blocked, [](std::uint8_t is_blocked) { return is_blocked == 0; });
+  });
+  return seen.points.empty() ? grid : seen;
 }
 
 void measure_as(GridQuantity quantity, const Eigen::Vector3d& up, const Eigen::Vector3d& facing,
@@ -372,10 +390,10 @@ LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const RadiositySolution& solution,
                       const LuxGrid& grid, double factor, const GatherOptions& options) {
   const auto count = static_cast<Eigen::Index>(grid.points.size());
-  const LuxReadings read = grid.quantity == GridQuantity::cylindrical ||
-                                   grid.quantity == GridQuantity::semicylindrical
-                               ? read_cylinders({scene, caster, direct_light}, solution, grid, options)
-                               : read_planes({scene, caster, direct_light}, solution, grid, options);
+  const LuxReadings read =
+      grid.quantity == GridQuantity::cylindrical || grid.quantity == GridQuantity::semicylindrical
+          ? read_cylinders({scene, caster, direct_light}, solution, grid, options)
+          : read_planes({scene, caster, direct_light}, solution, grid, options);
   LuxField field{.lux = factor * read.lux, .lux_within = factor * read.lux_within};
   summarise(field);
   if (!(field.mean > 0.0)) return field;

@@ -35,7 +35,9 @@ struct LuxGrid {
   GridQuantity quantity = GridQuantity::planar;
   Eigen::Vector3d upright = Eigen::Vector3d::UnitZ();  ///< unit, axis of cylinders
   Eigen::Vector3d facing = Eigen::Vector3d::UnitX();   ///< unit, across `upright`
-  bool is_direct_only = false;       ///< true: reflected light does not count
+  bool is_direct_only = false;                         ///< true: reflected light does not count
+  /// True: the grid was made for the limits of an area, beside those that were asked for.
+  bool is_of_area = false;
   LuxGridOptions options{};                          ///< with the standard's spacing in place of 0
   Eigen::Vector3d corner = Eigen::Vector3d::Zero();  ///< m, outer corner of the first cell
   Eigen::Vector3d u = Eigen::Vector3d::UnitX(), v = Eigen::Vector3d::UnitY();  ///< unit, in plane
@@ -68,6 +70,10 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid);
 /// Returns the grid without the points over the rectangle of another one, such as the surroundings
 /// of a task area without the task area.
 LuxGrid without_points_over(const LuxGrid& other, LuxGrid grid);
+
+/// Returns the grid without the points that surfaces hide from all points of `eyes`, or from 64 of
+/// them. If that leaves nothing, the grid is returned as it is.
+LuxGrid points_seen_from(const ElementCaster& caster, const LuxGrid& eyes, const LuxGrid& grid);
 
 /// Makes a grid measure another quantity than planar illuminance. `up` and `facing` are unit
 /// vectors; `facing` is made level, and matters to planes and half cylinders alone. Throws

@@ -36,20 +36,20 @@ struct CalculationGrid {
 
 /// Kinds of areas that EN 1838 lights in an emergency.
 enum class EmergencyArea {
-  escape_route,       ///< at most 2 m wide
-  open_area,          ///< of more than 60 m^2, in which people could panic
-  high_risk_task_area ///< where a dangerous process must be brought to an end
+  escape_route,        ///< at most 2 m wide
+  open_area,           ///< of more than 60 m^2, in which people could panic
+  high_risk_task_area  ///< where a dangerous process must be brought to an end
 };
 
 /// An area that is held to the limits of a standard (an [[areas]] table): to those of EN 12464-1
 /// for an activity, or to those of EN 1838 in an emergency.
 struct DesignArea {
   std::string name{};
-  std::string activity{};                    ///< key of an activity; empty in an emergency
-  bool is_raised = false;                    ///< held to the activity's raised illuminance
-  std::optional<EmergencyArea> emergency{};  ///< empty for an activity
-  double usual_lux = 0.0;                    ///< lx without emergency, of a high-risk task area
-  int grid = 0;                              ///< index into LightingDesign::grids
+  std::string activity{};                       ///< key of an activity; empty in an emergency
+  bool is_raised = false;                       ///< held to the activity's raised illuminance
+  std::optional<EmergencyArea> emergency{};     ///< empty for an activity
+  double usual_lux = 0.0;                       ///< lx without emergency, of a high-risk task area
+  int grid = 0;                                 ///< index into LightingDesign::grids
   std::optional<int> surround{}, background{};  ///< likewise
   std::vector<int> walls{}, ceilings{};         ///< indices into Scene::surfaces
   std::vector<std::string> observers{};         ///< cameras for whose eyes glare is rated
@@ -63,12 +63,23 @@ struct MaintenanceParts {
   double factor() const { return lamp_flux * lamp_survival * luminaire * room; }
 };
 
+/// Hours and shares of use of electric light in a year (the [energy] table; EN 15193-1).
+struct LightingUse {
+  int surface = 0;  ///< index into Scene::surfaces, whose area the energy is related to
+  double daylight_hours = 0.0, night_hours = 0.0;     ///< h
+  double daylight = 1.0, occupancy = 1.0;             ///< shares, [0,1]
+  bool is_constant_illuminance = false;               ///< true: new lamps are dimmed
+  double standby_watts = 0.0;                         ///< of controls, W
+  double charging_watts = 0.0, charging_hours = 0.0;  ///< of emergency luminaires, W and h
+};
+
 /// The part of a scene file that describes the lighting design. A LightingDesign changes no
 /// solution.
 struct LightingDesign {
   std::vector<CalculationGrid> grids{};
   std::vector<DesignArea> areas{};
   std::optional<MaintenanceParts> maintenance{};  ///< the [maintenance] table
+  std::optional<LightingUse> use{};
   // Indexed like Scene::lamps; empty without lamps, or where the format holds no such data.
   std::vector<double> watts{};  ///< electric power; 0: unknown
   /// Height in m of the luminous sides in the lamp's photometric file.
@@ -77,16 +88,16 @@ struct LightingDesign {
   ReportHeading heading{};
 };
 
-/// Reads the design from the file of `scene`: the tables [[grids]], [[areas]], [maintenance] and
-/// [report], and the photometric files and electric power of the [[lamps]] tables. The power of a lamp is its key
-/// `watts`, else the power in its photometric file. The photometric file's power is ignored where
-/// the key `lumens` rescales the flux, since the lamp is another luminaire then. Empty for formats
-/// other than the native one. Throws what read_scene throws.
+/// Reads the design from the file of `scene`: the tables [[grids]], [[areas]], [maintenance],
+/// [energy] and [report], and the photometric files and electric power of the [[lamps]] tables. The
+/// power of a lamp is its key `watts`, else the power in its photometric file. The photometric
+/// file's power is ignored where the key `lumens` rescales the flux, since the lamp is another
+/// luminaire then. Empty for formats other than the native one. Throws what read_scene throws.
 LightingDesign read_lighting_design(const Scene& scene);
 
-/// Reads the tables [[grids]], [[areas]], [maintenance] and [report] of a TOML file beside a scene of
-/// any format into `design`, in place of those that it holds. Throws InputError naming file, line
-/// and remedy.
+/// Reads the tables [[grids]], [[areas]], [maintenance], [energy] and [report] of a TOML file
+/// beside a scene of any format into `design`, in place of those that it holds. Throws InputError
+/// naming file, line and remedy.
 void read_design_tables(const std::filesystem::path& file, const Scene& scene,
                         LightingDesign& design);
 

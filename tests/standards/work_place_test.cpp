@@ -12,7 +12,8 @@
 namespace lightwell::work_place_test {
 namespace {
 
-const Requirement& of(const std::vector<Requirement>& all, const std::string& place, Figure figure) {
+const Requirement& of(const std::vector<Requirement>& all, const std::string& place,
+                      Figure figure) {
   const auto at = std::ranges::find_if(all, [&](const Requirement& requirement) {
     return requirement.place == place && requirement.figure == figure;
   });
@@ -79,8 +80,8 @@ TEST(Activities, OfTheProgramHaveLimitsInOrder) {
 }
 
 TEST(Activities, ThatAreNotInTheTableAreNamed) {
-  const std::string message = message_of<InputError>(
-      [] { find_activity(usual_activities(), "writting", "left desk"); });
+  const std::string message =
+      message_of<InputError>([] { find_activity(usual_activities(), "writting", "left desk"); });
   EXPECT_NE(message.find("area 'left desk'"), std::string::npos) << message;
   EXPECT_NE(message.find("Did you mean 'writing'?"), std::string::npos) << message;
 }

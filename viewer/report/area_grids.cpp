@@ -17,56 +17,60 @@ namespace {
 /// Grids of a report under construction.
 struct GridList {
   const Scene& scene;
+  const ElementCaster& caster;
   Eigen::Vector3d up;
   std::vector<LuxGrid>& grids;
 
   int add(LuxGrid grid) {
+    grid.is_of_area = true;
     grids.push_back(std::move(grid));
     return static_cast<int>(grids.size()) - 1;
   }
 };
 
 Eigen::Vector3d middle_of(const LuxGrid& grid) {
-  return grid.corner + 0.5 * (grid.columns * grid.step_u * grid.u + grid.rows * grid.step_v * grid.v);
+  return grid.corner +
+         0.5 * (grid.columns * grid.step_u * grid.u + grid.rows * grid.step_v * grid.v);
 }
 
-// Adds the grid of a wall or a ceiling, which faces the task area. Several areas share it.
-int add_inner_surface(int surface, const LuxGrid& task, GridList& list) {
-  const std::string& name = list.scene.surfaces[static_cast<std::size_t>(surface)].name;
-  const auto known = std::ranges::find(list.grids, name, &LuxGrid::name);
-  if (known != list.grids.end()) return static_cast<int>(known - list.grids.begin());
-  return list.add(lux_grid(list.scene, surface, list.up, {.towards = middle_of(task)}));
-}
-
-// Adds the points over the task area at the height of eyes, with cylinders and with level planes.
-void add_eyes(const DesignArea& area, AreaGrids& made, GridList& list) {
+// The points over the task area at the height of eyes.
+LuxGrid eyes_of(const DesignArea& area, const GridList& list) {
   const LuxGrid& task = list.grids[static_cast<std::size_t>(area.grid)];
   LuxGridOptions options = task.options;
   options.height = area.eye_height;
-  const std::string place =
-      fmt::format("{}, eyes at {:g} {}", task.name, area.eye_height / list.scene.metres_per_unit,
-                  list.scene.unit_name);
-  LuxGrid grid = lux_grid(list.scene, task.surface, list.up, options);
-  grid.name = place;
-  made.horizontal = list.add(grid);
-  measure_as(GridQuantity::cylindrical, list.up, Eigen::Vector3d::Zero(), grid);
-  grid.name = place + ", cylindrical";
-  made.cylindrical = list.add(std::move(grid));
+  LuxGrid eyes = lux_grid(list.scene, task.surface, list.up, options);
+  eyes.name = fmt::format("{}, eyes at {:g} {}", task.name,
+                          area.eye_height / list.scene.metres_per_unit, list.scene.unit_name);
+  return eyes;
+}
+
+// Adds the grid of a wall or a ceiling, which faces the eyes. Points that furniture hides from all
+// eyes are left out. Several areas share the grid.
+int add_inner_surface(int surface, const LuxGrid& eyes, GridList& list) {
+  const std::string& name = list.scene.surfaces[static_cast<std::size_t>(surface)].name;
+  const auto known = std::ranges::find(list.grids, name, &LuxGrid::name);
+  if (known != list.grids.end()) return static_cast<int>(known - list.grids.begin());
+  const LuxGrid grid = lux_grid(list.scene, surface, list.up, {.towards = middle_of(eyes)});
+  return list.add(points_seen_from(list.caster, eyes, grid));
 }
 
 AreaGrids grids_of_activity(const DesignArea& area, const Activity& activity, GridList& list) {
   AreaGrids made{.task = area.grid, .surround = area.surround, .background = area.background};
-  const LuxGrid task = list.grids[static_cast<std::size_t>(area.grid)];
+  LuxGrid eyes = eyes_of(area, list);
   const auto add_all = [&](const std::vector<int>& surfaces, double limit) {
     std::vector<int> added;
     for (const int surface : surfaces) {
-      if (limit > 0.0) added.push_back(add_inner_surface(surface, task, list));
+      if (limit > 0.0) added.push_back(add_inner_surface(surface, eyes, list));
     }
     return added;
   };
   made.walls = add_all(area.walls, activity.walls);
   made.ceilings = add_all(area.ceilings, activity.ceiling);
-  if (activity.cylindrical > 0.0) add_eyes(area, made, list);
+  if (!(activity.cylindrical > 0.0)) return made;
+  made.horizontal = list.add(eyes);
+  measure_as(GridQuantity::cylindrical, list.up, Eigen::Vector3d::Zero(), eyes);
+  eyes.name += ", cylindrical";
+  made.cylindrical = list.add(std::move(eyes));
   return made;
 }
 
@@ -81,8 +85,8 @@ LuxGrid middle_half(const LuxGrid& grid) {
   step *= 0.5;
   for (std::size_t i = 0; i < half.points.size(); ++i) {
     const int at = is_along_u ? grid.cell[i] / grid.columns : grid.cell[i] % grid.columns;
-    half.points[i].position = grid.points[i].position + (0.25 * count - 0.5 * (at + 0.5)) * 2.0 *
-                                                            step * across;
+    half.points[i].position =
+        grid.points[i].position + (0.25 * count - 0.5 * (at + 0.5)) * 2.0 * step * across;
   }
   return half;
 }
@@ -165,14 +169,15 @@ std::vector<NamedGlare> observers_of(const DesignArea& area, const LightingRepor
 
 std::vector<AreaGrids> add_area_grids(const std::vector<DesignArea>& areas,
                                       const std::vector<Activity>& activities, const Scene& scene,
-                                      const Eigen::Vector3d& up, std::vector<LuxGrid>& grids) {
-  GridList list{scene, up, grids};
+                                      const ElementCaster& caster, const Eigen::Vector3d& up,
+                                      std::vector<LuxGrid>& grids) {
+  GridList list{scene, caster, up, grids};
   std::vector<AreaGrids> made;
   for (const DesignArea& area : areas) {
-    made.push_back(area.emergency
-                       ? grids_of_emergency(area, list)
-                       : grids_of_activity(
-                             area, find_activity(activities, area.activity, area.name), list));
+    made.push_back(
+        area.emergency
+            ? grids_of_emergency(area, list)
+            : grids_of_activity(area, find_activity(activities, area.activity, area.name), list));
   }
   return made;
 }

@@ -18,12 +18,14 @@ struct AreaGrids {
 };
 
 /// Adds to the `grids` that the areas name (by index) those that the areas need besides: walls,
-/// ceilings, cylinders at the height of eyes, and those of direct light.
+/// ceilings, cylinders at the height of eyes, and those of direct light. Walls and ceilings have no
+/// points that are hidden from all eyes over the task area.
 /// Returns an entry for each area. Throws InputError for an activity that is not in the table, for
 /// an escape route wider than EN 1838 has them, and what lux_grid() throws.
 std::vector<AreaGrids> add_area_grids(const std::vector<DesignArea>& areas,
                                       const std::vector<Activity>& activities, const Scene& scene,
-                                      const Eigen::Vector3d& up, std::vector<LuxGrid>& grids);
+                                      const ElementCaster& caster, const Eigen::Vector3d& up,
+                                      std::vector<LuxGrid>& grids);
 
 /// The limits that the areas are held to, and the measured figures. `of` is that of
 /// add_area_grids().

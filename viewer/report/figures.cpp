@@ -32,10 +32,26 @@ Json field_json(const LuxField& field) {
           {"point_within_relative", field.point_within}};
 }
 
+const char* quantity_name(GridQuantity quantity) {
+  switch (quantity) {
+    case GridQuantity::vertical:
+      return "vertical";
+    case GridQuantity::cylindrical:
+      return "cylindrical";
+    case GridQuantity::semicylindrical:
+      return "semicylindrical";
+    case GridQuantity::planar:
+      break;
+  }
+  return "planar";
+}
+
 Json surface_json(const LightingReport& report, const CalculationSurface& surface) {
   const LuxGrid& grid = surface.grid;
   Json json = {{"name", grid.name}};
   json.update(field_json(surface.field));
+  if (grid.quantity != GridQuantity::planar) json["quantity"] = quantity_name(grid.quantity);
+  if (grid.is_direct_only) json["light"] = "direct";
   json["points"] = grid.points.size();
   json["spacing_m"] = {grid.step_u, grid.step_v};
   json["height_m"] = grid.options.height;
@@ -101,8 +117,8 @@ std::string area_text(std::span<const Requirement> of_area) {
     const Standing standing = standing_of(requirement);
     if (standing == Standing::met) continue;
     text += fmt::format("  {}{}: {} {} of {} ± {:.2g}, {} {}\n",
-                        requirement.is_recommended ? "recommended, " : "",
-                        standing_name(standing), figure_symbol(requirement.figure),
+                        requirement.is_recommended ? "recommended, " : "", standing_name(standing),
+                        figure_symbol(requirement.figure),
                         figure_text(requirement.figure, *requirement.value), requirement.place,
                         requirement.within, requirement.is_upper ? "at most" : "at least",
                         figure_text(requirement.figure, requirement.limit));
@@ -144,6 +160,11 @@ nlohmann::ordered_json figures_json(const LightingReport& report) {
                   {"luminaires", std::move(lamps)},
                   {"surfaces", std::move(surfaces)},
                   {"observers", std::move(observers)}};
+  if (report.energy) {
+    figures["energy"] = {{"surface", report.energy->surface},
+                         {"area_m2", report.energy->area},
+                         {"LENI_kWh_per_m2", report.energy->indicator}};
+  }
   if (report.requirements.empty()) return figures;
   Json requirements = Json::array();
   for (const Requirement& requirement : report.requirements) {
@@ -219,6 +240,10 @@ std::string figures_text(const LightingReport& report) {
     text += observer.glare.ugr
                 ? fmt::format("{}: UGR {:.1f}\n", observer.name, *observer.glare.ugr)
                 : fmt::format("{}: no luminaire in sight, so no UGR\n", observer.name);
+  }
+  if (report.energy) {
+    text += fmt::format("{}: LENI {:.2f} kWh/m2 in a year\n", report.energy->surface,
+                        report.energy->indicator);
   }
   for (const auto& of_area : by_area(report.requirements)) text += area_text(of_area);
   return text;

@@ -56,6 +56,13 @@ struct PowerDensity {
   std::optional<double> per_hundred_lux{};  ///< W/m^2 for each 100 lx of E_m; empty: not known
 };
 
+/// Energy of electric light in a year over the area of a surface (EN 15193-1).
+struct LightingEnergy {
+  std::string surface{};
+  double area = 0.0;       ///< m^2
+  double indicator = 0.0;  ///< LENI, kWh/m^2
+};
+
 /// A picture of the scene.
 struct ReportPicture {
   std::string camera{};
@@ -81,6 +88,7 @@ struct LightingReport {
   std::vector<Observer> observers{};
   /// Limits of standards, by areas of the design, and the figures that are held to them.
   std::vector<Requirement> requirements{};
+  std::optional<LightingEnergy> energy{};  ///< empty: not asked for, or a power is not known
   std::optional<ReportPicture> picture{};
 };
 
@@ -88,7 +96,7 @@ struct LightingReport {
 const LuxField* electric_field(const LightingReport& report, const CalculationSurface& surface);
 
 /// Power density of a working plane. Empty unless
-/// - the surface is a plane above a surface (height above 0), and
+/// - the surface is a plane above a surface (height above 0) that was asked for, all of it, and
 /// - the power of every luminaire is known.
 std::optional<PowerDensity> power_density(const LightingReport& report,
                                           const CalculationSurface& surface);

@@ -15,6 +15,7 @@
 #include "scene/errors.h"
 #include "scene/io/text_file.h"
 #include "standards/activities.h"
+#include "standards/lighting_energy.h"
 #include "viewer/export/start_view.h"
 #include "viewer/export/write_whole.h"
 #include "viewer/report/area_grids.h"
@@ -139,6 +140,35 @@ LightingReport report_of(const ReportPlan& plan, const Scene& scene, const Solve
   return made;
 }
 
+// The year's energy of luminaires whose power is known; empty otherwise, and without [energy].
+std::optional<LightingEnergy> energy_of(const LightingDesign& design, const LightingReport& report,
+                                        const Scene& scene, const Eigen::Vector3d& up) {
+  if (!design.use) return {};
+  const LightingUse& use = *design.use;
+  double watts = 0.0;
+  for (const LuminaireRow& row : report.luminaires) {
+    if (!(row.watts > 0.0)) return {};
+    watts += row.watts;
+  }
+  const LuxGrid floor = lux_grid(scene, use.surface, up);
+  return LightingEnergy{
+      .surface = floor.name,
+      .area = floor.area,
+      .indicator = energy_indicator(
+          {.watts = watts,
+           .area = floor.area,
+           .daylight_hours = use.daylight_hours,
+           .night_hours = use.night_hours,
+           .daylight = use.daylight,
+           .occupancy = use.occupancy,
+           .constant_illuminance = use.is_constant_illuminance
+                                       ? constant_illuminance_factor(report.maintenance_factor)
+                                       : 1.0,
+           .standby_watts = use.standby_watts,
+           .charging_watts = use.charging_watts,
+           .charging_hours = use.charging_hours})};
+}
+
 }  // namespace
 
 ReportPlan plan_report(const Scene& scene, ReportRequest request) {
@@ -154,8 +184,7 @@ ReportPlan plan_report(const Scene& scene, ReportRequest request) {
   if (!request.activity.empty()) find_activity(plan.activities, request.activity, "all planes");
   for (const DesignArea& area : plan.design.areas) {
     for (const std::string& name : area.observers) {
-      const bool is_known =
-          std::ranges::find(request.observers, name) != request.observers.end();
+      const bool is_known = std::ranges::find(request.observers, name) != request.observers.end();
       if (!is_known) request.observers.push_back(name);
     }
   }
@@ -186,11 +215,12 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   std::vector<LuxGrid> grids = requested_grids(plan.request.grids, plan.design.grids, apart, up);
   const std::vector<DesignArea> areas = areas_of(plan, grids);
   const std::vector<AreaGrids> of_areas =
-      add_area_grids(areas, plan.activities, apart, up, grids);
+      add_area_grids(areas, plan.activities, apart, caster, up, grids);
   for (LuxGrid& grid : grids) {
     what.grids.push_back(without_buried_points(caster, std::move(grid)));
   }
   measure(scene, solved, what, made);
+  made.energy = energy_of(plan.design, made, apart, up);
   made.requirements = judge_areas(areas, plan.activities, of_areas, made);
   made.picture = picture_of(plan.request, scene, solved, progress);
   return made;

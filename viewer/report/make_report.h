@@ -25,7 +25,7 @@ struct ReportRequest {
   std::filesystem::path areas{};       ///< file with tables of the design; empty: the scene's
   std::string activity{};              ///< of all working planes without an area; empty: none
   std::filesystem::path activities{};  ///< table of activities; empty: usual_activities()
-  int rays = 1024;                       ///< of the gather at each point, a power of two
+  int rays = 1024;                     ///< of the gather at each point, a power of two
   bool has_picture = false;
   std::string camera{};  ///< of the picture; empty: the first
 };

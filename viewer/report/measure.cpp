@@ -62,8 +62,7 @@ std::vector<LuxField> fields(const MeasurableScene& lit, const Measurements& wha
   std::vector<LuxField> fields;
   for (const LuxGrid& grid : what.grids) {
     fields.push_back(measure_grid(lit.scene, lit.caster, lit.lights,
-                                  grid.is_direct_only ? *dark : all, grid, factor,
-                                  what.gathering));
+                                  grid.is_direct_only ? *dark : all, grid, factor, what.gathering));
     if (what.between) what.between();
   }
   return fields;

@@ -68,7 +68,7 @@ Scene read_toml(const std::filesystem::path& path) {
   const TomlValue all(file.path(), root, "");
   const TomlTable document =
       all.table({"title", "unit", "bands", "materials", "motions", "surfaces", "lamps", "sky",
-                 "cameras", "grids", "areas", "maintenance", "report", "windows"});
+                 "cameras", "grids", "areas", "maintenance", "energy", "report", "windows"});
   Scene scene{.file = path};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
@@ -145,7 +145,7 @@ void read_design_tables(const std::filesystem::path& path, const Scene& scene,
   const TextFile file(path);
   const toml::table root = parse_toml(file);
   const TomlTable document =
-      TomlValue(file.path(), root, "").table({"grids", "areas", "maintenance", "report"});
+      TomlValue(file.path(), root, "").table({"grids", "areas", "maintenance", "energy", "report"});
   read_toml_design(document.value(), scene, design);
 }
 

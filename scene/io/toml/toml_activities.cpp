@@ -9,9 +9,8 @@ namespace lightwell {
 namespace {
 
 Activity read_limits(const std::string& key, const TomlValue& value) {
-  const TomlTable table =
-      value.table({"title", "mean", "raised", "uniformity", "colour_rendering", "glare",
-                   "cylindrical", "walls", "ceiling"});
+  const TomlTable table = value.table({"title", "mean", "raised", "uniformity", "colour_rendering",
+                                       "glare", "cylindrical", "walls", "ceiling"});
   constexpr double most_colour_rendering = 100.0;
   Activity activity{.key = key, .title = key, .mean = table.require("mean").positive()};
   activity.raised_mean = activity.mean;

@@ -73,8 +73,8 @@ CalculationGrid read_grid(const TomlValue& value, const Scene& scene,
     }
   }
   if (const auto measures = table.find("measures")) grid.quantity = read_quantity(*measures);
-  const bool has_direction = grid.quantity == GridQuantity::vertical ||
-                             grid.quantity == GridQuantity::semicylindrical;
+  const bool has_direction =
+      grid.quantity == GridQuantity::vertical || grid.quantity == GridQuantity::semicylindrical;
   if (has_direction != table.has("facing")) {
     table.fail(has_direction ? "measures in one direction, and needs 'facing', such as [1, 0, 0]"
                              : "has 'facing', which only a grid that measures \"vertical\" or "
@@ -144,9 +144,9 @@ DesignArea read_area(const TomlValue& value, const Scene& scene,
     named.fail("has the name of another area; give each its own");
   }
   if (!named.member("emergency")) {
-    const TomlTable table = named.table({"name", "activity", "raised", "grid", "surround",
-                                         "background", "walls", "ceiling", "observers",
-                                         "eye_height"});
+    const TomlTable table =
+        named.table({"name", "activity", "raised", "grid", "surround", "background", "walls",
+                     "ceiling", "observers", "eye_height"});
     area.grid = find_grid(table.require("grid"), grids);
     read_activity(table, scene, grids, area);
     return area;
@@ -186,6 +186,33 @@ MaintenanceParts read_maintenance(const TomlValue& value) {
           .room = part("room")};
 }
 
+LightingUse read_use(const TomlValue& value, const Scene& scene) {
+  const TomlTable table =
+      value.table({"surface", "daylight_hours", "night_hours", "daylight", "occupancy",
+                   "constant_illuminance", "standby_watts", "charging_watts", "charging_hours"});
+  constexpr double hours_of_a_year = 8760.0;
+  const auto number = [&](const char* key, double most, double usual) {
+    const auto given = table.find(key);
+    return given ? given->number_within(0.0, most) : usual;
+  };
+  constexpr double any = 1e9;
+  LightingUse use{.surface = find_surface(table.require("surface"), scene),
+                  .daylight_hours = number("daylight_hours", hours_of_a_year, 0.0),
+                  .night_hours = number("night_hours", hours_of_a_year, 0.0),
+                  .daylight = number("daylight", 1.0, 1.0),
+                  .occupancy = number("occupancy", 1.0, 1.0),
+                  .standby_watts = number("standby_watts", any, 0.0),
+                  .charging_watts = number("charging_watts", any, 0.0),
+                  .charging_hours = number("charging_hours", hours_of_a_year, 0.0)};
+  if (const auto dimmed = table.find("constant_illuminance")) {
+    use.is_constant_illuminance = dimmed->boolean();
+  }
+  if (use.daylight_hours + use.night_hours > hours_of_a_year) {
+    table.fail("has more hours of use than the 8760 of a year; check both numbers of hours");
+  }
+  return use;
+}
+
 ReportHeading read_heading(const TomlValue& report) {
   const TomlTable table = report.table({"project", "client", "author", "date", "remarks"});
   const auto text = [&](const char* key) {
@@ -209,6 +236,7 @@ void read_toml_design(const TomlValue& document, const Scene& scene, LightingDes
   if (const auto parts = document.member("maintenance")) {
     design.maintenance = read_maintenance(*parts);
   }
+  if (const auto use = document.member("energy")) design.use = read_use(*use, scene);
   if (const auto report = document.member("report")) design.heading = read_heading(*report);
 }
 

@@ -10,8 +10,8 @@
 
 namespace lightwell {
 
-/// Reads the tables [[grids]], [[areas]], [maintenance] and [report] that a document has, in place
-/// of those of `design`. The surfaces and cameras of `scene` must be complete.
+/// Reads the tables [[grids]], [[areas]], [maintenance], [energy] and [report] that a document has,
+/// in place of those of `design`. The surfaces and cameras of `scene` must be complete.
 void read_toml_design(const TomlValue& document, const Scene& scene, LightingDesign& design);
 
 /// Returns the surfaces that a pattern, or an array of patterns, names by their own names or by

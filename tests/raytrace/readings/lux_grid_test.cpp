@@ -159,6 +159,62 @@ TEST(LuxGrid, LeavesOutWhatIsOnTheFacesOfBodies) {
   }
 }
 
+/// A part of 2 m x 1 m of the floor has the spacing p(2 m) = 0.32 m: 7 cells by 4. The box's height
+/// does not matter.
+TEST(LuxGrid, CoversThePartThatIsAskedFor) {
+  const Eigen::AlignedBox3d part(Eigen::Vector3d(1, 2, 0), Eigen::Vector3d(2, 4, 0.7));
+  const LuxGrid grid = lux_grid(floor_of_an_office(), 0, up, {.height = 0.75, .part = part});
+  EXPECT_EQ(grid.columns, 7);
+  EXPECT_EQ(grid.rows, 4);
+  EXPECT_NEAR(grid.area, 2.0, 1e-12);
+  for (const Probe& probe : grid.points) {
+    EXPECT_TRUE(part.contains(Eigen::Vector3d(probe.position.x(), probe.position.y(), 0.1)));
+    EXPECT_NEAR(probe.position.z(), 0.75, 1e-12);
+  }
+  const Eigen::AlignedBox3d beside(Eigen::Vector3d(5, 0, 0), Eigen::Vector3d(6, 1, 0));
+  EXPECT_THROW(lux_grid(floor_of_an_office(), 0, up, {.part = beside}), InputError);
+}
+
+/// Of 20 cells of 1 m, those with their middles over the part of 2 m x 2 m are left out.
+TEST(LuxGrid, LeavesOutThePointsOverAnotherGrid) {
+  const Scene scene = floor_of_an_office();
+  const Eigen::AlignedBox3d part(Eigen::Vector3d(1, 1, 0), Eigen::Vector3d(3, 3, 0));
+  const LuxGrid task = lux_grid(scene, 0, up, {.height = 0.75, .spacing = 0.5, .part = part});
+  const LuxGrid around = without_points_over(task, lux_grid(scene, 0, up, {.spacing = 1.0}));
+  EXPECT_EQ(around.points.size(), 16u);
+  EXPECT_EQ(around.cell.size(), 16u);
+  for (const Probe& probe : around.points) EXPECT_FALSE(part.contains(probe.position));
+}
+
+/// A cupboard stands 1 cm before a wall, and hides its own width and height from the eyes before
+/// it.
+TEST(LuxGrid, LeavesOutWhatFurnitureHides) {
+  const TracedScene lit(SceneBuilder()
+                            .polygon({}, {{0, 0, 0}, {4, 0, 0}, {4, 0, 3}, {0, 0, 3}})
+                            .box({}, {1, 0.01, 0}, {2, 0.5, 2}, false)
+                            .polygon({}, {{0, 3, 0}, {4, 3, 0}, {4, 4, 0}, {0, 4, 0}})
+                            .build());
+  const LuxGrid eyes = lux_grid(lit.scene, 2, up, {.height = 1.2});
+  const LuxGrid wall =
+      lux_grid(lit.scene, 0, up, {.spacing = 0.5, .towards = Eigen::Vector3d(2, 3, 1)});
+  ASSERT_EQ(wall.points.size(), 48u);
+  const LuxGrid seen = points_seen_from(lit.caster, eyes, wall);
+  // 2 of 8 columns, 4 of 6 rows; from 2.5 m away at a height of 1.2 m, the gap shows nothing.
+  EXPECT_EQ(seen.points.size(), 40u);
+  for (const Probe& probe : seen.points) {
+    const Eigen::Vector3d& p = probe.position;
+    EXPECT_FALSE(p.x() > 1 && p.x() < 2 && p.z() < 2) << p.transpose();
+  }
+}
+
+/// A ceiling whose polygon faces upwards is measured from the room below.
+TEST(LuxGrid, FacesThePointThatItIsToldTo) {
+  const LuxGrid grid =
+      lux_grid(floor_of_an_office(), 0, up, {.towards = Eigen::Vector3d(2, 2, -1)});
+  EXPECT_EQ(grid.points.front().normal, -up);
+  EXPECT_NEAR(grid.u.cross(grid.v).dot(-up), 1.0, 1e-12);
+}
+
 /// A panel of constant exitance M over a black floor: E = M F in closed form at every point. Direct
 /// light without occluders needs no shadow rays and has no noise.
 TEST(LuxGrid, MeasuresAPanelOverAFloorAsTheFormulaHasIt) {

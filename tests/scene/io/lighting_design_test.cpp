@@ -91,5 +91,104 @@ TEST_F(Design, RefusesGridsOfNothing) {
   EXPECT_TRUE(says(refused(bracket + "watts = 0\n"), "watts"));
 }
 
+const std::string furnished = R"(
+[[cameras]]
+name = "chair"
+position = [200, 100, 120]
+look_at = [0, 100, 120]
+[[grids]]
+name = "task"
+surface = "floor"
+height = 75
+part = { min = [100, 100, 0], max = [200, 160, 0] }
+[[grids]]
+name = "surround"
+surface = "floor"
+height = 75
+leaves_out = ["task"]
+[[grids]]
+name = "face"
+surface = "floor"
+height = 120
+measures = "semicylindrical"
+facing = [0, 2, 0]
+)";
+
+TEST_F(Design, HasPartsAndQuantitiesOfGrids) {
+  const LightingDesign design = read(furnished);
+  ASSERT_EQ(design.grids.size(), 3u);
+  ASSERT_TRUE(design.grids[0].part.has_value());
+  EXPECT_TRUE(design.grids[0].part->min().isApprox(Eigen::Vector3d(1.0, 1.0, 0.0)));
+  EXPECT_TRUE(design.grids[0].part->max().isApprox(Eigen::Vector3d(2.0, 1.6, 0.0)));
+  EXPECT_EQ(design.grids[1].leaves_out, std::vector<int>{0});
+  EXPECT_EQ(design.grids[2].quantity, GridQuantity::semicylindrical);
+  EXPECT_TRUE(design.grids[2].facing.isApprox(Eigen::Vector3d::UnitY()));
+}
+
+TEST_F(Design, HasAreasOfTwoStandards) {
+  const LightingDesign design = read(furnished + R"(
+[maintenance]
+lamp_flux = 0.9
+room = 0.95
+[[areas]]
+name = "desk"
+activity = "writing"
+raised = true
+grid = "task"
+surround = "surround"
+walls = "fl*"
+observers = ["chair"]
+eye_height = 160
+[[areas]]
+emergency = "high-risk task area"
+grid = "task"
+usual_lux = 500
+[energy]
+surface = "floor"
+daylight_hours = 2250
+night_hours = 250
+occupancy = 0.9
+)");
+  ASSERT_EQ(design.areas.size(), 2u);
+  const DesignArea& desk = design.areas[0];
+  EXPECT_EQ(desk.activity, "writing");
+  EXPECT_TRUE(desk.is_raised);
+  EXPECT_EQ(desk.grid, 0);
+  EXPECT_EQ(desk.surround, 1);
+  EXPECT_FALSE(desk.background.has_value());
+  EXPECT_EQ(desk.walls, std::vector<int>{0});
+  EXPECT_EQ(desk.observers, std::vector<std::string>{"chair"});
+  EXPECT_DOUBLE_EQ(desk.eye_height, 1.6);
+  EXPECT_EQ(design.areas[1].name, "area2");
+  EXPECT_EQ(design.areas[1].emergency, EmergencyArea::high_risk_task_area);
+  EXPECT_EQ(design.areas[1].usual_lux, 500.0);
+  ASSERT_TRUE(design.maintenance.has_value());
+  EXPECT_DOUBLE_EQ(design.maintenance->factor(), 0.9 * 0.95);
+  ASSERT_TRUE(design.use.has_value());
+  EXPECT_EQ(design.use->night_hours, 250.0);
+}
+
+TEST_F(Design, SaysWhatIsWrongWithAreas) {
+  const auto says = [&](const std::string& tables, const std::string& sentence) {
+    const std::string message = refused(furnished + tables);
+    EXPECT_NE(message.find(sentence), std::string::npos) << message;
+  };
+  says("[[areas]]\nactivity = \"writing\"\ngrid = \"tusk\"\n", "Did you mean 'task'?");
+  says("[[areas]]\ngrid = \"task\"\n", "activity");
+  says("[[areas]]\nactivity = \"writing\"\ngrid = \"task\"\nwalls = [\"west\"]\n",
+       "no surface or material of the scene matches that");
+  says("[[areas]]\nactivity = \"writing\"\ngrid = \"task\"\nobservers = [\"door\"]\n",
+       "there is no camera of that name");
+  says("[[areas]]\nemergency = \"open area\"\ngrid = \"task\"\nusual_lux = 3\n",
+       "only a high-risk task area has");
+  says("[[areas]]\nemergency = \"high-risk task area\"\ngrid = \"task\"\n", "needs 'usual_lux'");
+  says("[[grids]]\nsurface = \"floor\"\nmeasures = \"vertical\"\n", "needs 'facing'");
+  says("[[grids]]\nsurface = \"floor\"\nleaves_out = [\"later\"]\n",
+       "there is no [[grids]] table of that name before it");
+  says("[maintenance]\nroom = 1.5\n", "room");
+  says("[energy]\nsurface = \"floor\"\ndaylight_hours = 8000\nnight_hours = 1000\n",
+       "more hours of use than the 8760 of a year");
+}
+
 }  // namespace
 }  // namespace lightwell::lighting_design_test
