@@ -4,9 +4,11 @@
 
 #include <Eigen/LU>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 #include <stdexcept>
+
+#include "scene/colour_matching.h"
 
 namespace lightwell {
 namespace {
@@ -18,20 +20,6 @@ const Eigen::Matrix3f& xyz_from_rgb() {
        0.0193339f, 0.1191920f, 0.9503041f)
           .finished();
   return matrix;
-}
-
-double lobe(double nm, double centre, double left, double right) {
-  const double t = (nm - centre) * (nm < centre ? left : right);
-  return std::exp(-0.5 * t * t);
-}
-
-// Wyman, Sloan & Shirley 2013, "Simple analytic approximations to the CIE XYZ color matching
-// functions", table 1, two and three lobes: within 1 % of the 1931 table's peak.
-std::array<double, 3> colour_matching(double nm) {
-  return {0.362 * lobe(nm, 442.0, 0.0624, 0.0374) + 1.056 * lobe(nm, 599.8, 0.0264, 0.0323) -
-              0.065 * lobe(nm, 501.1, 0.0490, 0.0382),
-          0.821 * lobe(nm, 568.8, 0.0213, 0.0247) + 0.286 * lobe(nm, 530.9, 0.0613, 0.0322),
-          1.217 * lobe(nm, 437.0, 0.0845, 0.0278) + 0.681 * lobe(nm, 459.0, 0.0385, 0.0725)};
 }
 
 }  // namespace
@@ -50,17 +38,14 @@ Bands spectral_bands(double first_nm, double last_nm, int count) {
     throw std::invalid_argument(fmt::format("{} bands: give between 1 and {}", count, max_bands));
   }
   Bands bands;
-  bands.xyz.setZero(3, count);
+  bands.xyz.resize(3, count);
   const double width = (last_nm - first_nm) / count;
-  constexpr int samples = 16;  // the functions are smooth at 1 nm; bands may be 100 nm wide
   for (int k = 0; k < count; ++k) {
     const double left = first_nm + k * width;
     bands.names.push_back(fmt::format("{:g}-{:g}nm", left, left + width));
     bands.wavelengths_nm.push_back(left + 0.5 * width);
-    for (int s = 0; s < samples; ++s) {
-      const auto matching = colour_matching(left + width * (s + 0.5) / samples);
-      for (int c = 0; c < 3; ++c) bands.xyz(c, k) += static_cast<float>(matching[c] / samples);
-    }
+    const auto matching = colour_matching(left, std::min(left + width, last_nm));
+    for (int c = 0; c < 3; ++c) bands.xyz(c, k) = static_cast<float>(matching[c]);
   }
   return bands;
 }

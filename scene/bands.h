@@ -33,8 +33,8 @@ struct Bands {
 Bands rgb_bands(double lumens_per_watt = 683.0);
 
 /// `count` equal bands from `first_nm` to `last_nm` (edges). A band's value is the power in the
-/// band (W per band, not per nm). CIE 1931 colour matching after Wyman, Sloan & Shirley 2013
-/// (multi-lobe fit), averaged over each band. Throws std::invalid_argument unless 360 <= first <
+/// band (W per band, not per nm). The colour-matching functions of the CIE 1931 standard observer
+/// are averaged over each band. Throws std::invalid_argument unless 360 <= first <
 /// last <= 830 and 1 <= count <= max_bands.
 Bands spectral_bands(double first_nm, double last_nm, int count);
 

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "scene/io/corner_maps.h"
 #include "scene/io/polygon.h"
 
 namespace lightwell {

@@ -6,7 +6,7 @@
 #include "scene/io/luminaires/luminaire_file.h"
 #include "scene/io/pictures/environment_file.h"
 #include "scene/io/pictures/picture_mean.h"
-#include "scene/io/spectrum_samples.h"
+#include "scene/io/spectrum_file.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/fuzz/target.h"
 

@@ -66,6 +66,42 @@ Json surface_json(const LightingReport& report, const CalculationSurface& surfac
   return json;
 }
 
+// Light by what eyes and bodies make of it.
+Json eye_json(const EyeLight& light) {
+  Json receptors = Json::object();
+  for (int r = 0; r < receptor_count; ++r) {
+    const auto receptor = static_cast<std::size_t>(r);
+    receptors[receptor_name(static_cast<Receptor>(r))] = {
+        {"W_per_m2", light.alpha_opic[receptor]}, {"EDI", light.equivalent_daylight[receptor]}};
+  }
+  Json json = {{"alpha_opic", std::move(receptors)},
+               {"melanopic_DER", light.melanopic_ratio()},
+               {"x", light.x},
+               {"y", light.y},
+               {"CCT", nullptr},
+               {"Duv", light.duv},
+               {"R_a", nullptr}};
+  if (light.colour_temperature) json["CCT"] = *light.colour_temperature;
+  if (light.colour_rendering) json["R_a"] = *light.colour_rendering;
+  return json;
+}
+
+// Illuminance of an eye, and where wavelengths are known its melanopic EDI, CCT and R_a.
+std::string eye_text(const Observer& observer) {
+  std::string text = fmt::format("{}: {} lx at the eye", observer.name, lux_text(observer.lux));
+  if (std::isfinite(observer.lux_within)) {
+    text += fmt::format(" (± {})", lux_text(observer.lux_within));
+  }
+  if (observer.light) {
+    const EyeLight& light = *observer.light;
+    text += fmt::format(", melanopic EDI {} lx (DER {:.2f})",
+                        lux_text(light.melanopic_ratio() * light.lux), light.melanopic_ratio());
+    if (light.colour_temperature) text += fmt::format(", {:.0f} K", *light.colour_temperature);
+    if (light.colour_rendering) text += fmt::format(", R_a {:.0f}", *light.colour_rendering);
+  }
+  return text + "\n";
+}
+
 Json observer_json(const Observer& observer) {
   Json sources = Json::array();
   for (const GlareSource& source : observer.glare.sources) {
@@ -76,11 +112,16 @@ Json observer_json(const Observer& observer) {
   }
   Json ugr;  // null: no luminaire in sight
   if (observer.glare.ugr) ugr = *observer.glare.ugr;
-  return {{"name", observer.name},
-          {"UGR", std::move(ugr)},
-          {"background_luminance", observer.glare.background},
-          {"sources", std::move(sources)},
-          {"left_out", observer.glare.left_out}};
+  Json json = {{"name", observer.name},
+               {"UGR", std::move(ugr)},
+               {"background_luminance", observer.glare.background},
+               {"sources", std::move(sources)},
+               {"left_out", observer.glare.left_out},
+               {"E_v", observer.lux},
+               {"E_v_within", nullptr}};
+  if (std::isfinite(observer.lux_within)) json["E_v_within"] = observer.lux_within;
+  if (observer.light) json.update(eye_json(*observer.light));
+  return json;
 }
 
 Json luminaire_json(const LuminaireRow& row) {
@@ -240,6 +281,7 @@ std::string figures_text(const LightingReport& report) {
     text += observer.glare.ugr
                 ? fmt::format("{}: UGR {:.1f}\n", observer.name, *observer.glare.ugr)
                 : fmt::format("{}: no luminaire in sight, so no UGR\n", observer.name);
+    text += eye_text(observer);
   }
   if (report.energy) {
     text += fmt::format("{}: LENI {:.2f} kWh/m2 in a year\n", report.energy->surface,

@@ -8,6 +8,7 @@
 #include "raytrace/readings/lux_grid.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/luminaires/luminaire_file.h"
+#include "standards/eye_light.h"
 #include "standards/requirement.h"
 #include "viewer/export/appearance.h"
 #include "viewer/report/plan_lines.h"
@@ -42,11 +43,15 @@ struct CalculationSurface {
   PlanLines lines{};  ///< of the room and of what stands in it, for the plan
 };
 
-/// Unified glare rating for a camera's eye.
+/// Glare and light for a camera's eye.
 struct Observer {
   std::string name{};
   Camera eye{};
   Glare glare{};
+  /// Illuminance of the plane across the line of sight, of all light, lx, and a bound of its error
+  /// with odds of about 19 to 1; NaN: not known.
+  double lux = 0.0, lux_within = 0.0;
+  std::optional<EyeLight> light{};  ///< of the same plane; empty without wavelengths or light
 };
 
 /// Installed power of all luminaires over the area of a working plane, in the two units of EN

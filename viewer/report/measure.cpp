@@ -84,6 +84,43 @@ std::vector<Observer> observers(const MeasurableScene& lit, const Measurements& 
   return found;
 }
 
+/// Light of the plane of an eye, with a bound in lx.
+struct EyeReading {
+  Spectrum irradiance{};  // W/m^2
+  double lux_within = 0.0;
+};
+
+// Light of the eyes' planes, times `factor`.
+std::vector<EyeReading> eye_readings(const MeasurableScene& lit, const Measurements& what,
+                                     double factor) {
+  std::vector<Probe> probes;
+  for (const Camera& eye : what.eyes) {
+    probes.push_back({.position = eye.position, .normal = eye.direction.normalized()});
+  }
+  if (probes.empty()) return {};
+  ProbeBounds bounds;
+  const BandArray E = probe_irradiance(lit.scene, lit.caster, lit.lights, lit.solved.solution,
+                                       probes, what.gathering, &bounds);
+  std::vector<EyeReading> readings;
+  for (Eigen::Index i = 0; i < E.rows(); ++i) {
+    const Spectrum here = static_cast<float>(factor) * E.row(i).transpose();
+    readings.push_back({.irradiance = here, .lux_within = factor * bounds.lux_within[i]});
+  }
+  return readings;
+}
+
+void set_eye_light(const Bands& bands, const std::vector<EyeReading>& readings,
+                   LightingReport& report) {
+  for (std::size_t i = 0; i < readings.size(); ++i) {
+    Observer& observer = report.observers[i];
+    observer.lux = luminous(bands, readings[i].irradiance);
+    observer.lux_within = readings[i].lux_within;
+    if (const auto power = spectral_power(bands, readings[i].irradiance)) {
+      observer.light = eye_light(*power);
+    }
+  }
+}
+
 }  // namespace
 
 LightContent light_content(const Scene& scene, const SolvedScene& solved) {
@@ -118,6 +155,8 @@ void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
     std::vector<LuxField> found = fields(all, what, is_maintained ? what.maintenance_factor : 1.0);
     for (std::size_t i = 0; i < found.size(); ++i) report.surfaces[i].field = std::move(found[i]);
     report.observers = observers(all, what);
+    set_eye_light(scene.bands,
+                  eye_readings(all, what, is_maintained ? what.maintenance_factor : 1.0), report);
     return;
   }
   const std::vector<Spectrum> scales = effective_scales(solved.solution);
@@ -131,11 +170,19 @@ void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
   };
   const std::vector<Spectrum> of_day = alone(true), of_lamps = alone(false);
   relight(solved, of_day);
-  std::vector<LuxField> day = fields(lit(), what, 1.0);
+  const MeasurableScene outside = lit();
+  std::vector<LuxField> day = fields(outside, what, 1.0);
+  std::vector<EyeReading> seen = eye_readings(outside, what, 1.0);
   relight(solved, of_lamps);
   const MeasurableScene lamps = lit();
   std::vector<LuxField> electric = fields(lamps, what, what.maintenance_factor);
   report.observers = observers(lamps, what);
+  const std::vector<EyeReading> by_lamps = eye_readings(lamps, what, what.maintenance_factor);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    seen[i].irradiance += by_lamps[i].irradiance;
+    seen[i].lux_within += by_lamps[i].lux_within;
+  }
+  set_eye_light(scene.bands, seen, report);
   relight(solved, scales);
   for (std::size_t i = 0; i < day.size(); ++i) {
     CalculationSurface& surface = report.surfaces[i];

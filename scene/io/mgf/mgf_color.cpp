@@ -6,7 +6,7 @@
 #include "scene/bands.h"
 #include "scene/black_body.h"
 #include "scene/errors.h"
-#include "scene/io/spectrum_samples.h"
+#include "scene/io/spectrum_file.h"
 
 namespace lightwell {
 namespace {

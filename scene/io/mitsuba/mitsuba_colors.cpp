@@ -8,7 +8,7 @@
 #include "scene/black_body.h"
 #include "scene/errors.h"
 #include "scene/io/mitsuba/mitsuba_transform.h"
-#include "scene/io/spectrum_samples.h"
+#include "scene/io/spectrum_file.h"
 #include "scene/io/text_file.h"
 #include "scene/limits.h"
 

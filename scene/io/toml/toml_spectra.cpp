@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/errors.h"
+#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace {
@@ -60,7 +61,9 @@ SpectrumSamples read_samples(const TomlTable& table) {
   const TomlValue file = table.require("file");
   const auto path = (file.file().parent_path() / file.name()).lexically_normal();
   try {
-    return read_spectrum_csv(path, column);
+    if (lower_extension(path) != ".spdx") return read_spectrum_csv(path, column);
+    if (!column.empty()) table.fail("has a 'column', and TM-27 files have one spectrum; remove it");
+    return read_tm27(path);
   } catch (const InputError& error) {
     file.fail(fmt::format("cannot be used: {}", error.what()));
   }

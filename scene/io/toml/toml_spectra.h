@@ -1,6 +1,6 @@
 #pragma once
 
-#include "scene/io/spectrum_samples.h"
+#include "scene/io/spectrum_file.h"
 #include "scene/io/toml/toml_value.h"
 #include "scene/scene.h"
 

@@ -1,4 +1,4 @@
-#include "scene/io/spectrum_samples.h"
+#include "scene/io/spectrum_file.h"
 
 #include <fmt/format.h>
 
@@ -13,17 +13,6 @@
 
 namespace lightwell {
 namespace {
-
-constexpr double edge_rounding_nm = 1e-6;
-
-double value_at(const SpectrumSamples& s, double nm) {
-  const auto after = std::lower_bound(s.wavelengths_nm.begin(), s.wavelengths_nm.end(), nm);
-  if (after == s.wavelengths_nm.begin()) return s.values.front();
-  if (after == s.wavelengths_nm.end()) return s.values.back();
-  const auto i = static_cast<std::size_t>(after - s.wavelengths_nm.begin());
-  const double t = (nm - s.wavelengths_nm[i - 1]) / (s.wavelengths_nm[i] - s.wavelengths_nm[i - 1]);
-  return std::lerp(s.values[i - 1], s.values[i], t);
-}
 
 std::vector<std::string_view> split_cells(std::string_view line) {
   std::vector<std::string_view> cells;
@@ -55,26 +44,6 @@ std::size_t find_column(const TextFile& file, int line, const std::vector<std::s
 }
 
 }  // namespace
-
-double mean(const SpectrumSamples& s, double low, double high) {
-  double sum = 0.0, previous_nm = low, previous = value_at(s, low);
-  const auto add_up_to = [&](double nm, double value) {
-    sum += 0.5 * (previous + value) * (nm - previous_nm);
-    previous_nm = nm;
-    previous = value;
-  };
-  for (std::size_t i = 0; i < s.wavelengths_nm.size(); ++i) {
-    const double nm = s.wavelengths_nm[i];
-    if (nm > low && nm < high) add_up_to(nm, s.values[i]);
-  }
-  add_up_to(high, value_at(s, high));
-  return sum / (high - low);
-}
-
-bool covers(const SpectrumSamples& s, double low, double high) {
-  return !s.wavelengths_nm.empty() && s.wavelengths_nm.front() <= low + edge_rounding_nm &&
-         s.wavelengths_nm.back() >= high - edge_rounding_nm;
-}
 
 SpectrumSamples read_spectrum_csv(const std::filesystem::path& path, const std::string& column) {
   const TextFile file(path);
