@@ -31,8 +31,8 @@ std::array<double, receptor_count> alpha_opic(const SpectralPower& power) {
 }
 
 // E_alpha for each lux of D65, W/lm (CIE S 026:2018, table 2).
-constexpr std::array<double, receptor_count> daylight_efficacies = {
-    0.8173e-3, 1.4558e-3, 1.6289e-3, 1.4497e-3, 1.3262e-3};
+constexpr std::array<double, receptor_count> daylight_efficacies = {0.8173e-3, 1.4558e-3, 1.6289e-3,
+                                                                    1.4497e-3, 1.3262e-3};
 
 }  // namespace
 
