@@ -77,6 +77,7 @@ void ChannelArguments::add(const std::string& text) {
 }
 
 EmitterChannels ChannelArguments::channels(const Scene& scene) const {
+  if (fixed) return *fixed;
   if (is_off) return {};
   if (per_luminaire) return channels_per_luminaire(scene);
   return patterns.empty() ? channels_by_kind(scene) : channels_by_pattern(scene, patterns);

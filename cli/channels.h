@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct ChannelArguments {
   bool by_kind = false;  ///< "--channels kinds" was given, which is the default
   bool per_luminaire = false;
   std::vector<ChannelPattern> patterns{};
+  std::optional<EmitterChannels> fixed{};  ///< chosen by the command, whatever was given
 
   void add_to(CLI::App& command, const std::string& group);
   /// Channels of the scene's emitters. Throws InputError if a pattern matches no emitter.

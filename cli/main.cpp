@@ -44,6 +44,8 @@ constexpr const char* recipes =
                                                          irradiance and lux at points
   lightwell report room.toml room.vtp --plane floor@0.75 -o room.html
                                                          lux, uniformity and glare as a page
+  lightwell design office.toml --limits limits.toml -o design
+                                                         the dimming of least power within limits
   lightwell daylight office.toml --weather city.epw --plane floor@0.8 -o year
                                                          every hour of a year: DA, sDA, EN 17037
   lightwell compare mine.exr reference.exr               how far two pictures are apart
@@ -63,7 +65,7 @@ struct NamedCommand {
   Action (*add)(CLI::App&);
   bool reads_scene = true;
 };
-constexpr std::array<NamedCommand, 18> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 19> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight, false},
@@ -72,6 +74,7 @@ constexpr std::array<NamedCommand, 18> commands = {{{"run", add_run},
                                                     {"view", add_view},
                                                     {"export", add_export},
                                                     {"report", add_report},
+                                                    {"design", add_design},
                                                     {"daylight", add_daylight},
                                                     {"compare", add_compare, false},
                                                     {"form-factors", add_form_factors},

@@ -15,7 +15,7 @@ struct Library {
 
 constexpr std::string_view jpeg_turbo = LIGHTWELL_JPEG_TURBO;
 
-constexpr std::array<Library, 18> libraries = {
+constexpr std::array<Library, 19> libraries = {
     {{"Embree", LIGHTWELL_EMBREE},
      {"oneTBB", LIGHTWELL_TBB},
      {"CGAL", LIGHTWELL_CGAL},
@@ -30,6 +30,7 @@ constexpr std::array<Library, 18> libraries = {
      {"meshoptimizer", LIGHTWELL_MESHOPTIMIZER},
      {"pugixml", LIGHTWELL_PUGIXML},
      {"muParser", LIGHTWELL_MUPARSER},
+     {"GLPK", LIGHTWELL_GLPK},
      {"toml++", LIGHTWELL_TOMLPLUSPLUS},
      {"fmt", LIGHTWELL_FMT},
      {"CLI11", LIGHTWELL_CLI11},

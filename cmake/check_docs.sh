@@ -12,7 +12,7 @@ while IFS= read -r page; do
   folder=$(dirname "$page")
   head -n 1 "$page" | grep -q '^# ' || { printf '%s does not begin with a heading.\n' "$page"; status=1; }
   case $page in
-    scene/*|mesh/*|radiosity/*|raytrace/*|standards/*|daylight/*|viewer/*|validation/*|cli/*|python/*|bench/*)
+    scene/*|mesh/*|radiosity/*|raytrace/*|standards/*|daylight/*|viewer/*|design/*|validation/*|cli/*|python/*|bench/*)
       [ "$(wc -l < "$page")" -le 25 ] || { printf '%s has more than 25 lines.\n' "$page"; status=1; } ;;
   esac
   while IFS= read -r target; do
@@ -22,7 +22,7 @@ while IFS= read -r page; do
   done < <(awk '/^ *```/ { code = !code } !code' "$page" | grep -oE '\]\([^)# ]+' | sed 's/^](//')
   while IFS= read -r path; do
     [ -e "$path" ] || [ -e "$folder/$path" ] || missing "$page" "$path"
-  done < <(grep -oE '`(scene|mesh|radiosity|raytrace|standards|daylight|viewer|validation|cli|python|cmake|tests|bench|examples)/[A-Za-z0-9_/.-]+\.(h|cpp|txt|sh|js|py)`' "$page" | tr -d '`')
+  done < <(grep -oE '`(scene|mesh|radiosity|raytrace|standards|daylight|viewer|design|validation|cli|python|cmake|tests|bench|examples)/[A-Za-z0-9_/.-]+\.(h|cpp|txt|sh|js|py)`' "$page" | tr -d '`')
 done < <(find . -name '*.md' -not -path './build/*' -not -path './.git/*' | sed 's|^\./||' | sort)
 [ $status = 0 ] && echo "Every page has a heading, and every file that the documentation names exists."
 exit $status

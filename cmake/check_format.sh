@@ -9,7 +9,7 @@ if [ -z "$program" ]; then
   echo "clang-format-14 was not found, so the format is not checked."
   exit 0
 fi
-sources=(scene mesh radiosity raytrace standards daylight viewer validation cli python cornell bench tests)
+sources=(scene mesh radiosity raytrace standards daylight viewer design validation cli python cornell bench tests)
 [ ! -d examples ] || sources+=(examples)
 if [ "${1:-}" = --fix ]; then
   find "${sources[@]}" \( -name '*.h' -o -name '*.cpp' \) -print0 | xargs -0 "$program" -i

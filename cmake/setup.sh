@@ -9,7 +9,7 @@ export CCACHE_BASEDIR="$PWD"  # what was compiled in one clone is not compiled a
 build_packages=(
   build-essential cmake ninja-build
   libeigen3-dev libtbb-dev libfmt-dev libembree-dev libcgal-dev libopenmesh-dev libvtk9-dev
-  libtomlplusplus-dev libassimp-dev libdraco-dev libmeshoptimizer-dev libpugixml-dev libmuparser-dev libjpeg-dev libopenexr-dev libpng-dev zlib1g-dev
+  libtomlplusplus-dev libassimp-dev libdraco-dev libmeshoptimizer-dev libpugixml-dev libmuparser-dev libglpk-dev libjpeg-dev libopenexr-dev libpng-dev zlib1g-dev
   libcli11-dev nlohmann-json3-dev libgtest-dev
 )
 # What CPack needs besides to find the libraries that a Debian package depends on.
@@ -44,7 +44,7 @@ need_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     say "This is not Debian, so nothing is installed for you. What is needed: a C++20 compiler, CMake 3.25,"
     say "Ninja, Eigen 3.4, oneTBB, fmt, Embree 3.13 or 4, CGAL 5.5, OpenMesh, VTK 9.1, toml++,"
-    say "assimp, Draco, meshoptimizer, pugixml, muParser, libjpeg, OpenEXR, libpng, zlib, CLI11, nlohmann-json, GoogleTest; for the tests Xvfb, Chromium, Firefox and node."
+    say "assimp, Draco, meshoptimizer, pugixml, muParser, GLPK, libjpeg, OpenEXR, libpng, zlib, CLI11, nlohmann-json, GoogleTest; for the tests Xvfb, Chromium, Firefox and node."
     return 0
   fi
   local name missing=()

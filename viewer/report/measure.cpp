@@ -69,7 +69,6 @@ std::vector<LuxField> fields(const MeasurableScene& lit, const Measurements& wha
 }
 
 std::vector<Observer> observers(const MeasurableScene& lit, const Measurements& what) {
-  constexpr int rays_of_an_eye = 1 << 14;
   GatherOptions gathering = what.gathering;
   gathering.rays = std::max(gathering.rays, rays_of_an_eye);
   std::vector<Observer> found;

@@ -9,6 +9,10 @@
 
 namespace lightwell {
 
+/// Gather rays for the eye of an observer, at least: the background luminance of UGR is one
+/// reading.
+inline constexpr int rays_of_an_eye = 1 << 14;
+
 /// Places that a report measures, and how.
 struct Measurements {
   std::vector<LuxGrid> grids{};

@@ -1,0 +1,163 @@
+#include <fmt/format.h>
+
+#include <limits>
+#include <memory>
+
+#include "cli/arguments.h"
+#include "cli/checkpoint.h"
+#include "cli/commands.h"
+#include "cli/grid_arguments.h"
+#include "cli/interrupt.h"
+#include "cli/outputs.h"
+#include "cli/report.h"
+#include "cli/steps.h"
+#include "cli/time_limit.h"
+#include "design/design_lighting.h"
+#include "design/plan_files.h"
+#include "scene/errors.h"
+#include "scene/io/text_file.h"
+#include "viewer/export/write_whole.h"
+
+namespace lightwell {
+namespace fs = std::filesystem;
+namespace {
+
+struct DesignArguments {
+  std::string scene, solution, limits, output;
+  std::vector<NamedNumber> watts;
+  int rays = 1024;
+  SolveArguments solve;
+};
+
+/// Files of a design in its folder.
+struct DesignFiles {
+  fs::path levels, figures, solution;
+};
+
+// Reads the given solution, or solves the scene with a channel for each luminaire or group.
+SolvedScene solution_to_dim(const DesignArguments& arguments, const DesignTask& task,
+                            const Scene& scene, const fs::path& output, const Feedback& feedback) {
+  const LightingLimits& limits = task.request.limits;
+  if (!arguments.solution.empty()) {
+    SolvedScene solved =
+        read_solution_step(arguments.solution, scene, feedback.console, feedback.report);
+    if (solved.solution.channels.empty()) {
+      throw InputError(fmt::format(
+          "{}: the solution keeps no light apart, so nothing can be dimmed; solve with --channels "
+          "per-luminaire, or leave the solution out",
+          arguments.solution));
+    }
+    if (!limits.groups.empty()) {
+      throw InputError(fmt::format(
+          "{} cannot be formed, since a given solution has its channels; leave the solution or the "
+          "groups out",
+          limits.groups.front().origin));
+    }
+    return solved;
+  }
+  SolveArguments solve = arguments.solve;
+  solve.channels.fixed = dimming_channels(scene, limits.groups);
+  Checkpoint none({}, provenance(scene, solve), {output}, feedback.console);
+  SolvedScene solved = solve_step(scene, {solve, output, TimeLimit(0.0)}, none, feedback);
+  solved.solution.provenance.options += " (a channel for each luminaire or group, by 'design')";
+  return solved;
+}
+
+int design(const DesignArguments& arguments, Console& console) {
+  Report report(console.options());
+  CleanUpReport clean_up;
+  note_input(arguments.limits);
+  LightingLimits limits = read_limits(arguments.limits);
+  const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
+  const DesignTask task = plan_design(
+      scene, {.limits = std::move(limits), .watts = arguments.watts, .rays = arguments.rays});
+  if (arguments.solution.empty()) {
+    static_cast<void>(
+        dimming_channels(scene, task.request.limits.groups));  // throws before the work
+  }
+  const OutputFolder folder(arguments.output);
+  const DesignFiles files{folder / "levels.csv", folder / "design.json", folder / "solution.vtp"};
+  for (const fs::path& file : {files.levels, files.figures, files.solution}) require_writable(file);
+  SolvedScene solved = solution_to_dim(arguments, task, scene, files.solution, {console, report});
+  stop_if_interrupted();
+  const Stopwatch watch;
+  const LightingPlan plan =
+      design_lighting(task, {scene, clean_up.names.get()}, solved, console.progress());
+  console.finish_phase();
+  stop_if_interrupted();
+  report.add_phase("design", watch.seconds());
+  for (const std::string& note : plan.notes) console.say("note: " + note);
+  report.add_solution(solved, false);
+  write_solution_step(files.solution, solved, console, report);
+  write_whole(files.levels, {levels_csv(plan, scene.metres_per_unit)});
+  report.add_file(files.levels);
+  const Json figures = plan_json(plan);
+  for (const auto& [key, value] : figures.items()) report.add(key, value);
+  report.add_file(files.figures);
+  report.write(files.figures);
+  if (!console.options().json && !console.options().quiet) fmt::print("{}", plan_text(plan));
+  report.print();
+  return plan.meets_all() ? exit_code(solved.solution) : exit_not_accurate;
+}
+
+// Options of the solve that --help of 'solve' explains.
+void hide_rare_options(CLI::App& command) {
+  for (const CLI::Option* option : command.get_options()) {
+    if (option->get_group() != "Options") {
+      command.get_option(option->get_name())->group("");
+    }
+  }
+  for (const char* const usual : {"--accuracy", "--max-patch-size", "--memory"}) {
+    command.get_option(usual)->group("How the light is solved");
+  }
+}
+
+}  // namespace
+
+Action add_design(CLI::App& command) {
+  const auto arguments = std::make_shared<DesignArguments>();
+  command.description(
+      "Finds the levels of luminaires that meet lighting limits with the least electric power:\n"
+      "levels.csv, design.json and the light at these levels, solution.vtp. Other options of\n"
+      "'lightwell solve' work as there. Exit code 4: not all limits are met.");
+  arguments->solve.add_to(command);
+  command.remove_option(command.get_option("--channels"));
+  hide_rare_options(command);
+  add_scene(command, arguments->scene);
+  command
+      .add_option("solution", arguments->solution,
+                  "its solution with channels, .vtp (default: the scene is solved)")
+      ->type_name("SOLUTION");
+  command
+      .add_option("--limits", arguments->limits,
+                  "limits of grids and observers, .toml (docs/design.md)")
+      ->required()
+      ->type_name("FILE")
+      ->check(with_extension({".toml"}));
+  command.add_option("-o,--output", arguments->output, "folder for the results")
+      ->required()
+      ->type_name("DIR");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--watts",
+          [arguments](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) {
+              arguments->watts.push_back(
+                  named_number(text, '=', "--watts", std::numeric_limits<double>::min()));
+            }
+          },
+          "electric power of each luminaire of this name; may be repeated")
+      ->type_name("NAME=W")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  command
+      .add_option("--grid-rays", arguments->rays,
+                  "gather rays per point of a grid, a power of two (default 1024)")
+      ->type_name("N")
+      ->check(power_of_two());
+  command.footer(
+      "Example: lightwell design office.toml --limits limits.toml -o design --accuracy 2%");
+  return [arguments](Console& console) { return design(*arguments, console); };
+}
+
+}  // namespace lightwell

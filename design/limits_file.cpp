@@ -1,0 +1,158 @@
+#include "design/limits_file.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <set>
+
+#include "scene/io/text_file.h"
+#include "scene/io/toml/toml_document.h"
+#include "scene/io/toml/toml_value.h"
+#include "scene/utf8.h"
+
+namespace lightwell {
+namespace {
+
+constexpr std::array<LimitKind, 5> limits_of_grids = {
+    LimitKind::mean_at_least, LimitKind::mean_at_most, LimitKind::uniformity_at_least,
+    LimitKind::least_at_least, LimitKind::greatest_at_most};
+
+std::string origin_of(const TomlValue& value) {
+  return std::string(trimmed(value.located("")));
+}
+
+double limit_value(LimitKind kind, const TomlValue& value) {
+  const double number = value.positive();
+  if (kind == LimitKind::uniformity_at_least && number > 1.0) {
+    value.fail("is above 1; U_0 is the least illuminance over the mean");
+  }
+  return number;
+}
+
+// Refuses limits of one grid that no light can meet.
+void require_consistent(const TomlTable& table) {
+  const auto least = table.find("mean_at_least"), most = table.find("mean_at_most");
+  if (least && most && least->number() > most->number()) {
+    table.fail(fmt::format("cannot be met: mean_at_least, {:g} lx, is above mean_at_most, {:g} lx",
+                           least->number(), most->number()));
+  }
+  const auto darkest = table.find("least_at_least"), brightest = table.find("greatest_at_most");
+  if (darkest && brightest && darkest->number() > brightest->number()) {
+    table.fail(
+        fmt::format("cannot be met: least_at_least, {:g} lx, is above greatest_at_most, {:g} lx",
+                    darkest->number(), brightest->number()));
+  }
+}
+
+void read_grid_limits(const TomlValue& value, LightingLimits& read) {
+  const auto given = value.member("grid");
+  const TomlValue named =
+      given ? value.renamed(fmt::format("limits of grid '{}'", given->name())) : value;
+  const TomlTable table =
+      named.table({"grid", "mean_at_least", "mean_at_most", "uniformity_at_least", "least_at_least",
+                   "greatest_at_most"});
+  const std::string grid = table.require("grid").name();
+  bool any = false;
+  for (const LimitKind kind : limits_of_grids) {
+    const auto limit = table.find(limit_key(kind));
+    if (!limit) continue;
+    any = true;
+    read.limits.push_back({.kind = kind,
+                           .place = grid,
+                           .value = limit_value(kind, *limit),
+                           .origin = origin_of(table.value())});
+  }
+  if (!any) {
+    table.fail(
+        "limit nothing; give at least one of mean_at_least, mean_at_most, uniformity_at_least, "
+        "least_at_least, greatest_at_most");
+  }
+  require_consistent(table);
+}
+
+void read_glare_limit(const TomlValue& value, LightingLimits& read) {
+  const auto given = value.member("observer");
+  const TomlValue named =
+      given ? value.renamed(fmt::format("glare of observer '{}'", given->name())) : value;
+  const TomlTable table = named.table({"observer", "ugr_at_most"});
+  constexpr double most = 50.0;  // the ratings of CIE 117 end at 31
+  read.limits.push_back({.kind = LimitKind::ugr_at_most,
+                         .place = table.require("observer").name(),
+                         .value = table.require("ugr_at_most").number_within(1.0, most),
+                         .origin = origin_of(table.value())});
+}
+
+// The tables of an array, which `read_one` takes one by one; no two have the same `key`.
+void read_tables(const TomlTable& document, const char* array, const char* key,
+                 void (*read_one)(const TomlValue&, LightingLimits&), LightingLimits& read) {
+  const auto tables = document.find(array);
+  if (!tables) return;
+  if (!tables->is_array()) {
+    tables->fail(fmt::format("must be an array of tables; write [[{}]]", array));
+  }
+  std::set<std::string> names;
+  for (const TomlValue& value : tables->elements(array)) {
+    read_one(value, read);
+    const std::string name = value.member(key)->name();
+    if (!names.insert(name).second) {
+      value.fail(fmt::format("is of {} '{}' as an earlier one is; write one [[{}]] table for each",
+                             key, name, array));
+    }
+  }
+}
+
+void read_dimming(const TomlValue& value, LightingLimits& read) {
+  const TomlTable table = value.table({"least", "groups"});
+  if (const auto least = table.find("least")) read.least_level = least->number_within(0.0, 1.0);
+  const auto groups = table.find("groups");
+  if (!groups) return;
+  for (const TomlValue& group : groups->elements("group")) {
+    WordedGroup worded{.origin = origin_of(group)};
+    for (const TomlValue& name : group.elements("name")) worded.names.push_back(name.name());
+    if (worded.names.empty()) group.fail("is empty; name the luminaires that dim together");
+    read.groups.push_back(std::move(worded));
+  }
+}
+
+}  // namespace
+
+const char* limit_key(LimitKind kind) {
+  switch (kind) {
+    case LimitKind::mean_at_least:
+      return "mean_at_least";
+    case LimitKind::mean_at_most:
+      return "mean_at_most";
+    case LimitKind::least_at_least:
+      return "least_at_least";
+    case LimitKind::greatest_at_most:
+      return "greatest_at_most";
+    case LimitKind::uniformity_at_least:
+      return "uniformity_at_least";
+    case LimitKind::ugr_at_most:
+      break;
+  }
+  return "ugr_at_most";
+}
+
+LightingLimits read_limits(const std::filesystem::path& path) {
+  const TextFile file(path);
+  const toml::table root = parse_toml(file);
+  const TomlTable document =
+      TomlValue(file.path(), root, "").table({"maintenance", "limits", "glare", "dimming"});
+  LightingLimits read;
+  if (const auto factor = document.find("maintenance")) {
+    read.maintenance_factor = factor->positive();
+    if (read.maintenance_factor > 1.0) {
+      factor->fail("is above 1; it is the share of the first light that is left, such as 0.8");
+    }
+  }
+  read_tables(document, "limits", "grid", &read_grid_limits, read);
+  read_tables(document, "glare", "observer", &read_glare_limit, read);
+  if (read.limits.empty()) {
+    document.fail("there are no limits; add at least one [[limits]] or [[glare]] table");
+  }
+  if (const auto dimming = document.find("dimming")) read_dimming(*dimming, read);
+  return read;
+}
+
+}  // namespace lightwell

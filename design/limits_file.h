@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "design/optimum/dimming.h"
+
+namespace lightwell {
+
+/// A limit in the words of a file.
+struct WordedLimit {
+  LimitKind kind = LimitKind::mean_at_least;
+  std::string place{};   ///< name of a grid, or of the observer's camera
+  double value = 0.0;    ///< lx, U_0 or UGR; > 0
+  std::string origin{};  ///< "file:line:column: limits of grid 'desk'", begins messages
+};
+
+/// Luminaires that are dimmed together, by names, or by patterns as in a shell.
+struct WordedGroup {
+  std::vector<std::string> names{};
+  std::string origin{};  ///< "file:line:column: group 1"
+};
+
+/// Limits of a lighting design and rules of dimming, as a file has them (docs/design.md).
+struct LightingLimits {
+  std::vector<WordedLimit> limits{};
+  double maintenance_factor = 1.0;  ///< of electric light, (0,1]
+  double least_level = 0.0;         ///< of each luminaire, [0,1]
+  std::vector<WordedGroup> groups{};
+};
+
+/// Key of a kind of limit in the file, such as "mean_at_least".
+const char* limit_key(LimitKind kind);
+
+/// Reads limits from a TOML file. There is at least one. Throws InputError naming file, line, key
+/// and remedy.
+LightingLimits read_limits(const std::filesystem::path& path);
+
+}  // namespace lightwell

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "design/limits_file.h"
+#include "radiosity/solution/solution.h"
+#include "scene/io/lighting_design.h"
+#include "viewer/report/requested_grids.h"
+
+namespace lightwell {
+
+/// A lamp, or a surface that emits light. Luminaires that share a name are told apart by a number:
+/// "panel 1", "panel 2".
+struct Luminaire {
+  std::string name{};
+  std::string shared_name{};  ///< the name in the scene, without the number
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, the middle
+  double watts = 0.0;                                  ///< electric power; 0: unknown
+  double lumens = 0.0;                                 ///< flux as solved, at full level
+  int channel = 0;                                     ///< of the solution
+};
+
+/// Channels for dimming: one for each luminaire, or for each group, and one each for sky and sun.
+/// A name in a group stands for all luminaires that share it, for one with its number, or for those
+/// that match it as a pattern. Throws InputError if a name stands for no luminaire, if a luminaire
+/// would be in two groups, and for more than most_channels channels.
+EmitterChannels dimming_channels(const Scene& scene, std::span<const WordedGroup> groups);
+
+/// The luminaires of a solution with channels, surfaces first. Power is that of the design, or that
+/// in `watts` for luminaires of a name. Throws InputError if `watts` names no luminaire.
+std::vector<Luminaire> luminaires_of(const Scene& scene, const SolvedScene& solved,
+                                     const LightingDesign& design,
+                                     std::span<const NamedNumber> watts);
+
+}  // namespace lightwell

@@ -1,0 +1,323 @@
+#include "design/optimum/dimming.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "design/optimum/linear_program.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int most_rounds = 200;
+// Relative excess of the glare of an observer that counts as none: 3.5e-6 of UGR.
+constexpr double glare_tolerance = 1e-6;
+
+// 4 * 10^(UGR/8): the allowed ratio of sum a d^2 to sum b d.
+double glare_ratio(double ugr) {
+  return 4.0 * std::pow(10.0, ugr / 8.0);
+}
+
+const DimmedGrid& grid_of(const DimmingProblem& problem, const DimmingLimit& limit) {
+  return problem.grids[static_cast<std::size_t>(limit.place)];
+}
+
+const DimmedObserver& observer_of(const DimmingProblem& problem, const DimmingLimit& limit) {
+  return problem.observers[static_cast<std::size_t>(limit.place)];
+}
+
+/// A limit as rows of the programme. Each row is divided by `scale`, so that values are about 1.
+struct LimitRows {
+  int first = 0, count = 0;
+  double scale = 1.0;
+  int shortfall = -1;  // column of what the limit may be missed by, relative; -1: none
+};
+
+/// The linear programme of a dimming problem, and which rows stand for which limit.
+class DimmingProgram {
+ public:
+  // Elastic limits may be missed, which alone then costs.
+  DimmingProgram(const DimmingProblem& problem, bool is_elastic)
+      : problem_(problem), is_elastic_(is_elastic) {
+    for (const Dimmable& luminaire : problem.luminaires) total_cost_ += luminaire.cost;
+    if (!(total_cost_ > 0.0)) total_cost_ = 1.0;
+    for (const Dimmable& luminaire : problem.luminaires) {
+      program_.add_column({.cost = is_elastic ? 0.0 : luminaire.cost / total_cost_,
+                           .least = luminaire.least,
+                           .most = luminaire.most});
+    }
+    add_squares();
+    for (const DimmingLimit& limit : problem.limits) add_limit(limit);
+  }
+
+  // Minimises the cost of the luminaires from here on, with each limit missed by no more than in
+  // `optimum`.
+  void keep_shortfalls(const LinearOptimum& optimum) {
+    constexpr double slack = 1e-6;  // a hundred times the tolerance of rows
+    for (std::size_t i = 0; i < problem_.luminaires.size(); ++i) {
+      program_.columns[i].cost = problem_.luminaires[i].cost / total_cost_;
+    }
+    for (const LimitRows& rows : rows_) {
+      LinearColumn& column = program_.columns[static_cast<std::size_t>(rows.shortfall)];
+      column = {.cost = 0.0, .most = std::max(0.0, optimum.x[rows.shortfall]) + slack};
+    }
+  }
+
+  // The optimum, with tangents added until the glare is kept. `rounds` counts the programmes.
+  LinearOptimum solve(int& rounds) {
+    while (true) {
+      LinearOptimum optimum = solve_linear(program_);
+      ++rounds;
+      if (!optimum.is_feasible || is_glare_kept(optimum)) return optimum;
+      if (!add_tangents(optimum.x)) return optimum;
+      if (rounds >= most_rounds) {
+        throw std::runtime_error("the levels for a limit of glare do not converge");
+      }
+    }
+  }
+
+  Eigen::VectorXd levels(const LinearOptimum& optimum) const {
+    Eigen::VectorXd d(static_cast<Eigen::Index>(problem_.luminaires.size()));
+    for (Eigen::Index i = 0; i < d.size(); ++i) {
+      const Dimmable& luminaire = problem_.luminaires[static_cast<std::size_t>(i)];
+      d[i] = std::clamp(optimum.x[i], luminaire.least, luminaire.most);
+    }
+    return d;
+  }
+
+  // Derivative of the least cost by the value of a limit: that of the rows' bounds or factors, by
+  // the envelope theorem.
+  double price(std::size_t k, const LinearOptimum& optimum) const {
+    const DimmingLimit& limit = problem_.limits[k];
+    const LimitRows& rows = rows_[k];
+    double dual = 0.0;
+    for (int r = 0; r < rows.count; ++r) dual += optimum.row_price[rows.first + r];
+    dual *= total_cost_ / rows.scale;
+    const Eigen::VectorXd d = levels(optimum);
+    switch (limit.kind) {
+      case LimitKind::uniformity_at_least:
+        return dual * (grid_of(problem_, limit).lux * d).mean();
+      case LimitKind::ugr_at_most:
+        return -dual * glare_ratio(limit.value) * std::numbers::ln10 / 8.0 *
+               observer_of(problem_, limit).background.dot(d);
+      default:
+        return dual;
+    }
+  }
+
+ private:
+  int count() const { return static_cast<int>(problem_.luminaires.size()); }
+
+  // A column t >= d^2 for each luminaire that an observer with a limit sees.
+  void add_squares() {
+    square_.assign(problem_.luminaires.size(), -1);
+    for (const DimmingLimit& limit : problem_.limits) {
+      if (limit.kind != LimitKind::ugr_at_most) continue;
+      const Eigen::VectorXd& a = observer_of(problem_, limit).glare;
+      for (int i = 0; i < count(); ++i) {
+        int& column = square_[static_cast<std::size_t>(i)];
+        if (!(a[i] > 0.0) || column >= 0) continue;
+        column = program_.add_column({});
+        const Dimmable& luminaire = problem_.luminaires[static_cast<std::size_t>(i)];
+        add_tangent(i, luminaire.most);
+        add_tangent(i, 0.5 * (luminaire.least + luminaire.most));
+      }
+    }
+  }
+
+  // t_i >= 2 e d_i - e^2.
+  void add_tangent(int i, double e) {
+    program_.rows.push_back(
+        {.terms = {{square_[static_cast<std::size_t>(i)], 1.0}, {i, -2.0 * e}}, .least = -e * e});
+  }
+
+  // Returns false if all tangents at these levels are there already, up to rounding.
+  bool add_tangents(const Eigen::VectorXd& x) {
+    constexpr double exact = 1e-8;
+    bool any = false;
+    for (int i = 0; i < count(); ++i) {
+      const int t = square_[static_cast<std::size_t>(i)];
+      if (t < 0 || x[i] * x[i] <= x[t] + exact) continue;
+      add_tangent(i, x[i]);
+      any = true;
+    }
+    return any;
+  }
+
+  // An empty row with what the limit may be missed by.
+  LinearRow row_with_shortfall(const LimitRows& rows, double sign) const {
+    LinearRow row;
+    if (rows.shortfall >= 0) row.terms.emplace_back(rows.shortfall, sign);
+    return row;
+  }
+
+  void add_light(LinearRow& row, const Eigen::Ref<const Eigen::RowVectorXd>& lux) const {
+    for (int i = 0; i < count(); ++i) row.terms.emplace_back(i, lux[i]);
+  }
+
+  void add_limit(const DimmingLimit& limit) {
+    LimitRows rows{.first = static_cast<int>(program_.rows.size()), .scale = limit.value};
+    if (is_elastic_) rows.shortfall = program_.add_column({.cost = 1.0});
+    if (limit.kind == LimitKind::ugr_at_most) {
+      add_glare(limit, rows);
+    } else {
+      const Eigen::MatrixXd& lux = grid_of(problem_, limit).lux;
+      const Eigen::RowVectorXd mean = lux.colwise().mean();
+      if (limit.kind == LimitKind::uniformity_at_least) {
+        add_uniformity(limit, lux, mean, rows);
+      } else {
+        const bool is_of_mean =
+            limit.kind == LimitKind::mean_at_least || limit.kind == LimitKind::mean_at_most;
+        add_illuminance(limit, is_of_mean ? Eigen::MatrixXd(mean) : lux, rows);
+      }
+    }
+    rows.count = static_cast<int>(program_.rows.size()) - rows.first;
+    rows_.push_back(rows);
+  }
+
+  // E / value >= 1 - shortfall, or <= 1 + shortfall.
+  void add_illuminance(const DimmingLimit& limit, const Eigen::MatrixXd& lux,
+                       const LimitRows& rows) {
+    const bool is_lower = is_lower_limit(limit.kind);
+    for (Eigen::Index p = 0; p < lux.rows(); ++p) {
+      LinearRow row = row_with_shortfall(rows, is_lower ? 1.0 : -1.0);
+      add_light(row, lux.row(p) / rows.scale);
+      (is_lower ? row.least : row.most) = 1.0;
+      program_.rows.push_back(std::move(row));
+    }
+  }
+
+  // E_p - U_0 E_m >= -shortfall U_0 E, all over E, the mean at full level.
+  void add_uniformity(const DimmingLimit& limit, const Eigen::MatrixXd& lux,
+                      const Eigen::RowVectorXd& mean, LimitRows& rows) {
+    rows.scale = mean.sum() > 0.0 ? mean.sum() : 1.0;
+    for (Eigen::Index p = 0; p < lux.rows(); ++p) {
+      LinearRow row = row_with_shortfall(rows, limit.value);
+      add_light(row, (lux.row(p) - limit.value * mean) / rows.scale);
+      row.least = 0.0;
+      program_.rows.push_back(std::move(row));
+    }
+  }
+
+  // ratio sum b d - sum a t >= -shortfall S, all over S, the larger sum at full level.
+  void add_glare(const DimmingLimit& limit, LimitRows& rows) {
+    const DimmedObserver& observer = observer_of(problem_, limit);
+    const double ratio = glare_ratio(limit.value);
+    const double sum = std::max(ratio * observer.background.sum(), observer.glare.sum());
+    rows.scale = sum > 0.0 ? sum : 1.0;
+    LinearRow row = row_with_shortfall(rows, 1.0);
+    add_light(row, ratio / rows.scale * observer.background.transpose());
+    for (int i = 0; i < count(); ++i) {
+      const int t = square_[static_cast<std::size_t>(i)];
+      if (t >= 0) row.terms.emplace_back(t, -observer.glare[i] / rows.scale);
+    }
+    row.least = 0.0;
+    program_.rows.push_back(std::move(row));
+  }
+
+  // True if sum a d^2 exceeds what is allowed, or missed, by no more than the tolerance.
+  bool is_glare_kept(const LinearOptimum& optimum) const {
+    const Eigen::VectorXd d = levels(optimum);
+    for (std::size_t k = 0; k < problem_.limits.size(); ++k) {
+      const DimmingLimit& limit = problem_.limits[k];
+      if (limit.kind != LimitKind::ugr_at_most) continue;
+      const DimmedObserver& observer = observer_of(problem_, limit);
+      const int missed = rows_[k].shortfall;
+      const double glare = observer.glare.dot(d.cwiseAbs2());
+      double allowed = glare_ratio(limit.value) * observer.background.dot(d);
+      if (missed >= 0) allowed += optimum.x[missed] * rows_[k].scale;
+      const double rounding = 1e-7 * rows_[k].scale;
+      if (glare > allowed * (1.0 + glare_tolerance) + rounding) return false;
+    }
+    return true;
+  }
+
+  const DimmingProblem& problem_;
+  bool is_elastic_;
+  double total_cost_ = 0.0;
+  LinearProgram program_{};
+  std::vector<int> square_{};  // column of t_i per luminaire; -1: none
+  std::vector<LimitRows> rows_{};
+};
+
+}  // namespace
+
+bool is_lower_limit(LimitKind kind) {
+  return kind == LimitKind::mean_at_least || kind == LimitKind::least_at_least ||
+         kind == LimitKind::uniformity_at_least;
+}
+
+double value_at(const DimmingProblem& problem, const DimmingLimit& limit,
+                const Eigen::VectorXd& levels) {
+  if (limit.kind == LimitKind::ugr_at_most) {
+    const DimmedObserver& observer = observer_of(problem, limit);
+    const double background = observer.background.dot(levels);
+    const double glare = observer.glare.dot(levels.cwiseAbs2());
+    if (!(glare > 0.0 && background > 0.0)) return 0.0;
+    return std::max(0.0, 8.0 * std::log10(0.25 * glare / background));
+  }
+  const Eigen::VectorXd lux = grid_of(problem, limit).lux * levels;
+  switch (limit.kind) {
+    case LimitKind::least_at_least:
+      return lux.minCoeff();
+    case LimitKind::greatest_at_most:
+      return lux.maxCoeff();
+    case LimitKind::uniformity_at_least:
+      return lux.mean() > 0.0 ? lux.minCoeff() / lux.mean() : 0.0;
+    default:
+      return lux.mean();
+  }
+}
+
+DimmingPlan best_dimming(const DimmingProblem& problem) {
+  DimmingPlan plan;
+  DimmingProgram strict(problem, false);
+  LinearOptimum optimum = strict.solve(plan.rounds);
+  plan.is_feasible = optimum.is_feasible;
+  if (plan.is_feasible) {
+    plan.levels = strict.levels(optimum);
+    for (std::size_t k = 0; k < problem.limits.size(); ++k) {
+      plan.price.push_back(strict.price(k, optimum));
+    }
+  } else {
+    DimmingProgram elastic(problem, true);
+    optimum = elastic.solve(plan.rounds);
+    elastic.keep_shortfalls(optimum);
+    const LinearOptimum cheapest = elastic.solve(plan.rounds);
+    plan.levels = elastic.levels(cheapest.is_feasible ? cheapest : optimum);
+    plan.price.assign(problem.limits.size(), 0.0);
+  }
+  for (Eigen::Index i = 0; i < plan.levels.size(); ++i) {
+    plan.cost += problem.luminaires[static_cast<std::size_t>(i)].cost * plan.levels[i];
+  }
+  for (const DimmingLimit& limit : problem.limits) {
+    plan.reached.push_back(value_at(problem, limit, plan.levels));
+  }
+  return plan;
+}
+
+DimmingProblem dimmed_evenly(const DimmingProblem& problem) {
+  DimmingProblem even{.luminaires = {{.name = "all"}}, .limits = problem.limits};
+  Dimmable& all = even.luminaires.front();
+  for (const Dimmable& luminaire : problem.luminaires) {
+    all.cost += luminaire.cost;
+    all.least = std::max(all.least, luminaire.least);
+    all.most = std::min(all.most, luminaire.most);
+  }
+  all.least = std::min(all.least, all.most);
+  for (const DimmedGrid& grid : problem.grids) {
+    even.grids.push_back({.name = grid.name, .lux = grid.lux.rowwise().sum()});
+  }
+  for (const DimmedObserver& observer : problem.observers) {
+    even.observers.push_back(
+        {.name = observer.name,
+         .glare = Eigen::VectorXd::Constant(1, observer.glare.sum()),
+         .background = Eigen::VectorXd::Constant(1, observer.background.sum())});
+  }
+  return even;
+}
+
+}  // namespace lightwell

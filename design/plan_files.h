@@ -1,0 +1,23 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "design/design_lighting.h"
+
+namespace lightwell {
+
+/// "W" or "lm", the unit of the costs of a plan.
+const char* cost_unit(const LightingPlan& plan);
+
+/// A table of the luminaires: name, position in the unit of the scene's file, level, electric power
+/// (empty where unknown) and group.
+std::string levels_csv(const LightingPlan& plan, double metres_per_unit);
+
+/// All figures of a plan.
+nlohmann::ordered_json plan_json(const LightingPlan& plan);
+
+/// Levels, power and limits as lines for people, and a sentence for each limit that is not met.
+std::string plan_text(const LightingPlan& plan);
+
+}  // namespace lightwell
