@@ -105,10 +105,12 @@ void measure_channels(MeasuredLight& light, const std::vector<int>& channels,
                                  .background = Eigen::VectorXd::Zero(count)});
   }
   for (Eigen::Index i = 0; i < count; ++i) {
-    report(progress, "luminaires", static_cast<double>(i) / static_cast<double>(count));
+    const auto between = [&] {
+      report(progress, "luminaires", static_cast<double>(i) / static_cast<double>(count));
+    };
     std::vector<double> alone(light.channel_count(), 0.0);
     alone[static_cast<std::size_t>(channels[static_cast<std::size_t>(i)])] = 1.0;
-    const LightReadings readings = light.measure(alone, 0);
+    const LightReadings readings = light.measure(alone, 0, between);
     for (std::size_t g = 0; g < readings.fields.size(); ++g) {
       problem.grids[g].lux.col(i) = readings.fields[g].lux;
     }
@@ -213,13 +215,15 @@ void find_levels(const DesignTask& task, const std::vector<int>& channels, Measu
     const bool is_first = plan.measurements == 0;
     if (is_first) plan.cost_without_margin = dimming.cost;
     if (!is_first && !dimming.is_feasible) break;  // the margin is out of reach
-    report(progress, "levels", static_cast<double>(plan.measurements) / most_measurements);
     plan.is_feasible = dimming.is_feasible;
     plan.cost = dimming.cost;
     plan.levels = levels_of(dimming, channels, light.channel_count());
     const auto replica = static_cast<std::uint64_t>(++plan.measurements);
-    plan.limits =
-        outcomes_of(task, light.measure(plan.levels, replica), light.solution().error_estimate);
+    const auto between = [&] {
+      report(progress, "levels", static_cast<double>(plan.measurements) / most_measurements);
+    };
+    plan.limits = outcomes_of(task, light.measure(plan.levels, replica, between),
+                              light.solution().error_estimate);
     for (std::size_t k = 0; k < plan.limits.size(); ++k) {
       plan.limits[k].price = dimming.price[k];
       plan.limits[k].at_full = value_at(problem, task.limits[k], full);
@@ -279,8 +283,7 @@ LightingPlan design_lighting(const DesignTask& task, const ReportedScene& of, So
                        .eyes = task.eyes,
                        .luminous_heights = task.design.luminous_height,
                        .maintenance_factor = plan.maintenance_factor,
-                       .rays = plan.rays},
-                      progress);
+                       .rays = plan.rays});
   if (channels.size() < solved.solution.channels.size()) {
     plan.notes.emplace_back("daylight is switched off: limits are those of electric light alone");
   }

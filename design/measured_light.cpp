@@ -11,12 +11,10 @@
 
 namespace lightwell {
 
-MeasuredLight::MeasuredLight(const ReportedScene& of, SolvedScene& solved, LightPlaces places,
-                             const Progress& progress)
+MeasuredLight::MeasuredLight(const ReportedScene& of, SolvedScene& solved, LightPlaces places)
     : scene_(of.scene),
       solved_(solved),
       places_(std::move(places)),
-      progress_(progress),
       caster_(solved.mesh),
       tables_(of.scene, solved.mesh) {
   const Eigen::Vector3d up = guess_up_axis(scene_.cameras, mesh_bounds(solved.mesh));
@@ -34,7 +32,8 @@ void MeasuredLight::relight_at(const std::vector<double>& levels) {
   relight(solved_, scales);
 }
 
-LightReadings MeasuredLight::measure(const std::vector<double>& levels, std::uint64_t replica) {
+LightReadings MeasuredLight::measure(const std::vector<double>& levels, std::uint64_t replica,
+                                     const std::function<void()>& between) {
   relight_at(levels);
   const DirectLight lights(scene_, solved_.mesh, {}, &tables_);
   GatherOptions gathering{.rays = places_.rays, .replica = replica};
@@ -42,7 +41,7 @@ LightReadings MeasuredLight::measure(const std::vector<double>& levels, std::uin
   for (const LuxGrid& grid : grids_) {
     readings.fields.push_back(measure_grid(scene_, caster_, lights, solved_.solution, grid,
                                            places_.maintenance_factor, gathering));
-    report(progress_, "measure", 0.0);
+    if (between) between();
   }
   gathering.rays = std::max(gathering.rays, rays_of_an_eye);
   for (const Camera& eye : places_.eyes) {
@@ -50,7 +49,7 @@ LightReadings MeasuredLight::measure(const std::vector<double>& levels, std::uin
                                                    gathering, places_.luminous_heights));
     const std::vector<std::string>& left_out = readings.glares.back().left_out;
     left_out_.insert(left_out.begin(), left_out.end());
-    report(progress_, "measure", 0.0);
+    if (between) between();
   }
   return readings;
 }

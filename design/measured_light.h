@@ -1,7 +1,7 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
+#include <functional>
 #include <set>
 #include <string>
 #include <vector>
@@ -9,7 +9,6 @@
 #include "radiosity/direct_light/direct_light.h"
 #include "raytrace/readings/glare.h"
 #include "raytrace/readings/lux_grid.h"
-#include "scene/progress.h"
 #include "viewer/report/make_report.h"
 
 namespace lightwell {
@@ -34,12 +33,12 @@ struct LightReadings {
 class MeasuredLight {
  public:
   /// Throws InputError for a grid that has no points, see lux_grid().
-  MeasuredLight(const ReportedScene& of, SolvedScene& solved, LightPlaces places,
-                const Progress& progress);
+  MeasuredLight(const ReportedScene& of, SolvedScene& solved, LightPlaces places);
 
   /// Relights the solution at levels per channel and measures. Another replica gives independent
-  /// noise. Throws Interrupted when progress says stop.
-  LightReadings measure(const std::vector<double>& levels, std::uint64_t replica);
+  /// noise. `between` is called between readings, to stop early by an exception.
+  LightReadings measure(const std::vector<double>& levels, std::uint64_t replica,
+                        const std::function<void()>& between = {});
   void relight_at(const std::vector<double>& levels);
 
   const std::vector<LuxGrid>& grids() const { return grids_; }
@@ -53,7 +52,6 @@ class MeasuredLight {
   const Scene& scene_;
   SolvedScene& solved_;
   LightPlaces places_;
-  Progress progress_;
   ElementCaster caster_;
   DirectLight tables_;
   std::vector<LuxGrid> grids_{};

@@ -80,8 +80,8 @@ double value_at(const DimmingProblem& problem, const DimmingLimit& limit,
 ///     sum_i a_i d_i^2 <= 4 * 10^(UGR/8) sum_i b_i d_i,
 ///
 /// in which t_i stands for d_i^2. Tangents t_i >= 2 e d_i - e^2 are added at the levels e of each
-/// optimum until UGR is kept to 1e-4 (cutting planes: Kelley 1960; a variable for each square:
-/// Vielma, Dunning, Huchette & Lubin 2017).
+/// optimum until squares are right to 4e-8 (cutting planes: Kelley 1960; a variable for each
+/// square: Vielma, Dunning, Huchette & Lubin 2017).
 ///
 /// If no levels meet all limits, the plan minimises the sum of what the limits are missed by,
 /// relative to their values, and among such levels the cost (elastic programming: Brown & Graves
