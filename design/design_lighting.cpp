@@ -256,14 +256,7 @@ DesignTask plan_design(const Scene& scene, DesignRequest request) {
                           : grid_index(scene, limit, of_scene, task.design.grids);
     task.limits.push_back({.kind = limit.kind, .place = place, .value = limit.value});
   }
-  const bool has_emitter = std::ranges::any_of(scene.surfaces, [&](const Surface& surface) {
-    return scene.materials[static_cast<std::size_t>(surface.material)].is_emitter();
-  });
-  if (scene.lamps.empty() && !has_emitter) {
-    throw InputError(
-        fmt::format("{}: there is no luminaire to dim; add [[lamps]], or surfaces that emit light",
-                    scene.file.string()));
-  }
+  require_luminaires(scene, request.watts);
   task.request = std::move(request);
   return task;
 }

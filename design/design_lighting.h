@@ -28,7 +28,7 @@ struct DesignTask {
 
 /// Reads the lighting design of a scene and looks up the names of grids and observers, before
 /// anything is computed. Throws InputError for a scene without units of light or without
-/// luminaires, for a name that is not there, and as read_lighting_design() does.
+/// luminaires, for a name that is not there, and what read_lighting_design() throws.
 DesignTask plan_design(const Scene& scene, DesignRequest request);
 
 /// Whether a measurement meets a limit: undecided if the bound of its error reaches across the
@@ -81,7 +81,7 @@ struct LightingPlan {
 ///
 /// `solved` has channels, of which none mixes luminaires with daylight; afterwards it is relit with
 /// the levels. Illuminance is maintained, glare is that of new luminaires. Throws InputError for a
-/// solution without such channels and for luminaires that are not there, Interrupted when progress
+/// solution without such channels, Interrupted when progress
 /// says stop.
 LightingPlan design_lighting(const DesignTask& task, const ReportedScene& of, SolvedScene& solved,
                              const Progress& progress);

@@ -91,7 +91,7 @@ void read_tables(const TomlTable& document, const char* array, const char* key,
     tables->fail(fmt::format("must be an array of tables; write [[{}]]", array));
   }
   std::set<std::string> names;
-  for (const TomlValue& value : tables->elements(array)) {
+  for (const TomlValue& value : tables->elements("table")) {
     read_one(value, read);
     const std::string name = value.member(key)->name();
     if (!names.insert(name).second) {

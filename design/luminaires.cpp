@@ -42,6 +42,10 @@ std::vector<Member> members_of(const Scene& scene) {
   return members;
 }
 
+bool is_named(const std::string& name, const Member& member) {
+  return name == member.name || name == member.shared_name;
+}
+
 bool stands_for(const std::string& name, const Member& member) {
   return matches_glob(name, member.name) || matches_glob(name, member.shared_name);
 }
@@ -127,6 +131,23 @@ EmitterChannels dimming_channels(const Scene& scene, std::span<const WordedGroup
   return channels;
 }
 
+void require_luminaires(const Scene& scene, std::span<const NamedNumber> watts) {
+  const std::vector<Member> members = members_of(scene);
+  if (members.empty()) {
+    throw InputError(
+        fmt::format("{}: there is no luminaire to dim; add [[lamps]], or surfaces that emit light",
+                    scene.file.string()));
+  }
+  for (const NamedNumber& known : watts) {
+    if (std::ranges::any_of(members, [&](const Member& m) { return is_named(known.name, m); })) {
+      continue;
+    }
+    throw InputError(fmt::format("{}: there is no luminaire '{}', whose power is given.{}",
+                                 scene.file.string(), known.name,
+                                 did_you_mean(known.name, names_of(members))));
+  }
+}
+
 std::vector<Luminaire> luminaires_of(const Scene& scene, const SolvedScene& solved,
                                      const LightingDesign& design,
                                      std::span<const NamedNumber> watts) {
@@ -169,16 +190,9 @@ std::vector<Luminaire> luminaires_of(const Scene& scene, const SolvedScene& solv
     if (area[i] > 0.0) luminaires[i].position /= area[i];
   }
   for (const NamedNumber& known : watts) {
-    bool any = false;
     for (std::size_t i = 0; i < luminaires.size(); ++i) {
-      if (known.name != members[i].name && known.name != members[i].shared_name) continue;
-      luminaires[i].watts = known.value;
-      any = true;
+      if (is_named(known.name, members[i])) luminaires[i].watts = known.value;
     }
-    if (any) continue;
-    throw InputError(fmt::format("{}: there is no luminaire '{}', whose power is given.{}",
-                                 scene.file.string(), known.name,
-                                 did_you_mean(known.name, names_of(members))));
   }
   return luminaires;
 }

@@ -29,8 +29,11 @@ struct Luminaire {
 /// would be in two groups, and for more than most_channels channels.
 EmitterChannels dimming_channels(const Scene& scene, std::span<const WordedGroup> groups);
 
+/// Throws InputError if the scene has no luminaires, or none of a name in `watts`.
+void require_luminaires(const Scene& scene, std::span<const NamedNumber> watts);
+
 /// The luminaires of a solution with channels, surfaces first. Power is that of the design, or that
-/// in `watts` for luminaires of a name. Throws InputError if `watts` names no luminaire.
+/// in `watts` for luminaires of a name.
 std::vector<Luminaire> luminaires_of(const Scene& scene, const SolvedScene& solved,
                                      const LightingDesign& design,
                                      std::span<const NamedNumber> watts);

@@ -36,9 +36,8 @@ struct LimitRows {
 /// The linear programme of a dimming problem, and which rows stand for which limit.
 class DimmingProgram {
  public:
-  // Elastic limits may be missed, which alone then costs.
-  DimmingProgram(const DimmingProblem& problem, bool is_elastic)
-      : problem_(problem), is_elastic_(is_elastic) {
+  // Elastic limits may be missed. What the worst is missed by then costs, and nothing else.
+  DimmingProgram(const DimmingProblem& problem, bool is_elastic) : problem_(problem) {
     for (const Dimmable& luminaire : problem.luminaires) total_cost_ += luminaire.cost;
     if (!(total_cost_ > 0.0)) total_cost_ = 1.0;
     for (const Dimmable& luminaire : problem.luminaires) {
@@ -47,19 +46,25 @@ class DimmingProgram {
                            .most = luminaire.most});
     }
     add_squares();
+    if (is_elastic) worst_ = program_.add_column({.cost = 1.0});
     for (const DimmingLimit& limit : problem.limits) add_limit(limit);
+  }
+
+  // Minimises the sum of what limits are missed by from here on, with the worst missed by no more
+  // than in `optimum`.
+  void minimise_sum(const LinearOptimum& optimum) {
+    column(worst_) = {.cost = 0.0, .most = kept(optimum, worst_)};
+    for (const LimitRows& rows : rows_) column(rows.shortfall).cost = 1.0;
   }
 
   // Minimises the cost of the luminaires from here on, with each limit missed by no more than in
   // `optimum`.
-  void keep_shortfalls(const LinearOptimum& optimum) {
-    constexpr double slack = 1e-8;  // the tolerance of rows
-    for (std::size_t i = 0; i < problem_.luminaires.size(); ++i) {
-      program_.columns[i].cost = problem_.luminaires[i].cost / total_cost_;
+  void minimise_cost(const LinearOptimum& optimum) {
+    for (int i = 0; i < count(); ++i) {
+      column(i).cost = problem_.luminaires[static_cast<std::size_t>(i)].cost / total_cost_;
     }
     for (const LimitRows& rows : rows_) {
-      LinearColumn& column = program_.columns[static_cast<std::size_t>(rows.shortfall)];
-      column = {.cost = 0.0, .most = std::max(0.0, optimum.x[rows.shortfall]) + slack};
+      column(rows.shortfall) = {.cost = 0.0, .most = kept(optimum, rows.shortfall)};
     }
   }
 
@@ -107,6 +112,12 @@ class DimmingProgram {
 
  private:
   int count() const { return static_cast<int>(problem_.luminaires.size()); }
+  LinearColumn& column(int i) { return program_.columns[static_cast<std::size_t>(i)]; }
+
+  static double kept(const LinearOptimum& optimum, int column) {
+    constexpr double slack = 1e-8;  // the tolerance of rows
+    return std::max(0.0, optimum.x[column]) + slack;
+  }
 
   // A column t >= d^2 for each luminaire that an observer with a limit sees.
   void add_squares() {
@@ -158,7 +169,11 @@ class DimmingProgram {
 
   void add_limit(const DimmingLimit& limit) {
     LimitRows rows{.first = static_cast<int>(program_.rows.size()), .scale = limit.value};
-    if (is_elastic_) rows.shortfall = program_.add_column({.cost = 1.0});
+    if (worst_ >= 0) {
+      rows.shortfall = program_.add_column({});
+      program_.rows.push_back({.terms = {{worst_, 1.0}, {rows.shortfall, -1.0}}, .least = 0.0});
+      ++rows.first;
+    }
     if (limit.kind == LimitKind::ugr_at_most) {
       add_glare(limit, rows);
     } else {
@@ -217,9 +232,9 @@ class DimmingProgram {
   }
 
   const DimmingProblem& problem_;
-  bool is_elastic_;
   double total_cost_ = 0.0;
   LinearProgram program_{};
+  int worst_ = -1;             // column of the largest shortfall; -1: limits are not elastic
   std::vector<int> square_{};  // column of t_i per luminaire; -1: none
   std::vector<LimitRows> rows_{};
 };
@@ -266,9 +281,13 @@ DimmingPlan best_dimming(const DimmingProblem& problem) {
   } else {
     DimmingProgram elastic(problem, true);
     optimum = elastic.solve(plan.rounds);
-    elastic.keep_shortfalls(optimum);
-    const LinearOptimum cheapest = elastic.solve(plan.rounds);
-    plan.levels = elastic.levels(cheapest.is_feasible ? cheapest : optimum);
+    for (const auto next : {&DimmingProgram::minimise_sum, &DimmingProgram::minimise_cost}) {
+      (elastic.*next)(optimum);
+      LinearOptimum better = elastic.solve(plan.rounds);
+      if (!better.is_feasible) break;  // by rounding
+      optimum = std::move(better);
+    }
+    plan.levels = elastic.levels(optimum);
     plan.price.assign(problem.limits.size(), 0.0);
   }
   for (Eigen::Index i = 0; i < plan.levels.size(); ++i) {

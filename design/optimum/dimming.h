@@ -83,9 +83,11 @@ double value_at(const DimmingProblem& problem, const DimmingLimit& limit,
 /// optimum until squares are right to 4e-8 (cutting planes: Kelley 1960; a variable for each
 /// square: Vielma, Dunning, Huchette & Lubin 2017).
 ///
-/// If no levels meet all limits, the plan minimises the sum of what the limits are missed by,
-/// relative to their values, and among such levels the cost (elastic programming: Brown & Graves
-/// 1975). Throws as solve_linear() does.
+/// If no levels meet all limits, the limits may be missed (elastic programming: Brown & Graves
+/// 1975). What the worst is missed by, relative to its value, is then as small as possible
+/// (Chebyshev goal programming: Flavell 1976); among such levels the sum of what all are missed by;
+/// among these the cost. Uniformity is missed relative to the mean at full level, glare relative to
+/// its sum there. Throws as solve_linear() does.
 DimmingPlan best_dimming(const DimmingProblem& problem);
 
 /// The same problem with all luminaires at one level, which is between the highest `least` and the

@@ -69,20 +69,30 @@ TEST(Dimming, OutOfReachIsNearestAtFullPower) {
   EXPECT_NEAR(plan.reached[0], 500.0, 500.0 * exact);
 }
 
-/// A mean of 400 lx is within reach, but not with 100 lx at most at every point. Each lx of the
-/// mean that is given up is worth 1/400, each that the greatest point exceeds is worth 1/100, so
-/// the greatest point is kept: 400 a + 100 b = 100 and 200 a + 300 b = 100, a = 0.2 and b = 0.2.
-TEST(Dimming, OfLimitsThatExcludeEachOtherTheFewestShareIsMissed) {
+/// A mean of 400 lx is within reach, but not with 100 lx at most at every point. With E at both
+/// points the mean is missed by 1 - E/400 and the most by E/100 - 1, which are alike at E = 160 lx:
+/// 400 a + 100 b = 160 and 200 a + 300 b = 160, a = b = 0.32.
+TEST(Dimming, OfLimitsThatExcludeEachOtherTheWorstIsAsGoodAsCanBe) {
   DimmingProblem problem = two_by_two();
   problem.limits = {{.kind = LimitKind::mean_at_least, .value = 400.0},
                     {.kind = LimitKind::greatest_at_most, .value = 100.0}};
   const DimmingPlan plan = best_dimming(problem);
   EXPECT_FALSE(plan.is_feasible);
-  // Limits may be missed by 1e-6 more than need be, while the cost is minimised.
-  constexpr double slack = 1e-5;
-  EXPECT_NEAR(plan.levels[0], 0.2, slack);
-  EXPECT_NEAR(plan.levels[1], 0.2, slack);
-  EXPECT_NEAR(plan.reached[1], 100.0, 100.0 * slack);
+  EXPECT_NEAR(plan.levels[0], 0.32, exact);
+  EXPECT_NEAR(plan.levels[1], 0.32, exact);
+  EXPECT_NEAR(plan.reached[0], 160.0, 160.0 * exact);
+}
+
+/// Uniformity is perfect in the dark, but darkness is far from a mean out of reach: levels are
+/// full.
+TEST(Dimming, DarknessIsNotNearALimitOutOfReach) {
+  DimmingProblem problem = two_by_two();
+  problem.grids[0].lux << 400.0, 500.0, 20.0, 10.0;
+  problem.limits = {{.kind = LimitKind::mean_at_least, .value = 50000.0},
+                    {.kind = LimitKind::uniformity_at_least, .value = 0.9}};
+  const DimmingPlan plan = best_dimming(problem);
+  EXPECT_FALSE(plan.is_feasible);
+  EXPECT_NEAR(plan.levels.minCoeff(), 1.0, 1e-4);  // 1e-8 of 50 000 lx, by one of 255 lx
 }
 
 TEST(Dimming, KeepsToLowestAndHighestLevels) {
