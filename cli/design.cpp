@@ -31,7 +31,7 @@ struct DesignArguments {
 
 /// Files of a design in its folder.
 struct DesignFiles {
-  fs::path levels, figures, solution;
+  fs::path levels, figures, page, solution;
 };
 
 // Reads the given solution, or solves the scene with a channel for each luminaire or group.
@@ -76,8 +76,10 @@ int design(const DesignArguments& arguments, Console& console) {
         dimming_channels(scene, task.request.limits.groups));  // throws before the work
   }
   const OutputFolder folder(arguments.output);
-  const DesignFiles files{folder / "levels.csv", folder / "design.json", folder / "solution.vtp"};
-  for (const fs::path& file : {files.levels, files.figures, files.solution}) require_writable(file);
+  const DesignFiles files{folder / "levels.csv", folder / "design.json", folder / "design.html",
+                          folder / "solution.vtp"};
+  for (const fs::path& file : {files.levels, files.figures, files.page, files.solution})
+    require_writable(file);
   SolvedScene solved = solution_to_dim(arguments, task, scene, files.solution, {console, report});
   stop_if_interrupted();
   const Stopwatch watch;
@@ -91,6 +93,8 @@ int design(const DesignArguments& arguments, Console& console) {
   write_solution_step(files.solution, solved, console, report);
   write_whole(files.levels, {levels_csv(plan, scene.metres_per_unit)});
   report.add_file(files.levels);
+  write_whole(files.page, {plan_page(plan, scene)});
+  report.add_file(files.page);
   const Json figures = plan_json(plan);
   for (const auto& [key, value] : figures.items()) report.add(key, value);
   report.add_file(files.figures);
@@ -118,7 +122,7 @@ Action add_design(CLI::App& command) {
   const auto arguments = std::make_shared<DesignArguments>();
   command.description(
       "Finds the levels of luminaires that meet lighting limits with the least electric power:\n"
-      "levels.csv, design.json and the light at these levels, solution.vtp. Other options of\n"
+      "levels.csv, design.html, design.json, and the light at these levels. Other options of\n"
       "'lightwell solve' work as there. Exit code 4: not all limits are met.");
   arguments->solve.add_to(command);
   command.remove_option(command.get_option("--channels"));

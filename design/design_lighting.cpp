@@ -222,8 +222,11 @@ void find_levels(const DesignTask& task, const std::vector<int>& channels, Measu
     const auto between = [&] {
       report(progress, "levels", static_cast<double>(plan.measurements) / most_measurements);
     };
-    plan.limits = outcomes_of(task, light.measure(plan.levels, replica, between),
-                              light.solution().error_estimate);
+    LightReadings readings = light.measure(plan.levels, replica, between);
+    plan.limits = outcomes_of(task, readings, light.solution().error_estimate);
+    for (std::size_t g = 0; g < readings.fields.size(); ++g) {
+      plan.surfaces[g].field = std::move(readings.fields[g]);
+    }
     for (std::size_t k = 0; k < plan.limits.size(); ++k) {
       plan.limits[k].price = dimming.price[k];
       plan.limits[k].at_full = value_at(problem, task.limits[k], full);
@@ -284,6 +287,11 @@ LightingPlan design_lighting(const DesignTask& task, const ReportedScene& of, So
   for (const std::string& lamp : light.left_out()) {
     plan.notes.push_back(
         fmt::format("lamp '{}' has no luminous area, so that UGR does not count its glare", lamp));
+  }
+  for (const LuxGrid& grid : light.grids()) {
+    CalculationSurface& surface = plan.surfaces.emplace_back();
+    surface.grid = grid;
+    surface.lines = light.lines_of(grid);
   }
   find_levels(task, channels, light, problem, plan, progress);
   return plan;

@@ -7,6 +7,7 @@
 #include "design/limits_file.h"
 #include "design/luminaires.h"
 #include "scene/progress.h"
+#include "viewer/report/lighting_report.h"
 #include "viewer/report/make_report.h"
 
 namespace lightwell {
@@ -62,6 +63,7 @@ struct LightingPlan {
   /// The least cost with all luminaires at one level; empty: no such level meets the limits.
   std::optional<double> cost_of_even{};
   std::vector<LimitOutcome> limits{};
+  std::vector<CalculationSurface> surfaces{};  ///< the limited grids, with the light of the levels
   double maintenance_factor = 1.0;
   int rays = 0;
   int measurements = 0;  ///< of levels, each with other random numbers

@@ -32,6 +32,10 @@ void MeasuredLight::relight_at(const std::vector<double>& levels) {
   relight(solved_, scales);
 }
 
+PlanLines MeasuredLight::lines_of(const LuxGrid& grid) const {
+  return plan_lines(scene_, caster_, grid, places_.eyes);
+}
+
 LightReadings MeasuredLight::measure(const std::vector<double>& levels, std::uint64_t replica,
                                      const std::function<void()>& between) {
   relight_at(levels);

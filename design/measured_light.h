@@ -10,6 +10,7 @@
 #include "raytrace/readings/glare.h"
 #include "raytrace/readings/lux_grid.h"
 #include "viewer/report/make_report.h"
+#include "viewer/report/plan_lines.h"
 
 namespace lightwell {
 
@@ -40,6 +41,9 @@ class MeasuredLight {
   LightReadings measure(const std::vector<double>& levels, std::uint64_t replica,
                         const std::function<void()>& between = {});
   void relight_at(const std::vector<double>& levels);
+
+  /// The room around a grid, for its plan.
+  PlanLines lines_of(const LuxGrid& grid) const;
 
   const std::vector<LuxGrid>& grids() const { return grids_; }
   const std::vector<Camera>& eyes() const { return places_.eyes; }

@@ -2,118 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <utility>
 
+#include "design/plan_words.h"
 #include "scene/io/comma_fields.h"
 
 namespace lightwell {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-const char* verdict_name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::met:
-      return "met";
-    case Verdict::missed:
-      return "missed";
-    case Verdict::undecided:
-      break;
-  }
-  return "too close to tell";
-}
-
-const char* quantity_name(LimitKind kind) {
-  switch (kind) {
-    case LimitKind::mean_at_least:
-    case LimitKind::mean_at_most:
-      return "E_m";
-    case LimitKind::least_at_least:
-      return "E_min";
-    case LimitKind::greatest_at_most:
-      return "E_max";
-    case LimitKind::uniformity_at_least:
-      return "U_0";
-    case LimitKind::ugr_at_most:
-      break;
-  }
-  return "UGR";
-}
-
-// A value with the digits that its quantity is given with.
-std::string value_text(LimitKind kind, double value) {
-  switch (kind) {
-    case LimitKind::uniformity_at_least:
-      return fmt::format("{:.3f}", value);
-    case LimitKind::ugr_at_most:
-      return fmt::format("{:.1f}", value);
-    default:
-      return fmt::format("{:.4g} lx", value);
-  }
-}
-
-const char* step_name(LimitKind kind) {
-  switch (kind) {
-    case LimitKind::uniformity_at_least:
-      return "for 0.01 of U_0";
-    case LimitKind::ugr_at_most:
-      return "for 1 of UGR";
-    default:
-      return "for 10 lx";
-  }
-}
-
-// What a step of step_name() towards a stricter limit costs, >= 0.
-double cost_of_step(const LimitOutcome& outcome) {
-  const LimitKind kind = outcome.limit.kind;
-  const double step = kind == LimitKind::uniformity_at_least ? 0.01
-                      : kind == LimitKind::ugr_at_most       ? 1.0
-                                                             : 10.0;
-  return std::max(0.0, outcome.price * (is_lower_limit(kind) ? step : -step));
-}
-
-// The limit whose share of change costs most: that of the largest price times value.
-const LimitOutcome* most_binding(const LightingPlan& plan) {
-  const LimitOutcome* most = nullptr;
-  double largest = 0.0;
-  for (const LimitOutcome& outcome : plan.limits) {
-    const double weight = std::abs(outcome.price) * outcome.limit.value;
-    if (weight <= largest) continue;
-    largest = weight;
-    most = &outcome;
-  }
-  return most;
-}
-
-std::string place_text(const WordedLimit& limit) {
-  const bool is_glare = limit.kind == LimitKind::ugr_at_most;
-  return fmt::format("{} '{}'", is_glare ? "observer" : "grid", limit.place);
-}
-
-// Why a limit is not met.
-std::string sentence_of(const LimitOutcome& outcome) {
-  const WordedLimit& limit = outcome.limit;
-  const std::string asked = value_text(limit.kind, limit.value);
-  const char* const quantity = quantity_name(limit.kind);
-  if (outcome.verdict == Verdict::undecided) {
-    return fmt::format(
-        "{}: {} is {} for a limit of {}, too close to tell within {}; more --grid-rays or a better "
-        "--accuracy tell",
-        place_text(limit), quantity, value_text(limit.kind, outcome.reached), asked,
-        value_text(limit.kind, outcome.within));
-  }
-  const bool is_of_lux =
-      limit.kind == LimitKind::mean_at_least || limit.kind == LimitKind::least_at_least;
-  if (is_of_lux && outcome.at_full < limit.value) {
-    return fmt::format("even with every luminaire at full power, {} reaches {} of {} of {}",
-                       place_text(limit), value_text(limit.kind, outcome.at_full), asked, quantity);
-  }
-  return fmt::format("{}: no levels meet this limit and the others; {} is {} where {} is asked for",
-                     place_text(limit), quantity, value_text(limit.kind, outcome.reached), asked);
-}
 
 Json limit_json(const LimitOutcome& outcome) {
   const WordedLimit& limit = outcome.limit;
@@ -126,10 +24,6 @@ Json limit_json(const LimitOutcome& outcome) {
           {"verdict", verdict_name(outcome.verdict)},
           {"at_full_power", outcome.at_full},
           {"price", outcome.price}};
-}
-
-double level_of(const LightingPlan& plan, const Luminaire& luminaire) {
-  return plan.levels[static_cast<std::size_t>(luminaire.channel)];
 }
 
 std::string luminaire_lines(const LightingPlan& plan) {
@@ -153,43 +47,13 @@ std::string limit_lines(const LightingPlan& plan) {
         "  {:<24} {:<5} {} {:<9} reached {} ± {:.2g}: {}", limit.place, quantity_name(limit.kind),
         is_lower_limit(limit.kind) ? ">=" : "<=", value_text(limit.kind, limit.value),
         value_text(limit.kind, outcome.reached), outcome.within, verdict_name(outcome.verdict));
-    if (const double cost = cost_of_step(outcome); cost > 0.0) {
-      text += fmt::format(", {:.3g} {} {}", cost, cost_unit(plan), step_name(limit.kind));
-    }
-    text += '\n';
-  }
-  return text;
-}
-
-std::string power_lines(const LightingPlan& plan) {
-  const char* const unit = cost_unit(plan);
-  std::string text = fmt::format("{} {:.4g} {} of {:.4g} {}", plan.is_in_watts ? "power" : "flux",
-                                 plan.cost, unit, plan.cost_at_full, unit);
-  if (plan.cost > plan.cost_without_margin && plan.is_feasible) {
-    text += fmt::format(", of which {:.2g} {} keep the limits by the error of the light",
-                        plan.cost - plan.cost_without_margin, unit);
-  }
-  text += '\n';
-  if (!plan.is_feasible) return text;
-  if (plan.cost_of_even) {
-    text += fmt::format("all luminaires at one level would take {:.4g} {}, {:.3g} % more\n",
-                        *plan.cost_of_even, unit,
-                        100.0 * (*plan.cost_of_even / std::max(plan.cost, 1e-300) - 1.0));
-  } else {
-    text += "all luminaires at one level would not meet the limits\n";
-  }
-  if (const LimitOutcome* const most = most_binding(plan)) {
-    text += fmt::format("the limit that binds most: {} of {}\n", quantity_name(most->limit.kind),
-                        place_text(most->limit));
+    const std::string cost = cost_of_step(plan, outcome);
+    text += (cost.empty() ? "" : ", " + cost) + "\n";
   }
   return text;
 }
 
 }  // namespace
-
-const char* cost_unit(const LightingPlan& plan) {
-  return plan.is_in_watts ? "W" : "lm";
-}
 
 std::string levels_csv(const LightingPlan& plan, double metres_per_unit) {
   std::string csv = "luminaire,x,y,z,level,watts_full,watts,group\n";
@@ -238,11 +102,9 @@ Json plan_json(const LightingPlan& plan) {
 }
 
 std::string plan_text(const LightingPlan& plan) {
-  std::string text =
-      "luminaires\n" + luminaire_lines(plan) + "limits\n" + limit_lines(plan) + power_lines(plan);
-  for (const LimitOutcome& outcome : plan.limits) {
-    if (outcome.verdict != Verdict::met) text += sentence_of(outcome) + "\n";
-  }
+  std::string text = "luminaires\n" + luminaire_lines(plan) + "limits\n" + limit_lines(plan);
+  for (const std::string& sentence : power_sentences(plan)) text += sentence + "\n";
+  for (const std::string& sentence : unmet_sentences(plan)) text += sentence + "\n";
   return text;
 }
 

@@ -17,6 +17,10 @@ std::string levels_csv(const LightingPlan& plan, double metres_per_unit);
 /// All figures of a plan.
 nlohmann::ordered_json plan_json(const LightingPlan& plan);
 
+/// A page to print: power, limits, levels, and a plan of each grid with the levels beside the
+/// luminaires. `scene` gives title, unit and north.
+std::string plan_page(const LightingPlan& plan, const Scene& scene);
+
 /// Levels, power and limits as lines for people, and a sentence for each limit that is not met.
 std::string plan_text(const LightingPlan& plan);
 

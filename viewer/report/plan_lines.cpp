@@ -281,7 +281,8 @@ void add_luminaires(const Scene& scene, const PlanFrame& frame, const OverTheGri
     if (const auto* sphere = std::get_if<Sphere>(&surface.shape)) {
       if (!over.holds(plan, sphere->center, 0.0)) continue;
       const Vector2d middle = frame.flat(sphere->center);
-      plan.luminaires.push_back({{circle_of(middle, sphere->radius)}, middle});
+      plan.luminaires.push_back(
+          {.outlines = {circle_of(middle, sphere->radius)}, .middle = middle});
       continue;
     }
     Vector3d middle;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
@@ -20,6 +21,7 @@ struct PlanLuminaire {
   /// Outlines of the opening of a lamp, or of each facet of an emitting surface, m.
   std::vector<std::vector<Eigen::Vector2d>> outlines{};
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
+  std::string label{};  ///< text above the middle, such as a level; empty: none
 };
 
 /// An eye in a plan.

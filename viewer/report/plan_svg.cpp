@@ -139,7 +139,9 @@ void add_isolines(const PlanContents& plan, const Paper& paper, std::string& svg
   svg += labels;
 }
 
-void add_luminaires(const PlanLines& lines, const Paper& paper, std::string& svg) {
+// Labels go to `labels`, to be drawn over the values of points.
+void add_luminaires(const PlanLines& lines, const Paper& paper, std::string& svg,
+                    std::string& labels) {
   const auto out = std::back_inserter(svg);
   for (const PlanLuminaire& luminaire : lines.luminaires) {
     const Vector2d at = paper.at(luminaire.middle);
@@ -150,6 +152,11 @@ void add_luminaires(const PlanLines& lines, const Paper& paper, std::string& svg
                    "<path class=\"luminaire\" d=\"{}\"/><path class=\"cross\" "
                    "d=\"M{:.2f} {:.2f}h{:.2f}M{:.2f} {:.2f}v{:.2f}\"/>\n",
                    outlines, at.x() - arm, at.y(), 2.0 * arm, at.x(), at.y() - arm, 2.0 * arm);
+    if (luminaire.label.empty()) continue;
+    constexpr double above = 1.6;  // mm
+    labels +=
+        fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"label\" fill=\"#d2380b\">{}</text>\n",
+                    at.x(), at.y() - above, luminaire.label);
   }
 }
 
@@ -301,9 +308,11 @@ std::string plan_svg(const PlanContents& plan) {
   add_segments(plan.surface.lines.edges, "edge", paper, svg);
   add_segments(plan.surface.lines.walls, "wall", paper, svg);
   add_segments(plan.surface.lines.panes, "pane", paper, svg);
-  add_luminaires(plan.surface.lines, paper, svg);
+  std::string labels;
+  add_luminaires(plan.surface.lines, paper, svg, labels);
   add_values(plan, paper, svg);
   add_isolines(plan, paper, svg);
+  svg += labels;
   add_eyes(plan.surface.lines, paper, svg);
   svg += "</g>\n";
   add_axes(plan, paper, svg);
