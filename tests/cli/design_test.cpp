@@ -1,6 +1,7 @@
 // Files, figures and errors of 'lightwell design'.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -59,6 +60,10 @@ TEST_F(DesignCommand, WritesLevelsFiguresAndTheLight) {
   EXPECT_NE(table.find("\n\"spot 2\",1,1,2.4,"), std::string::npos) << table;
   EXPECT_TRUE(Json::parse(content_of(folder / "out/design.json"))["meets_all"]);
   EXPECT_TRUE(std::filesystem::exists(folder / "out/solution.vtp"));
+  // The plan of the grid has the level of each lamp over it.
+  const double level = json["luminaires"][1]["level"];
+  const std::string label = ">" + std::to_string(std::lround(100.0 * level)) + " %</text>";
+  EXPECT_TRUE(says(content_of(folder / "out/design.html"), label));
 
   // The limit holds for 'report' as well, which measures by itself.
   const Json report = run_json({"report", "room.toml", "out/solution.vtp", "--maintenance", "0.8"});
