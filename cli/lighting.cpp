@@ -31,6 +31,7 @@ struct LightingArguments {
   int rays = 1024;
   std::optional<LuxRange> range;
   std::string picture;  // camera; empty: the first; no_picture: none
+  Language language = Language::english;
 };
 
 constexpr const char* no_picture = "none";
@@ -38,7 +39,7 @@ constexpr const char* no_picture = "none";
 bool needs_picture(const LightingArguments& arguments) {
   return arguments.picture != no_picture &&
          std::ranges::any_of(arguments.outputs, [](const std::string& file) {
-           return lower_extension(file) == ".html";
+           return lower_extension(file) == ".html" || lower_extension(file) == ".pdf";
          });
 }
 
@@ -58,6 +59,7 @@ ReportRequest request_of(const LightingArguments& arguments, const Scene& scene)
 
 int report_lighting(const LightingArguments& arguments, Console& console) {
   Report report(console.options());
+  for (const std::string& file : arguments.outputs) require_report_file(file);
   CleanUpReport clean_up;
   const Scene scene = read_scene_step(arguments.scene, console, report, &clean_up);
   const ReportPlan plan = plan_report(scene, request_of(arguments, scene));
@@ -78,7 +80,7 @@ int report_lighting(const LightingArguments& arguments, Console& console) {
   const Json figures = figures_json(made);
   for (const auto& [key, value] : figures.items()) report.add(key, value);
   for (const std::filesystem::path file : arguments.outputs) {
-    write_report(file, made, arguments.range);
+    write_report(file, made, arguments.range, arguments.language);
     report.add_file(file);
   }
   if (!console.options().json) fmt::print("{}", figures_text(made));
@@ -92,19 +94,19 @@ Action add_report(CLI::App& command) {
   const auto arguments = std::make_shared<LightingArguments>();
   command.description(
       "Reports a lighting design: mean and least illuminance and uniformity of surfaces and "
-      "working\nplanes, glare (UGR) of observers, the luminaires; as a page, JSON or CSV.");
+      "working\nplanes, glare (UGR) of observers, the luminaires; as PDF, a page, JSON or CSV.");
   command.add_option("scene", arguments->scene, "the scene file")->required()->type_name("SCENE");
   command.add_option("solution", arguments->solution, "the scene's solution, .vtp")
       ->required()
       ->type_name("SOLUTION");
   command
       .add_option("-o,--output", arguments->outputs,
-                  ".html (a page to print), .json (all figures) or .csv (every point); may be "
-                  "repeated")
+                  ".pdf, .html (a page to print), .json (all figures) or .csv (every point); "
+                  "may be repeated")
       ->type_name("FILE")
       ->type_size(1)
       ->allow_extra_args(false)
-      ->check(with_extension({".html", ".json", ".csv"}));
+      ->check(with_extension({".pdf", ".html", ".json", ".csv"}));
   arguments->grids.add_to(command);
   command
       .add_option(
@@ -153,9 +155,16 @@ Action add_report(CLI::App& command) {
       .add_option("--picture", arguments->picture,
                   "camera of the picture on the page (default: the first), or none")
       ->type_name("CAMERA");
+  command
+      .add_option_function<std::string>(
+          "--language",
+          [arguments](const std::string& code) { arguments->language = *language_of(code); },
+          "of .pdf and .html: en, de, fr or es (default en)")
+      ->type_name("CODE")
+      ->check(CLI::IsMember({"en", "de", "fr", "es"}).description(""));
   command.footer(
       "Example: lightwell report office.toml office.vtp --plane floor@0.75 --maintenance 0.8 "
-      "--observer desk -o office.html");
+      "--observer desk -o office.pdf");
   return [arguments](Console& console) { return report_lighting(*arguments, console); };
 }
 

@@ -15,7 +15,7 @@ struct Library {
 
 constexpr std::string_view jpeg_turbo = LIGHTWELL_JPEG_TURBO;
 
-constexpr std::array<Library, 19> libraries = {
+constexpr std::array<Library, 22> libraries = {
     {{"Embree", LIGHTWELL_EMBREE},
      {"oneTBB", LIGHTWELL_TBB},
      {"CGAL", LIGHTWELL_CGAL},
@@ -31,6 +31,9 @@ constexpr std::array<Library, 19> libraries = {
      {"pugixml", LIGHTWELL_PUGIXML},
      {"muParser", LIGHTWELL_MUPARSER},
      {"GLPK", LIGHTWELL_GLPK},
+     {"cairo", LIGHTWELL_CAIRO},
+     {"Pango", LIGHTWELL_PANGO},
+     {"librsvg", LIGHTWELL_LIBRSVG},
      {"toml++", LIGHTWELL_TOMLPLUSPLUS},
      {"fmt", LIGHTWELL_FMT},
      {"CLI11", LIGHTWELL_CLI11},

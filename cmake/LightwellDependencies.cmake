@@ -23,6 +23,24 @@ find_package(ZLIB REQUIRED)
 find_package(CLI11 REQUIRED CONFIG)
 find_package(nlohmann_json REQUIRED CONFIG)
 
+# Reports as PDF; a build without these libraries writes them as HTML.
+set(pdf_modules cairo pangocairo librsvg-2.0)
+find_package(PkgConfig QUIET)
+if(PkgConfig_FOUND)
+  pkg_check_modules(lightwell_pdf QUIET IMPORTED_TARGET ${pdf_modules})
+endif()
+set(has_pdf OFF)
+if(lightwell_pdf_FOUND)
+  set(has_pdf ON)
+  # -pthread defines a macro, without which headers were precompiled.
+  set_property(TARGET PkgConfig::lightwell_pdf PROPERTY INTERFACE_COMPILE_OPTIONS)
+endif()
+option(LIGHTWELL_PDF "Write reports as PDF; needs cairo, Pango and librsvg (default: if they are found)" ${has_pdf})
+if(LIGHTWELL_PDF AND NOT lightwell_pdf_FOUND)
+  message(FATAL_ERROR "LIGHTWELL_PDF needs pkg-config, cairo, Pango and librsvg, which were not found. "
+                      "On Debian: apt install pkgconf libcairo2-dev libpango1.0-dev librsvg2-dev")
+endif()
+
 set(vtk_components CommonCore CommonDataModel IOCore IOXML)
 if(LIGHTWELL_VIEWER)
   list(APPEND vtk_components CommonTransforms CommonExecutionModel FiltersCore FiltersGeneral IOImage

@@ -4,6 +4,7 @@ set(lightwell_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lightwell)
 
 install(EXPORT lightwellTargets NAMESPACE lightwell:: DESTINATION ${lightwell_config_dir} COMPONENT development)
 string(REPLACE ";" " " vtk_component_list "${vtk_components}")
+string(REPLACE ";" " " pdf_module_list "${pdf_modules}")
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/lightwellConfig.cmake.in
   ${PROJECT_BINARY_DIR}/lightwellConfig.cmake INSTALL_DESTINATION ${lightwell_config_dir})
 # Before 1.0 any minor version may change the interface.

@@ -17,8 +17,8 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lightwell)
 set(CPACK_DEBIAN_PROGRAM_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-# Mesa draws the window where no graphics card does.
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS libgl1-mesa-dri)
+# Mesa draws the window where no graphics card does; reports in PDF are set in DejaVu Sans.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "libgl1-mesa-dri, fonts-dejavu-core")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION
 "Light in rooms, computed once and shown from everywhere.
 Solves the radiosity equation of a scene (its own .toml, glTF, OBJ, Mitsuba,
@@ -30,7 +30,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   libeigen3-dev libtbb-dev libfmt-dev libembree-dev libcgal-dev libopenmesh-dev libvtk9-dev libtomlplusplus-dev
   libassimp-dev libdraco-dev libmeshoptimizer-dev libpugixml-dev libmuparser-dev libglpk-dev libjpeg-dev libopenexr-dev libpng-dev
-  zlib1g-dev nlohmann-json3-dev)
+  pkgconf libcairo2-dev libpango1.0-dev librsvg2-dev zlib1g-dev nlohmann-json3-dev)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "Headers and static libraries of Lightwell.
 find_package(lightwell) in CMake gives lightwell::scene, ::mesh, ::radiosity,

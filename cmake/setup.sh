@@ -10,6 +10,7 @@ build_packages=(
   build-essential cmake ninja-build
   libeigen3-dev libtbb-dev libfmt-dev libembree-dev libcgal-dev libopenmesh-dev libvtk9-dev
   libtomlplusplus-dev libassimp-dev libdraco-dev libmeshoptimizer-dev libpugixml-dev libmuparser-dev libglpk-dev libjpeg-dev libopenexr-dev libpng-dev zlib1g-dev
+  pkgconf libcairo2-dev libpango1.0-dev librsvg2-dev fonts-dejavu-core
   libcli11-dev nlohmann-json3-dev libgtest-dev
 )
 # What CPack needs besides to find the libraries that a Debian package depends on.
@@ -18,8 +19,8 @@ deb_packages=(dpkg-dev file)
 display_packages=(xvfb xauth libgl1-mesa-dri)
 # What checks the format of the sources: the version whose output is the format. Debian 13 has later ones only.
 format_packages=(clang-format-14)
-# What opens exported pages and checks exported models, in the tests.
-browser_packages=(chromium nodejs)
+# What opens exported pages and reports and checks exported models, in the tests.
+browser_packages=(chromium nodejs poppler-utils)
 # What tests/run --long needs besides: the language of tests/faults, and a list of the program's system calls.
 fault_packages=(python3 strace)
 # A second browser (0.3 GB), and hands for the window: without them the tests with them are skipped.
@@ -44,7 +45,8 @@ need_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     say "This is not Debian, so nothing is installed for you. What is needed: a C++20 compiler, CMake 3.25,"
     say "Ninja, Eigen 3.4, oneTBB, fmt, Embree 3.13 or 4, CGAL 5.5, OpenMesh, VTK 9.1, toml++,"
-    say "assimp, Draco, meshoptimizer, pugixml, muParser, GLPK, libjpeg, OpenEXR, libpng, zlib, CLI11, nlohmann-json, GoogleTest; for the tests Xvfb, Chromium, Firefox and node."
+    say "assimp, Draco, meshoptimizer, pugixml, muParser, GLPK, libjpeg, OpenEXR, libpng, zlib, CLI11, nlohmann-json, GoogleTest; for reports in PDF cairo, Pango, librsvg"
+    say "and the font DejaVu Sans; for the tests Xvfb, Chromium, Firefox, node and poppler-utils."
     return 0
   fi
   local name missing=()

@@ -4,6 +4,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,11 @@ namespace {
 
 // Measures, writes the files, and returns the figures as JSON.
 std::string report(const SharedSolution& solution, const ReportRequest& request,
-                   const std::vector<std::filesystem::path>& files, const nb::object& progress) {
+                   const std::vector<std::filesystem::path>& files, const std::string& code,
+                   const nb::object& progress) {
+  const std::optional<Language> language = language_of(code);
+  if (!language) throw InputError("the language is '" + code + "'; it can be en, de, fr or es");
+  for (const std::filesystem::path& file : files) require_report_file(file);
   const SceneData& scene = solution->its_scene("a report");
   return result_of_long(progress, [&](const Progress& run) {
     const ReportPlan plan = plan_report(scene.clean, request);
@@ -32,7 +37,7 @@ std::string report(const SharedSolution& solution, const ReportRequest& request,
     SolvedScene solved = solution->solved;
     const LightingReport made =
         make_report(plan, {scene.clean, scene.clean_up.names.get()}, solved, run);
-    for (const std::filesystem::path& file : files) write_report(file, made);
+    for (const std::filesystem::path& file : files) write_report(file, made, {}, *language);
     return report_json(made);
   });
 }
@@ -69,7 +74,7 @@ void add_report(nb::module_& module) {
       .def_rw("has_picture", &ReportRequest::has_picture)
       .def_rw("camera", &ReportRequest::camera);
   module.def("report", report, nb::arg("solution"), nb::arg("request"), nb::arg("files"),
-             nb::arg("progress").none());
+             nb::arg("language"), nb::arg("progress").none());
 }
 
 }  // namespace lightwell::python

@@ -330,9 +330,10 @@ class Solution:
         maintenance: float = 1.0,
         rays: int = 1024,
         camera: Optional[str] = None,
+        language: str = "en",
         progress: Optional[Progress] = None,
     ) -> Dict[str, Any]:
-        """Figures of the lighting design; also written to `paths`: .html (a page to print), .json, .csv.
+        """Figures of the lighting design; also written to `paths`: .pdf, .html (a page to print), .json, .csv.
 
         surfaces: measured on, besides the [[grids]] of the scene's file.
         planes: heights above surfaces, metres, by the name of the surface: {"floor": 0.75}.
@@ -343,6 +344,7 @@ class Solution:
         maintenance: maintenance factor of electric light, above 0 up to 1.
         rays: of the gather at each point, a power of two.
         camera: of the picture on the page (the first).
+        language: of .pdf and .html: "en", "de", "fr" or "es".
 
         Keys: those of `lightwell report --json`; lengths there are metres or the unit they name.
         """
@@ -358,14 +360,14 @@ class Solution:
         if not 0.0 < request.maintenance <= 1.0:
             raise InputError(f"maintenance is {maintenance}; a factor above 0 up to 1 is needed")
         files = [os.fspath(path) for path in paths]
-        request.has_picture = any(file.endswith(".html") for file in files)
+        request.has_picture = any(file.endswith((".html", ".pdf")) for file in files)
         request.camera = "" if camera is None else str(camera)
         set_options(request, {"spacing": spacing, "rays": rays})
         for file in files:
-            if os.path.splitext(file)[1] not in (".html", ".json", ".csv"):
-                raise InputError(f"'{file}' must end in .html, .json or .csv")
+            if os.path.splitext(file)[1] not in (".html", ".pdf", ".json", ".csv"):
+                raise InputError(f"'{file}' must end in .html, .pdf, .json or .csv")
         figures: Dict[str, Any] = json.loads(
-            _lightwell.report(self._data, request, files, checked_progress(progress))
+            _lightwell.report(self._data, request, files, str(language), checked_progress(progress))
         )
         return figures
 

@@ -48,7 +48,7 @@ class Report(unittest.TestCase):
             with self.subTest(options), self.assertRaisesRegex(lw.InputError, pattern):
                 solution.report(**options)
         with self.assertRaisesRegex(lw.InputError, "must end in .html"):
-            solution.report("r.pdf", surfaces=["floor"])
+            solution.report("r.doc", surfaces=["floor"])
 
 
 if __name__ == "__main__":

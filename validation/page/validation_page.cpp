@@ -8,9 +8,9 @@
 #include "scene/parallel.h"
 #include "validation/page/validation_plots.h"
 #include "validation/page/validation_text.h"
+#include "viewer/document/page_frame.h"
 #include "viewer/export/page_data.h"
 #include "viewer/export/write_whole.h"
-#include "viewer/report/page_frame.h"
 
 namespace lightwell {
 namespace {

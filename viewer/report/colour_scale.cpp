@@ -15,7 +15,7 @@ std::string hex_colour(double place) {
 }
 
 std::string colour_scale_svg(const LuxRange& range, const std::string& unit,
-                             const Eigen::Vector2d& corner, double height) {
+                             const Eigen::Vector2d& corner, double height, Language language) {
   std::string svg;
   const auto out = std::back_inserter(svg);
   const double left = corner.x(), top = corner.y();
@@ -29,9 +29,9 @@ std::string colour_scale_svg(const LuxRange& range, const std::string& unit,
                    hex_colour((i + 0.5) / steps));
   }
   for (const double value : scale_steps(range)) {
-    fmt::format_to(out, "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"axis right\">{:.6g} {}</text>\n",
+    fmt::format_to(out, "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"axis right\">{} {}</text>\n",
                    left + bar + 1.2, top + height * (1.0 - place_on_scale(value, range)) + 0.8,
-                   value, unit);
+                   number_in(language, fmt::format("{:.6g}", value)), unit);
   }
   return svg;
 }

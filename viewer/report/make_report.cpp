@@ -16,12 +16,14 @@
 #include "scene/io/text_file.h"
 #include "standards/activities.h"
 #include "standards/lighting_energy.h"
+#include "viewer/document/html_document.h"
+#include "viewer/document/pdf_document.h"
 #include "viewer/export/start_view.h"
 #include "viewer/export/write_whole.h"
 #include "viewer/report/area_grids.h"
 #include "viewer/report/figures.h"
+#include "viewer/report/lighting_document.h"
 #include "viewer/report/measure.h"
-#include "viewer/report/page.h"
 
 namespace lightwell {
 namespace {
@@ -232,17 +234,25 @@ std::string report_json(const LightingReport& report) {
   return figures_json(report).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+void require_report_file(const std::filesystem::path& path) {
+  const std::string kind = lower_extension(path);
+  if (kind == ".pdf") return require_pdf();
+  if (kind == ".html" || kind == ".csv" || kind == ".json") return;
+  throw InputError(fmt::format("'{}' must end in .html, .pdf, .json or .csv", path.string()));
+}
+
 void write_report(const std::filesystem::path& path, const LightingReport& report,
-                  const std::optional<LuxRange>& range) {
+                  const std::optional<LuxRange>& range, Language language) {
+  require_report_file(path);
   const std::string kind = lower_extension(path);
   if (kind == ".html") {
-    write_whole(path, {lighting_page(report, range)});
+    write_whole(path, {html_document(lighting_document(report, range, language))});
+  } else if (kind == ".pdf") {
+    write_whole(path, {pdf_document(lighting_document(report, range, language))});
   } else if (kind == ".csv") {
     write_whole(path, {points_csv(report)});
-  } else if (kind == ".json") {
-    write_whole(path, {report_json(report)});
   } else {
-    throw InputError(fmt::format("'{}' must end in .html, .json or .csv", path.string()));
+    write_whole(path, {report_json(report)});
   }
 }
 

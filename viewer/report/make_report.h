@@ -11,6 +11,7 @@
 #include "scene/progress.h"
 #include "viewer/report/lighting_report.h"
 #include "viewer/report/requested_grids.h"
+#include "viewer/report/words.h"
 
 namespace lightwell {
 
@@ -61,11 +62,15 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
 /// All figures of a report but the values of points, as a JSON object.
 std::string report_json(const LightingReport& report);
 
-/// Writes a report: .html (one page to print), .json (all figures) or .csv (every point). `range`
-/// is the scale of the false colours of all plans. The file is written under a temporary name and
-/// renamed. Throws InputError for another extension, std::runtime_error that names the file if
-/// writing fails.
+/// Throws InputError unless write_report() can write a file of that name: for other extensions than
+/// .html, .pdf, .json and .csv, and for .pdf in a build without PDF.
+void require_report_file(const std::filesystem::path& path);
+
+/// Writes a report: .html (one page to print), .pdf, .json (all figures) or .csv (every point).
+/// `range` is the scale of the false colours of all plans; `language` that of pages. The file is
+/// written under a temporary name and renamed. Throws as require_report_file() does, and
+/// std::runtime_error that names the file if writing fails.
 void write_report(const std::filesystem::path& path, const LightingReport& report,
-                  const std::optional<LuxRange>& range = {});
+                  const std::optional<LuxRange>& range = {}, Language language = Language::english);
 
 }  // namespace lightwell

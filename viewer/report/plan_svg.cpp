@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <numbers>
+#include <utility>
 
 #include "raytrace/pictures/encode_png.h"
 #include "raytrace/readings/isolux_lines.h"
@@ -32,6 +33,11 @@ struct Paper {
     return {mm * (p.x() - lines.low.x()), mm * (lines.high.y() - p.y())};
   }
 };
+
+// A number of the plan's texts.
+std::string shown(const PlanContents& plan, std::string number) {
+  return number_in(plan.language, std::move(number));
+}
 
 // Cells as one picture with a pixel each, for grids of so many points that a page of rectangles
 // would be too large to open.
@@ -72,8 +78,8 @@ void add_cells(const PlanContents& plan, const Paper& paper, std::string& svg) {
                    "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" "
                    "fill=\"{}\"><title>{} {}{}</title></rect>\n",
                    corner.x(), corner.y(), w + overlap, h + overlap,
-                   hex_colour(place_on_scale(lux, plan.range)), lux_text(lux), plan.unit,
-                   std::isfinite(within) ? " ± " + lux_text(within) : "");
+                   hex_colour(place_on_scale(lux, plan.range)), shown(plan, lux_text(lux)),
+                   plan.unit, std::isfinite(within) ? " ± " + shown(plan, lux_text(within)) : "");
   }
 }
 
@@ -89,7 +95,8 @@ void add_values(const PlanContents& plan, const Paper& paper, std::string& svg) 
     constexpr double bright = 0.55;  // place on the scale above which black is easier to read
     fmt::format_to(out, "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"value\" fill=\"{}\">{}</text>\n",
                    middle.x(), middle.y() + 0.35 * letters,
-                   place_on_scale(lux, plan.range) < bright ? "#fff" : "#000", lux_text(lux));
+                   place_on_scale(lux, plan.range) < bright ? "#fff" : "#000",
+                   shown(plan, lux_text(lux)));
   }
 }
 
@@ -132,8 +139,8 @@ void add_isolines(const PlanContents& plan, const Paper& paper, std::string& svg
       if (length < long_enough) continue;
       const Vector2d at = paper.at(line.points[line.points.size() / 2]);
       fmt::format_to(std::back_inserter(labels),
-                     "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"label\">{:g}</text>\n", at.x(),
-                     at.y() + 0.9, value);
+                     "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"label\">{}</text>\n", at.x(),
+                     at.y() + 0.9, shown(plan, fmt::format("{:g}", value)));
     }
   }
   svg += labels;
@@ -181,14 +188,14 @@ struct PlanAxis {
   double offset = 0.0, sign = 1.0;  ///< value in metres = offset + sign * m along the plan's axis
 };
 
-PlanAxis axis_along(const Eigen::Vector3d& way, const LuxGrid& grid) {
+PlanAxis axis_along(const Eigen::Vector3d& way, const LuxGrid& grid, Language language) {
   constexpr double parallel = 0.9999;
   constexpr std::array<const char*, 3> names = {"x", "y", "z"};
   for (int k = 0; k < 3; ++k) {
     if (std::abs(way[k]) < parallel) continue;
     return {names[static_cast<std::size_t>(k)], grid.corner[k], way[k] > 0.0 ? 1.0 : -1.0};
   }
-  return {"along the surface"};
+  return {word_in(language, Word::along_surface)};
 }
 
 // Ticks with values below the plan and on its left.
@@ -199,25 +206,26 @@ void add_axes(const PlanContents& plan, const Paper& paper, std::string& svg) {
   const double unit = plan.metres_per_unit;
   const double step = round_step(apart / paper.mm / unit) * unit;
   for (const bool is_across : {true, false}) {
-    const PlanAxis axis = axis_along(is_across ? grid.u : grid.v, grid);
+    const PlanAxis axis = axis_along(is_across ? grid.u : grid.v, grid, plan.language);
     const int k = is_across ? 0 : 1;
     const double ends[2] = {axis.offset + axis.sign * paper.lines.low[k],
                             axis.offset + axis.sign * paper.lines.high[k]};
     const double first = std::min(ends[0], ends[1]), last = std::max(ends[0], ends[1]);
     for (double n = std::ceil(first / step); n * step <= last; n += 1.0) {
       const double along = axis.sign * (n * step - axis.offset);
-      const double value = n == 0.0 ? 0.0 : n * step / unit;
+      const std::string value =
+          shown(plan, fmt::format("{:.6g}", n == 0.0 ? 0.0 : n * step / unit));
       if (is_across) {
         const double x = paper.at({along, 0.0}).x();
         fmt::format_to(out,
                        "<path class=\"tick\" d=\"M{0:.2f} {1:.2f}v{2}\"/><text x=\"{0:.2f}\" "
-                       "y=\"{3:.2f}\" class=\"axis\">{4:.6g}</text>\n",
+                       "y=\"{3:.2f}\" class=\"axis\">{4}</text>\n",
                        x, paper.height(), tick, paper.height() + 4.2, value);
       } else {
         const double y = paper.at({0.0, along}).y();
         fmt::format_to(out,
                        "<path class=\"tick\" d=\"M0 {0:.2f}h-{1}\"/><text x=\"-1.8\" y=\"{2:.2f}\" "
-                       "class=\"axis left\">{3:.6g}</text>\n",
+                       "class=\"axis left\">{3}</text>\n",
                        y, tick, y + 0.8, value);
       }
     }
@@ -234,17 +242,18 @@ void add_axes(const PlanContents& plan, const Paper& paper, std::string& svg) {
 }
 
 // The scale of lengths: a bar of a round number of metres, and 1 : N.
-void add_scale_bar(const Paper& paper, int scale, std::string& svg) {
+void add_scale_bar(const PlanContents& plan, const Paper& paper, int scale, std::string& svg) {
   const auto out = std::back_inserter(svg);
   constexpr double wanted = 20.0;  // mm
   const double metres = round_step(wanted / paper.mm);
   const double y = paper.height() + 12.0, x = paper.width() - paper.mm * metres;
   fmt::format_to(out,
                  "<path class=\"bar\" d=\"M{:.2f} {:.2f}h{:.2f}\"/><text x=\"{:.2f}\" y=\"{:.2f}\" "
-                 "class=\"axis\">{:g} m</text><text x=\"0\" y=\"{:.2f}\" class=\"axis scale\">1 : "
-                 "{} on A4 paper</text>\n",
-                 x, y, paper.mm * metres, x + 0.5 * paper.mm * metres, y + 3.6, metres, y + 1.0,
-                 scale);
+                 "class=\"axis\">{} m</text><text x=\"0\" y=\"{:.2f}\" class=\"axis scale\">1 : "
+                 "{} {}</text>\n",
+                 x, y, paper.mm * metres, x + 0.5 * paper.mm * metres, y + 3.6,
+                 shown(plan, fmt::format("{:g}", metres)), y + 1.0, scale,
+                 word_in(plan.language, Word::on_paper));
 }
 
 void add_north(const Vector2d& north, double x, std::string& svg) {
@@ -287,6 +296,15 @@ int plan_scale(const PlanLines& lines) {
   return 1000000000;
 }
 
+std::optional<Eigen::Vector2d> north_in(const std::optional<Eigen::Vector3d>& north,
+                                        const LuxGrid& grid) {
+  if (!north) return {};
+  const Eigen::Vector2d flat(north->dot(grid.u), north->dot(grid.v));
+  constexpr double level = 0.9;
+  if (flat.norm() < level) return {};
+  return flat.normalized();
+}
+
 std::string plan_svg(const PlanContents& plan) {
   const int scale = plan_scale(plan.surface.lines);
   const Paper paper{plan.surface.lines, 1000.0 / scale};
@@ -294,7 +312,8 @@ std::string plan_svg(const PlanContents& plan) {
   const double height = std::max(paper.height(), 45.0);
   const double width = left + paper.width() + beside;
   std::string svg = fmt::format(
-      "<svg class=\"plan\" viewBox=\"-{} -{} {:.2f} {:.2f}\" width=\"{:.2f}mm\" role=\"img\">\n"
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plan\" viewBox=\"-{} -{} {:.2f} {:.2f}\" "
+      "width=\"{:.2f}mm\" role=\"img\">\n"
       "<clipPath id=\"area-{}\"><rect width=\"{:.2f}\" height=\"{:.2f}\"/></clipPath>"
       "<g clip-path=\"url(#area-{})\">\n",
       left, top, width, top + height + below, width, plan.number, paper.width(), paper.height(),
@@ -316,18 +335,18 @@ std::string plan_svg(const PlanContents& plan) {
   add_eyes(plan.surface.lines, paper, svg);
   svg += "</g>\n";
   add_axes(plan, paper, svg);
-  add_scale_bar(paper, scale, svg);
+  add_scale_bar(plan, paper, scale, svg);
   const double right = paper.width() + 5.0;
   constexpr double below_north = 17.0;
   if (plan.north) add_north(*plan.north, right + 2.0, svg);
   const double scale_top = plan.north ? below_north : 0.0;
   constexpr double least_height = 30.0;
   svg += colour_scale_svg(plan.range, plan.unit, {right, scale_top},
-                          std::max(paper.height() - scale_top, least_height));
+                          std::max(paper.height() - scale_top, least_height), plan.language);
   return svg + "</svg>\n";
 }
 
-std::string polar_svg(const LuminaireFile& luminaire) {
+std::string polar_svg(const LuminaireFile& luminaire, Language language) {
   const double flux = luminaire.flux();
   if (!luminaire.web || !(flux > 0.0)) return {};
   const double per_thousand = 1000.0 / flux;
@@ -335,13 +354,16 @@ std::string polar_svg(const LuminaireFile& luminaire) {
   const double ring = round_step(peak / 3.0);
   const double outer = ring * std::ceil(peak / ring);
   constexpr double radius = 20.0;  // mm
-  std::string svg = "<svg class=\"polar\" viewBox=\"-23 -23 46 46\" width=\"46mm\" role=\"img\">\n";
+  std::string svg =
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"polar\" viewBox=\"-23 -23 46 46\" "
+      "width=\"46mm\" role=\"img\">\n";
   const auto out = std::back_inserter(svg);
   for (double value = ring; value <= outer * (1.0 + 1e-9); value += ring) {
     fmt::format_to(out,
                    "<circle class=\"ring\" r=\"{:.2f}\"/><text x=\"0.4\" y=\"{:.2f}\" "
-                   "class=\"axis right\">{:g}</text>\n",
-                   radius * value / outer, radius * value / outer - 0.4, value);
+                   "class=\"axis right\">{}</text>\n",
+                   radius * value / outer, radius * value / outer - 0.4,
+                   number_in(language, fmt::format("{:g}", value)));
   }
   svg += "<path class=\"ring\" d=\"M-20 0H20M0 -20V20\"/>\n";
   for (const bool is_along : {true, false}) {

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "viewer/report/lighting_report.h"
+#include "viewer/report/words.h"
 
 namespace lightwell {
 
@@ -19,6 +20,7 @@ struct PlanContents {
   double metres_per_unit = 1.0;
   std::string unit_name = "m";
   std::string unit = "lx";  ///< of the field's values
+  Language language = Language::english;
 };
 
 /// Scale of a plan's false colours, fitted to its values: round ends, linear if the greatest
@@ -34,9 +36,14 @@ int plan_scale(const PlanLines& lines);
 /// axes, a bar of the scale, and the north.
 std::string plan_svg(const PlanContents& plan);
 
+/// North along u and v of a grid that lies level; empty: `north` is not known, or the grid
+/// inclines.
+std::optional<Eigen::Vector2d> north_in(const std::optional<Eigen::Vector3d>& north,
+                                        const LuxGrid& grid);
+
 /// Luminous intensity of a luminaire in the planes C0 to C180 (solid) and C90 to C270 (dashed), cd
 /// for each 1000 lm, as a polar curve in SVG.
-std::string polar_svg(const LuminaireFile& luminaire);
+std::string polar_svg(const LuminaireFile& luminaire, Language language = Language::english);
 
 /// Illuminance with digits that suit its size: "523", "52.3", "5.23".
 std::string lux_text(double lux);

@@ -4,8 +4,8 @@
 
 #include <iterator>
 
+#include "viewer/document/page_frame.h"
 #include "viewer/export/page_data.h"
-#include "viewer/report/page_frame.h"
 #include "viewer/report/plan_svg.h"
 
 namespace lightwell {

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <iterator>
 
+#include "viewer/document/page_frame.h"
 #include "viewer/export/page_data.h"
 #include "viewer/report/heat_map.h"
-#include "viewer/report/page_frame.h"
 #include "viewer/report/plan_svg.h"
 #include "viewer/report/year_operation.h"
 #include "viewer/report/year_report.h"

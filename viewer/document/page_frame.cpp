@@ -1,4 +1,4 @@
-#include "viewer/report/page_frame.h"
+#include "viewer/document/page_frame.h"
 
 #include <fmt/format.h>
 
@@ -8,10 +8,10 @@ namespace lightwell {
 namespace {
 
 constexpr const char* page_head = R"(<!DOCTYPE html>
-<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
+<html lang="{3}"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <meta name="generator" content="Lightwell"><title>{0}</title>
 <style>
-@page {{ size: A4; margin: 16mm 15mm 18mm; @bottom-right {{ content: counter(page) " / " counter(pages); font: 9px system-ui, sans-serif; color: #666; }}
+@page {{ size: A4; margin: 16mm 13mm 18mm; @bottom-right {{ content: counter(page) " / " counter(pages); font: 9px system-ui, sans-serif; color: #666; }}
   @bottom-left {{ content: "{1}"; font: 9px system-ui, sans-serif; color: #666; }} }}
 body {{ font: 15px/1.45 system-ui, sans-serif; color: #1b1b1b; background: #fff; max-width: 190mm; margin: 2rem auto; padding: 0 1rem; }}
 h1 {{ font-size: 1.7rem; margin: 0 0 .3rem; }} h2 {{ font-size: 1.2rem; margin-top: 2rem; border-bottom: 2px solid #1b1b1b; padding-bottom: .15rem; }} h3 {{ font-size: 1rem; margin: 1.2rem 0 .3rem; }}
@@ -23,20 +23,23 @@ tr.total td {{ font-weight: 600; }} .kind td:first-child {{ padding-left: 1rem; 
 small {{ color: #666; white-space: nowrap; }} figure {{ margin: 1rem 0 1.6rem; }} svg {{ max-width: 100%; height: auto; }} figure img {{ width: 100%; height: auto; display: block; }}
 .heading {{ display: grid; grid-template-columns: max-content auto; gap: .1rem 1rem; margin: .8rem 0; }} .heading dt {{ color: #666; }} .heading dd {{ margin: 0; }}
 .luminaire-card {{ display: flex; gap: 1.5rem; align-items: center; }}
-svg text {{ font-family: system-ui, sans-serif; }} .value {{ font-size: 2.1px; text-anchor: middle; opacity: .85; }}
-.label {{ font-size: 2.7px; font-weight: 600; text-anchor: middle; paint-order: stroke; stroke: #fff; stroke-width: .9px; stroke-linejoin: round; }}
-.axis {{ font-size: 2.8px; text-anchor: middle; fill: #333; }} .axis.left {{ text-anchor: end; }} .axis.right, .axis.scale {{ text-anchor: start; }}
-.number {{ font-size: 2.4px; font-weight: 600; text-anchor: middle; fill: #fff; }}
-.plan path, .polar path, .polar circle {{ fill: none; stroke-linejoin: round; }} .wall {{ stroke: #000; stroke-width: .7; stroke-linecap: square; }}
-.pane {{ stroke: #1769c2; stroke-width: .9; }} .edge {{ stroke: #000; stroke-opacity: .7; stroke-width: .22; }}
-.plan .luminaire {{ stroke: #d2380b; stroke-width: .35; fill: #fff; fill-opacity: .15; }} .cross {{ stroke: #d2380b; stroke-width: .25; }}
-.iso-under {{ stroke: #fff; stroke-width: .8; stroke-opacity: .75; }} .iso {{ stroke: #000; stroke-width: .3; }}
-.plan .eye {{ fill: #7a1fa2; stroke: #fff; stroke-width: .3; }} .look {{ stroke: #7a1fa2; stroke-width: .6; }}
-.tick {{ stroke: #333; stroke-width: .2; }} .bar {{ stroke: #000; stroke-width: .9; }} .plan .north {{ fill: #000; }}
-.ring {{ stroke: #bbb; stroke-width: .15; }} .curve {{ stroke: #d2380b; stroke-width: .45; }} .across {{ stroke-dasharray: 1.4 .9; }}
-@media print {{ body {{ margin: 0; padding: 0; max-width: none; font-size: 11px; }} * {{ print-color-adjust: exact; -webkit-print-color-adjust: exact; }}
+{2}@media print {{ body {{ margin: 0; padding: 0; max-width: none; font-size: 11px; }} * {{ print-color-adjust: exact; -webkit-print-color-adjust: exact; }}
   h2, h3 {{ break-after: avoid; }} tr, tbody, figure, .luminaire-card {{ break-inside: avoid; }} .surface {{ break-before: page; }} }}
 </style></head><body>
+)";
+
+constexpr const char* drawing_rules =
+    R"(.value { font-size: 2.1px; text-anchor: middle; opacity: .85; }
+.label { font-size: 2.7px; font-weight: 600; text-anchor: middle; paint-order: stroke; stroke: #fff; stroke-width: .9px; stroke-linejoin: round; }
+.axis { font-size: 2.8px; text-anchor: middle; fill: #333; } .axis.left { text-anchor: end; } .axis.right, .axis.scale { text-anchor: start; }
+.number { font-size: 2.4px; font-weight: 600; text-anchor: middle; fill: #fff; }
+.plan path, .polar path, .polar circle { fill: none; stroke-linejoin: round; } .wall { stroke: #000; stroke-width: .7; stroke-linecap: square; }
+.pane { stroke: #1769c2; stroke-width: .9; } .edge { stroke: #000; stroke-opacity: .7; stroke-width: .22; }
+.plan .luminaire { stroke: #d2380b; stroke-width: .35; fill: #fff; fill-opacity: .15; } .cross { stroke: #d2380b; stroke-width: .25; }
+.iso-under { stroke: #fff; stroke-width: .8; stroke-opacity: .75; } .iso { stroke: #000; stroke-width: .3; }
+.plan .eye { fill: #7a1fa2; stroke: #fff; stroke-width: .3; } .look { stroke: #7a1fa2; stroke-width: .6; }
+.tick { stroke: #333; stroke-width: .2; } .bar { stroke: #000; stroke-width: .9; } .plan .north { fill: #000; }
+.ring { stroke: #bbb; stroke-width: .15; } .curve { stroke: #d2380b; stroke-width: .45; } .across { stroke-dasharray: 1.4 .9; }
 )";
 
 // Text within quotes of a style sheet, without the characters that mean something there.
@@ -49,8 +52,13 @@ std::string for_style(std::string text) {
 
 }  // namespace
 
-std::string page_begin(const std::string& title) {
-  return fmt::format(fmt::runtime(page_head), html_text(title), for_style(title));
+std::string drawing_style(const std::string& family) {
+  return "svg text { font-family: " + family + "; }\n" + drawing_rules;
+}
+
+std::string page_begin(const std::string& title, const char* language) {
+  return fmt::format(fmt::runtime(page_head), html_text(title), for_style(title),
+                     drawing_style("system-ui, sans-serif"), language);
 }
 
 std::string list_section(const char* title, const std::vector<std::string>& sentences) {
@@ -60,15 +68,6 @@ std::string list_section(const char* title, const std::vector<std::string>& sent
     section += "<li>" + html_text(sentence) + "</li>\n";
   }
   return section + "</ul>\n";
-}
-
-std::optional<Eigen::Vector2d> north_in(const std::optional<Eigen::Vector3d>& north,
-                                        const LuxGrid& grid) {
-  if (!north) return {};
-  const Eigen::Vector2d flat(north->dot(grid.u), north->dot(grid.v));
-  constexpr double level = 0.9;
-  if (flat.norm() < level) return {};
-  return flat.normalized();
 }
 
 }  // namespace lightwell
