@@ -142,7 +142,7 @@ TEST_F(ReportCommand, GridsOfTheSceneFileAreMeasured) {
   EXPECT_DOUBLE_EQ(desks["W_per_m2"].get<double>(), 40.0 / 12.0);
   EXPECT_DOUBLE_EQ(desks["W_per_m2_per_100_lx"].get<double>(),
                    40.0 / 12.0 / (desks["E_m"].get<double>() / 100.0));
-  EXPECT_TRUE(says(content_of(folder / "a.html"), "3.33 W/m²"));
+  EXPECT_TRUE(says(content_of(folder / "a.html"), "<td>3.33</td>"));
   EXPECT_FALSE(
       run_json({"report", "room.toml", "room.vtp", "--rays", "64"})["surfaces"][0].contains(
           "W_per_m2"))
@@ -233,6 +233,34 @@ TEST_F(ReportCommand, APlaneIsHeldToTheLimitsOfAnActivity) {
   expect_refused({"--areas", "wide.toml"}, 3, "EN 1838 has them up to 2 m wide");
   folder.write("none.toml", "[activities.mine]\nuniformity = 0.4\n");
   expect_refused({"--plane", "room@0.75", "--activities", "none.toml"}, 3, "mean");
+
+/// The language is that of pages; figures for programs are the same.
+TEST_F(ReportCommand, SpeaksTheLanguageThatIsAskedFor) {
+  const Words plane = {"report", "room.toml", "room.vtp", "--plane", "room@0.75", "--rays", "64"};
+  const Json english = run_json(plane + Words{"-o", "a.html"});
+  const Json german = run_json(plane + Words{"-o", "b.html", "--language", "de"});
+  EXPECT_EQ(english["surfaces"], german["surfaces"]);
+  EXPECT_TRUE(says(content_of(folder / "a.html"), "calculation surface"));
+  EXPECT_TRUE(says(content_of(folder / "b.html"), "Berechnungsfläche"));
+  expect_refused({"--surface", "room", "--language", "klingon", "-o", "c.html"}, 2, "--language");
+}
+
+/// A PDF is written, or the message says how to get one; the same input gives the same bytes.
+TEST_F(ReportCommand, WritesPdf) {
+  const Words report = {"report", "room.toml", "room.vtp", "--surface", "panel", "--rays", "64"};
+#ifdef LIGHTWELL_PDF
+  for (const char* name : {"a.pdf", "b.pdf"}) {
+    const Ended ended = run(report + Words{"-o", name, "--quiet"});
+    ASSERT_EQ(ended.code, 0) << ended.err;
+  }
+  const std::string bytes = content_of(folder / "a.pdf");
+  EXPECT_EQ(bytes.substr(0, 5), "%PDF-");
+  EXPECT_EQ(bytes, content_of(folder / "b.pdf"));
+#else
+  const Ended ended = run(report + Words{"-o", "a.pdf"});
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_TRUE(says(ended.err, "librsvg2-dev"));
+#endif
 }
 
 /// Illuminance by the same rays is proportional to the maintenance factor.
@@ -359,7 +387,7 @@ TEST_F(DaylightReport, ThePageIsComplete) {
   const std::string page = content_of(folder / "a.html");
   for (const char* piece :
        {"Room &lt;1> &amp; &quot;2&quot;", "<dt>Client</dt><dd>A &amp; B</dd>", "2026-11-26",
-        "data:image/png;base64,", "View 'eye'", "class=\"wall\"", "class=\"pane\"",
+        "data:image/png;base64,", "View ‘eye’", "class=\"wall\"", "class=\"pane\"",
         "class=\"edge\"", "class=\"luminaire\"", "class=\"eye\"", "class=\"iso\"", "x, m", "y, m",
         "1 : 40 on A4 paper", "class=\"north\"", "<b>electric light</b>", "<b>daylight</b>"}) {
     EXPECT_TRUE(says(page, piece));

@@ -311,6 +311,9 @@ TEST_F(Output, AFailedWriteNamesTheCauseAndTheOldFileStays) {
       {"render", "room.toml", "S.vtp", "-o", "old.exr"},
       {"probe", "room.toml", "S.vtp", "--points", "points.csv", "-o", "old.csv"},
       {"export", "S.vtp", "-o", "old.glb"},
+#ifdef LIGHTWELL_PDF
+      {"report", "room.toml", "S.vtp", "--surface", "panel", "--rays", "64", "-o", "old.pdf"},
+#endif
       {"form-factors", "room.toml", "--max-patch-size", "1", "-o", "old.mtx"}};
   for (const Words& words : writers) {
     folder.write(words.back(), "old");

@@ -8,9 +8,9 @@
 namespace lightwell {
 namespace {
 
-constexpr double letters = 8.5, small_letters = 7.0;                       // points
+constexpr double letters = 8.5, small_letters = 7.0;                        // points
 constexpr double between_columns = 12.0, above_row = 2.2, below_row = 2.2;  // points
-constexpr double bound_gap = 3.0, indent = 8.0;                            // points
+constexpr double bound_gap = 3.0, indent = 8.0;                             // points
 constexpr int most_lines = 12;
 
 /// Widths of the parts of a column, points.
@@ -63,13 +63,31 @@ TextStyle head_style(const TableLayout& layout, bool is_text) {
   return {.size = letters * layout.scale, .is_bold = true, .is_right = !is_text};
 }
 
-constexpr double unlimited = 1e5;  // points
+constexpr double unlimited = 1e5;                   // points
+constexpr double most_head = 26.0 * points_per_mm;  // of a line of a head over numbers
+
+double natural_width(const PdfCanvas& canvas, const MarkedText& text, TextStyle style) {
+  style.is_right = false;
+  return canvas.set(text, style, unlimited).width();
+}
+
+// The head of a column. A long one is broken before its unit rather than within it.
+SetText set_head(const TableLayout& layout, const PdfCanvas& canvas, const TableColumn& column,
+                 double width) {
+  const TextStyle style = head_style(layout, column.is_text);
+  MarkedText head = column.head;
+  const std::size_t unit = head.rfind(", ");
+  if (unit != MarkedText::npos && natural_width(canvas, head, style) > width) {
+    head.replace(unit, 2, ",\n");
+  }
+  return canvas.set(head, style, width);
+}
 
 void measure_cell(const TableLayout& layout, const PdfCanvas& canvas, const TableCell& cell,
                   RowKind kind, ColumnWidths& widths) {
   TextStyle style = cell_style(layout, kind);
   const auto width_of = [&](const MarkedText& text) {
-    return text.empty() ? 0.0 : canvas.set(text, style, unlimited).width();
+    return text.empty() ? 0.0 : natural_width(canvas, text, style);
   };
   if (is_number(cell.text)) {
     const auto [lead, tail] = parts_of(cell.text, layout.decimal_sign);
@@ -91,10 +109,8 @@ void measure_columns(TableLayout& layout, const PdfCanvas& canvas) {
     ColumnWidths& widths = layout.columns[i];
     const TableColumn& column = table.columns[i];
     const TextStyle style = head_style(layout, true);
-    // Long heads are broken.
-    constexpr double most_head = 26.0 * points_per_mm;
     widths.head = std::max(canvas.set(column.head, style, 0.0).width(),
-                           std::min(canvas.set(column.head, style, unlimited).width(), most_head));
+                           std::min(natural_width(canvas, column.head, style), most_head));
     if (column.is_text) {
       for (const TableRow& row : table.rows) {
         const double natural =
@@ -214,12 +230,10 @@ void draw_row(const TableLayout& layout, PdfPages& pages, const TableRow& row, d
   pages.canvas().draw_rule(PdfPages::left, pages.y(), PdfPages::width, thin, light);
 }
 
-std::vector<SetText> set_head(const TableLayout& layout, const PdfCanvas& canvas) {
+std::vector<SetText> set_heads(const TableLayout& layout, const PdfCanvas& canvas) {
   std::vector<SetText> heads;
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
-    const TableColumn& column = layout.table.columns[i];
-    heads.push_back(
-        canvas.set(column.head, head_style(layout, column.is_text), layout.columns[i].width));
+    heads.push_back(set_head(layout, canvas, layout.table.columns[i], layout.columns[i].width));
   }
   return heads;
 }
@@ -248,7 +262,7 @@ void draw_head(const TableLayout& layout, const std::vector<SetText>& heads, Pdf
 void draw_table(const DocumentTable& table, char decimal_sign, PdfPages& pages) {
   TableLayout layout{.table = table, .decimal_sign = decimal_sign};
   share_width(layout, pages.canvas());
-  const std::vector<SetText> heads = set_head(layout, pages.canvas());
+  const std::vector<SetText> heads = set_heads(layout, pages.canvas());
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     const TableRow& row = table.rows[r];
     const double height = row_height(layout, pages.canvas(), row);

@@ -46,9 +46,16 @@ std::optional<DocumentPicture> heading_picture(const LightingReport& report, Lan
       .png = picture.png};
 }
 
+// The name of the sky; names that the readers of scenes give are in the language of the report.
+MarkedText sky_name(const LightingReport& report, Language language) {
+  for (const Word word : {Word::sky, Word::sky_overcast, Word::sky_clear, Word::sky_uniform}) {
+    if (report.sky == word_in(Language::english, word)) return word_in(language, word);
+  }
+  return marked(report.sky);
+}
+
 MarkedText content_text(const LightingReport& report, Language language) {
-  // A sky without a name of its own.
-  const MarkedText sky = report.sky == "sky" ? word_in(language, Word::sky) : marked(report.sky);
+  const MarkedText sky = sky_name(report, language);
   switch (report.content) {
     case LightContent::electric:
       return word_in(language, Word::content_electric);

@@ -32,6 +32,13 @@ constexpr std::array entries = {
            "lumière électrique et naturelle", "luz eléctrica y natural"}},
     Entry{Word::both, {"both", "zusammen", "ensemble", "total"}},
     Entry{Word::sky, {"sky", "Himmel", "ciel", "cielo"}},
+    // As the readers of scenes name skies.
+    Entry{Word::sky_overcast,
+          {"CIE overcast", "bedeckter Himmel nach CIE", "ciel couvert CIE", "cielo cubierto CIE"}},
+    Entry{Word::sky_clear,
+          {"CIE clear", "klarer Himmel nach CIE", "ciel clair CIE", "cielo despejado CIE"}},
+    Entry{Word::sky_uniform,
+          {"uniform", "gleichmäßiger Himmel", "ciel uniforme", "cielo uniforme"}},
     Entry{Word::content_electric,
           {"All figures are of electric light: the scene has no daylight, or it is switched off.",
            "Alle Werte gelten für Kunstlicht: Die Szene hat kein Tageslicht, oder es ist "
@@ -71,8 +78,8 @@ constexpr std::array entries = {
         Word::maintained,
         {"Electric light is maintained: initial values times a maintenance factor of {0}.",
          "Kunstlicht: Wartungswerte, das sind Anfangswerte mal Wartungsfaktor {0}.",
-         "Lumière électrique à maintenir : valeurs initiales multipliées par un facteur de "
-         "maintenance de {0}.",
+         "Lumière électrique : valeurs à maintenir, soit les valeurs initiales multipliées par un "
+         "facteur de maintenance de {0}.",
          "Luz eléctrica mantenida: valores iniciales multiplicados por un factor de mantenimiento "
          "de {0}."}},
     Entry{Word::new_lamps,
