@@ -463,7 +463,7 @@ TEST_F(ReportCommand, RefusesWhatItCannotMeasure) {
   expect_refused({"--plane", "room@0.75", "--margin", "2", "-o", "a.html"}, 3, "smaller one");
   expect_refused({"--observer", "window", "-o", "a.html"}, 3, "window");
   expect_refused({"--surface", "panel", "--watts", "lamp=3", "-o", "a.html"}, 3, "no luminaire");
-  expect_refused({"--surface", "panel", "-o", "a.pdf"}, 2, ".html");
+  expect_refused({"--surface", "panel", "-o", "a.doc"}, 2, ".html");
 }
 
 class InfoCommand : public CommandTest {};

@@ -29,7 +29,7 @@ small {{ color: #666; white-space: nowrap; }} figure {{ margin: 1rem 0 1.6rem; }
 )";
 
 constexpr const char* drawing_rules =
-    R"(.value { font-size: 2.1px; text-anchor: middle; opacity: .85; }
+    R"(.value { font-size: 2.1px; text-anchor: middle; fill-opacity: .85; }
 .label { font-size: 2.7px; font-weight: 600; text-anchor: middle; paint-order: stroke; stroke: #fff; stroke-width: .9px; stroke-linejoin: round; }
 .axis { font-size: 2.8px; text-anchor: middle; fill: #333; } .axis.left { text-anchor: end; } .axis.right, .axis.scale { text-anchor: start; }
 .number { font-size: 2.4px; font-weight: 600; text-anchor: middle; fill: #fff; }
