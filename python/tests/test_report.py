@@ -31,6 +31,23 @@ class Report(unittest.TestCase):
                 self.assertEqual(a.read(), b.read())
         self.assertGreater(os.path.getsize(ours[2]), 10000)
 
+    def test_is_written_as_pdf_in_a_language(self):
+        folder = scratch(self)
+        pdf, page = (os.path.join(folder, name) for name in ("r.pdf", "r.html"))
+        solution = lw.solve(lw.read(ROOM), refine="off", gather_rays=16)
+        solution.report(page, surfaces=["floor"], rays=64, language="fr")
+        with open(page, encoding="utf-8") as file:
+            self.assertIn("surface de calcul", file.read())
+        try:
+            solution.report(pdf, surfaces=["floor"], rays=64)
+        except lw.InputError as error:
+            self.assertRegex(str(error), "built without PDF")
+        else:
+            with open(pdf, "rb") as file:
+                self.assertEqual(file.read(5), b"%PDF-")
+        with self.assertRaisesRegex(lw.InputError, "the language is 'it'"):
+            solution.report(page, surfaces=["floor"], language="it")
+
     def test_refuses_what_is_not_there(self):
         solution = lw.solve(lw.read(ROOM), refine="off", gather_rays=16)
         for options, pattern in (

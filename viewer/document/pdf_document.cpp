@@ -160,6 +160,7 @@ void draw_section(const DocumentSection& section, const Document& document, PdfP
   constexpr double few_lines = 40.0 * points_per_mm, gap = 22.0;
   if (section.begins_page || pages.room() < few_lines) {
     pages.begin_page();
+    pages.name_section(section.title);
   } else {
     pages.skip(gap);
   }

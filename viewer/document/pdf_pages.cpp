@@ -38,9 +38,9 @@ void PdfPages::draw_footer() {
   constexpr double size = 7.5, grey = 0.4, gap = 4.0 * points_per_mm,
                    number_width = 30.0 * points_per_mm;
   constexpr double y = bottom + gap;
-  canvas_.draw(
-      canvas_.set(footer_, {.size = size, .grey = grey, .most_lines = 1}, width - number_width),
-      left, y);
+  canvas_.draw(canvas_.set(section_.empty() ? footer_ : footer_ + " · " + section_,
+                           {.size = size, .grey = grey, .most_lines = 1}, width - number_width),
+               left, y);
   canvas_.draw(canvas_.set(fmt::format("{} / {}", page_, page_count_),
                            {.size = size, .is_right = true, .grey = grey}, number_width),
                left + width - number_width, y);

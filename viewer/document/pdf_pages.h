@@ -30,6 +30,8 @@ class PdfPages {
   /// Begins another page unless `height` fits on this one, or nothing stands on it.
   void need(double height);
   void begin_page();
+  /// The section in the footers of this page and of those that follow, after the text.
+  void name_section(const MarkedText& title) { section_ = title; }
   /// Draws the lines of a text, over pages where they do not fit.
   void flow(const SetText& text, double x);
   void end();
@@ -38,7 +40,7 @@ class PdfPages {
   void draw_footer();
 
   PdfCanvas& canvas_;
-  MarkedText footer_;
+  MarkedText footer_, section_{};
   int page_count_, page_ = 1;
   double y_ = top;
 };

@@ -99,15 +99,15 @@ constexpr std::array entries = {
          "E<sub>m</sub> ist die mittlere Beleuchtungsstärke über die Punkte eines Rasters, "
          "E<sub>min</sub> und E<sub>max</sub> sind der kleinste und der größte Wert, die "
          "Gleichmäßigkeit ist U<sub>0</sub> = E<sub>min</sub>/E<sub>m</sub>. Das ± neben einem "
-         "Wert ist der gesamte Fehler bei einer Sicherheit von etwa 19 zu 1.",
+         "Wert ist der gesamte Fehler mit einer Wahrscheinlichkeit von etwa 95 %.",
          "E<sub>m</sub> est l’éclairement moyen sur les points d’une grille, E<sub>min</sub> et "
          "E<sub>max</sub> sont les valeurs minimale et maximale, et l’uniformité est U<sub>0</sub> "
          "= E<sub>min</sub>/E<sub>m</sub>. Le ± à côté d’une valeur est l’erreur totale, avec une "
-         "probabilité d’environ 19 contre 1.",
+         "probabilité d’environ 95 %.",
          "E<sub>m</sub> es la iluminancia media sobre los puntos de una cuadrícula, "
          "E<sub>min</sub> y E<sub>max</sub> son los valores mínimo y máximo, y la uniformidad es "
          "U<sub>0</sub> = E<sub>min</sub>/E<sub>m</sub>. El ± junto a un valor es el error total, "
-         "con una probabilidad de unas 19 a 1."}},
+         "con una probabilidad de cerca del 95 %."}},
     Entry{
         Word::calculation_surface,
         {"calculation surface", "Berechnungsfläche", "surface de calcul", "superficie de cálculo"}},
@@ -263,17 +263,18 @@ constexpr std::array entries = {
          "reflected light that the rays read.",
          "Das Licht jedes Punktes wurde mit {0} Strahlen über den Halbraum und mit "
          "Schattenstrahlen zu jeder Lampe berechnet. Das ± neben einem Wert ist eine Schranke in "
-         "lx bei einer Sicherheit von etwa 19 zu 1: das Rauschen dieser Stichprobe, aus acht "
-         "unabhängigen Sätzen von Strahlen, und der Fehler des reflektierten Lichts, das die "
-         "Strahlen lesen.",
+         "lx mit einer Wahrscheinlichkeit von etwa 95 %: das Rauschen dieser Stichprobe, aus acht "
+         "unabhängigen Sätzen von Strahlen, und der Fehler des reflektierten Lichts, auf das die "
+         "Strahlen treffen.",
          "La lumière de chaque point est calculée par {0} rayons sur l’hémisphère et par des "
          "rayons d’ombre vers chaque lampe. Le ± à côté d’une valeur est une borne en lx avec une "
-         "probabilité d’environ 19 contre 1 : le bruit de cet échantillonnage, déduit de huit "
+         "probabilité d’environ 95 % : le bruit de cet échantillonnage, déduit de huit "
          "ensembles indépendants de rayons, et l’erreur de la lumière réfléchie que lisent les "
          "rayons.",
          "La luz de cada punto se calculó con {0} rayos sobre el hemisferio y con rayos de sombra "
-         "hacia cada lámpara. El ± junto a un valor es una cota en lx con una probabilidad de unas "
-         "19 a 1: el ruido de este muestreo, hallado con ocho conjuntos independientes de rayos, y "
+         "hacia cada lámpara. El ± junto a un valor es una cota en lx con una probabilidad de "
+         "cerca del 95 %: el ruido de este muestreo, hallado con ocho conjuntos independientes de "
+         "rayos, y "
          "el error de la luz reflejada que leen los rayos."}},
     Entry{
         Word::solution_error,

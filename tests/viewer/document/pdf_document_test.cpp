@@ -52,6 +52,7 @@ TEST_F(PdfDocument, ACoverAndEverySectionArePages) {
   EXPECT_EQ(word_of(pdf, "Third").page, 3);
   for (const char* number : {"1 / 3", "2 / 3", "3 / 3"}) EXPECT_EQ(pdf.count(number), 1) << number;
   EXPECT_EQ(pdf.count("Footer"), 3);
+  EXPECT_EQ(pdf.count("Footer · Second"), 1) << "the section that begins on the page";
 }
 
 /// Numbers of a column with and without decimals have their decimal signs in one line.

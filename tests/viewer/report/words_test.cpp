@@ -40,6 +40,7 @@ TEST(Words, EachLanguageHasAllWordsWithTheSamePlacesAndMarks) {
       for (const char* mark : {"<b>", "</b>", "<sub>", "</sub>", "<small>"}) {
         EXPECT_EQ(count(text, mark), count(english, mark)) << mark;
       }
+      EXPECT_EQ(count(text, "  "), 0);
       EXPECT_EQ(count(text, "\""), 0) << "marks of quotation are those of the language";
     }
   }
