@@ -57,7 +57,7 @@ SvgHandle read_svg(const std::string& svg) {
   SvgHandle handle(
       rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(svg.data()), svg.size(), &error));
   if (!handle) throw_svg(error);
-  const std::string style = drawing_style(std::string("'DejaVu Sans', sans-serif"));
+  const std::string style = drawing_style("'DejaVu Sans', sans-serif");
   if (!rsvg_handle_set_stylesheet(handle.get(), reinterpret_cast<const guint8*>(style.data()),
                                   style.size(), &error)) {
     throw_svg(error);

@@ -1,6 +1,7 @@
 #include "viewer/document/pdf_document.h"
 
 #include <algorithm>
+#include <utility>
 #include <variant>
 
 #include "scene/utf8.h"

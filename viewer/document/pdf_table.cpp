@@ -26,7 +26,7 @@ struct ColumnWidths {
 struct TableLayout {
   const DocumentTable& table;
   char decimal_sign = '.';
-  double scale = 1.0;  ///< of the letters, below 1 where numbers would not fit
+  double scale = 1.0;  ///< of letters, below 1 where numbers would not fit
   std::vector<ColumnWidths> columns{};
 };
 
@@ -42,7 +42,7 @@ bool is_number(const MarkedText& text) {
 
 NumberParts parts_of(const MarkedText& text, char decimal_sign) {
   std::size_t end = text.find(decimal_sign);
-  // Of numbers without decimals, what follows the digits: a unit.
+  // What follows the digits of a number without decimals is a unit.
   if (end == MarkedText::npos) end = text.find_first_not_of("0123456789+-e");
   return end == MarkedText::npos ? NumberParts{text, {}}
                                  : NumberParts{text.substr(0, end), text.substr(end)};
@@ -109,8 +109,9 @@ void measure_columns(TableLayout& layout, const PdfCanvas& canvas) {
     ColumnWidths& widths = layout.columns[i];
     const TableColumn& column = table.columns[i];
     const TextStyle style = head_style(layout, true);
-    widths.head = std::max(canvas.set(column.head, style, 0.0).width(),
-                           std::min(natural_width(canvas, column.head, style), most_head));
+    widths.head =
+        std::max(canvas.set(column.head, style, 0.0).width(),
+                 std::min(natural_width(canvas, column.head, style), layout.scale * most_head));
     if (column.is_text) {
       for (const TableRow& row : table.rows) {
         const double natural =
@@ -126,50 +127,48 @@ void measure_columns(TableLayout& layout, const PdfCanvas& canvas) {
   }
 }
 
-// Columns of words share what the numbers leave of the page, in proportion to their natural
-// widths; the first column takes what remains.
+// Columns of words share `width`. None gets less than an even share unless its words need less;
+// the first column takes what remains.
+void share_among_words(TableLayout& layout, double width) {
+  std::vector<ColumnWidths*> columns;
+  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+    if (layout.table.columns[i].is_text) columns.push_back(&layout.columns[i]);
+  }
+  if (columns.empty()) return;
+  ColumnWidths* const first = columns.front();
+  std::ranges::stable_sort(columns, {}, &ColumnWidths::width);
+  double left = width, open = static_cast<double>(columns.size());
+  for (ColumnWidths* const column : columns) {
+    column->width = std::min(column->width, left / open);
+    left -= column->width;
+    open -= 1.0;
+  }
+  first->width += left;
+}
+
+// Columns of numbers get their natural widths. Where those leave too little for the words, all
+// letters of the table are smaller.
 void share_width(TableLayout& layout, const PdfCanvas& canvas) {
   constexpr double least_text = 28.0 * points_per_mm;
-  const auto sum = [&](bool is_text) {
-    double all = 0.0;
+  const auto sum_of_numbers = [&] {
+    double sum = 0.0;
     for (std::size_t i = 0; i < layout.columns.size(); ++i) {
-      if (layout.table.columns[i].is_text == is_text) all += layout.columns[i].width;
+      if (!layout.table.columns[i].is_text) sum += layout.columns[i].width;
     }
-    return all;
+    return sum;
   };
   const auto texts = static_cast<double>(
       std::ranges::count_if(layout.table.columns, [](const TableColumn& c) { return c.is_text; }));
   const double gaps = between_columns * (static_cast<double>(layout.table.columns.size()) - 1.0);
   const double most_numbers = PdfPages::width - gaps - least_text * texts;
   measure_columns(layout, canvas);
-  if (sum(false) > most_numbers) {
+  if (sum_of_numbers() > most_numbers) {
     // A little less, since letters of another size are not exactly in proportion.
-    constexpr double a_little_less = 0.99;
-    layout.scale = a_little_less * most_numbers / sum(false);
+    constexpr double a_little_less = 0.97;
+    layout.scale = a_little_less * most_numbers / sum_of_numbers();
     measure_columns(layout, canvas);
   }
-  const double for_text = PdfPages::width - gaps - sum(false), natural = sum(true);
-  if (texts == 0.0) return;
-  if (natural > for_text) {
-    // No column gets less than its even share unless it needs less.
-    double left = for_text, open = texts;
-    std::vector<std::size_t> order;
-    for (std::size_t i = 0; i < layout.columns.size(); ++i) {
-      if (layout.table.columns[i].is_text) order.push_back(i);
-    }
-    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return layout.columns[i].width; });
-    for (const std::size_t i : order) {
-      layout.columns[i].width = std::min(layout.columns[i].width, left / open);
-      left -= layout.columns[i].width;
-      open -= 1.0;
-    }
-  } else {
-    for (std::size_t i = 0; i < layout.columns.size(); ++i) {
-      if (!layout.table.columns[i].is_text) continue;
-      layout.columns[i].width += for_text - natural;
-      break;
-    }
-  }
+  share_among_words(layout, PdfPages::width - gaps - sum_of_numbers());
 }
 
 double indent_of(const TableRow& row, std::size_t column) {
