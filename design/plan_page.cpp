@@ -4,8 +4,8 @@
 
 #include "design/plan_files.h"
 #include "design/plan_words.h"
-#include "viewer/export/page_data.h"
 #include "viewer/document/page_frame.h"
+#include "viewer/export/page_data.h"
 #include "viewer/report/plan_svg.h"
 
 namespace lightwell {

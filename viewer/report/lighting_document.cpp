@@ -9,6 +9,7 @@
 
 #include "viewer/report/lighting_tables.h"
 #include "viewer/report/plan_svg.h"
+#include "viewer/report/standard_tables.h"
 
 namespace lightwell {
 namespace {
@@ -92,6 +93,18 @@ DocumentSection results_section(const LightingReport& report, Language language)
   add_table(section, illuminance_table(report, language));
   add_table(section, rating_table(report, language));
   add_table(section, power_table(report, language));
+  if (MarkedText energy = energy_text(report, language); !energy.empty()) {
+    section.blocks.emplace_back(DocumentParagraph{std::move(energy)});
+  }
+  return section;
+}
+
+DocumentSection limits_section(const LightingReport& report, Language language) {
+  DocumentSection section{word_in(language, Word::limits_of_standards)};
+  section.blocks.emplace_back(DocumentParagraph{word_in(language, Word::limits_mean)});
+  for (DocumentTable& table : requirement_tables(report, language)) {
+    add_table(section, std::move(table));
+  }
   return section;
 }
 
@@ -173,6 +186,8 @@ void add_plans(const LightingReport& report, const std::optional<LuxRange>& rang
                Language language, Document& document) {
   int number = 0;
   for (const CalculationSurface& surface : report.surfaces) {
+    // Grids of limits are in tables; nobody asked for their plans.
+    if (surface.grid.is_of_area) continue;
     DocumentSection section{.title = marked(surface.grid.name)};
     section.blocks.emplace_back(DocumentParagraph{grid_text(surface, language)});
     for (const auto& [name, field] : fields_of(report, surface, language)) {
@@ -213,6 +228,9 @@ DocumentSection glare_section(const LightingReport& report, Language language) {
   for (const Observer& observer : report.observers) {
     add_table(section, source_table(observer, language));
   }
+  DocumentTable eyes = eye_table(report, language);
+  eyes.title = word_in(language, Word::light_at_the_eye);
+  add_table(section, std::move(eyes));
   return section;
 }
 
@@ -302,6 +320,9 @@ Document lighting_document(const LightingReport& report, const std::optional<Lux
       .head = heading_facts(report, language),
       .picture = heading_picture(report, language)};
   document.sections.push_back(results_section(report, language));
+  if (!report.requirements.empty()) {
+    document.sections.push_back(limits_section(report, language));
+  }
   document.sections.push_back(luminaire_section(report, language));
   add_plans(report, range, language, document);
   if (!report.observers.empty()) document.sections.push_back(glare_section(report, language));

@@ -338,7 +338,43 @@ constexpr std::array entries = {
            "Erreur estimée de la solution", "Error estimado de la solución"}},
     Entry{Word::error_unknown, {"not known", "nicht bekannt", "inconnue", "desconocido"}},
     Entry{Word::rays,
-          {"Rays at each point", "Strahlen je Punkt", "Rayons par point", "Rayos por punto"}}};
+          {"Rays at each point", "Strahlen je Punkt", "Rayons par point", "Rayos por punto"}},
+
+    Entry{Word::limits_of_standards,
+          {"Limits of standards", "Grenzwerte der Normen", "Exigences des normes",
+           "Límites de las normas"}},
+    Entry{Word::limits_mean,
+          {"A limit is met or missed if the figure keeps or breaks it by more than the ± of the "
+           "figure; else it is too close to tell. Figures are of maintained electric light where "
+           "it is known by itself.",
+           "Ein Grenzwert ist eingehalten oder verfehlt, wenn der Wert um mehr als sein ± auf der "
+           "einen oder anderen Seite liegt; sonst ist es zu knapp für ein Urteil. Die Werte gelten "
+           "für gewartetes Kunstlicht, wo es für sich bekannt ist.",
+           "Une exigence est respectée ou manquée si la valeur se trouve d’un côté ou de l’autre "
+           "de plus que son ± ; sinon, l’écart est trop faible pour conclure. Les valeurs sont "
+           "celles de la lumière électrique à maintenir, quand elle est connue séparément.",
+           "Un límite se cumple o no se cumple si el valor queda a un lado o al otro por más de su "
+           "±; si no, está demasiado cerca para decidir. Los valores son de luz eléctrica "
+           "mantenida, cuando se conoce por separado."}},
+    Entry{Word::figure, {"figure", "Größe", "grandeur", "magnitud"}},
+    Entry{Word::value, {"value", "Wert", "valeur", "valor"}},
+    Entry{Word::limit, {"limit", "Grenzwert", "exigence", "límite"}},
+    Entry{Word::verdict, {"verdict", "Urteil", "conclusion", "veredicto"}},
+    Entry{Word::met, {"met", "eingehalten", "respectée", "se cumple"}},
+    Entry{Word::missed, {"missed", "verfehlt", "manquée", "no se cumple"}},
+    Entry{Word::too_close,
+          {"too close to tell", "zu knapp", "écart trop faible", "demasiado cerca"}},
+    Entry{Word::recommended, {"recommended", "empfohlen", "recommandé", "recomendado"}},
+    Entry{Word::light_at_the_eye,
+          {"Light at the eye", "Licht am Auge", "Lumière à l’œil", "Luz en el ojo"}},
+    Entry{
+        Word::melanopic_edi,
+        {"melanopic EDI, lx", "melanopische EDI, lx", "EDI mélanopique, lx", "EDI melanópica, lx"}},
+    Entry{Word::energy_of_year,
+          {"Energy of lighting in a year over {0} ({1} m²): LENI {2} kWh/m².",
+           "Energie der Beleuchtung im Jahr über {0} ({1} m²): LENI {2} kWh/m².",
+           "Énergie de l’éclairage en un an sur {0} ({1} m²) : LENI {2} kWh/m².",
+           "Energía de la iluminación en un año sobre {0} ({1} m²): LENI {2} kWh/m²."}}};
 
 constexpr bool entries_are_in_order() {
   for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -122,6 +122,20 @@ enum class Word {
   error_estimate,
   error_unknown,
   rays,
+  // Standards
+  limits_of_standards,
+  limits_mean,
+  figure,
+  value,
+  limit,
+  verdict,
+  met,
+  missed,
+  too_close,
+  recommended,
+  light_at_the_eye,
+  melanopic_edi,
+  energy_of_year,
   count
 };
 

@@ -1,0 +1,123 @@
+#include "viewer/report/standard_tables.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "viewer/report/figures.h"
+#include "viewer/report/lighting_tables.h"
+
+namespace lightwell {
+namespace {
+
+MarkedText marked_symbol(Figure figure) {
+  switch (figure) {
+    case Figure::mean:
+      return "E<sub>m</sub>, lx";
+    case Figure::least:
+      return "E<sub>min</sub>, lx";
+    case Figure::uniformity:
+      return "U<sub>0</sub>";
+    case Figure::diversity:
+      return "E<sub>max</sub>/E<sub>min</sub>";
+    case Figure::cylindrical:
+      return "E<sub>m,z</sub>, lx";
+    case Figure::modelling:
+      return "E<sub>m,z</sub>/E<sub>m</sub>";
+    case Figure::glare:
+      break;
+  }
+  return "R<sub>UG</sub>";
+}
+
+const char* standing_word(Standing standing, Language language) {
+  switch (standing) {
+    case Standing::met:
+      return word_in(language, Word::met);
+    case Standing::missed:
+      return word_in(language, Word::missed);
+    case Standing::too_close:
+      break;
+  }
+  return word_in(language, Word::too_close);
+}
+
+TableRow requirement_row(const Requirement& requirement, Language language) {
+  const auto number = [&](double value) {
+    return number_in(language, figure_text(requirement.figure, value));
+  };
+  MarkedText verdict = standing_word(standing_of(requirement), language);
+  if (requirement.is_recommended) {
+    verdict += fmt::format(" ({})", word_in(language, Word::recommended));
+  }
+  TableCell value{"–"};
+  if (requirement.value) {
+    value = {std::isfinite(*requirement.value) ? number(*requirement.value) : "∞"};
+    if (requirement.within > 0.0) {
+      value.bound = number_in(language, fmt::format("{:.2g}", requirement.within));
+    }
+  }
+  return {{{marked_symbol(requirement.figure)},
+           {marked(requirement.place)},
+           std::move(value),
+           {(requirement.is_upper ? "≤ " : "≥ ") + number(requirement.limit)},
+           {std::move(verdict)}}};
+}
+
+}  // namespace
+
+std::vector<DocumentTable> requirement_tables(const LightingReport& report, Language language) {
+  std::vector<DocumentTable> tables;
+  for (const auto& of_area : by_area(report.requirements)) {
+    DocumentTable table{.title = fmt::format("{}: {}", marked(of_area.front().area),
+                                             standing_word(standing_of(of_area), language)),
+                        .columns = {{word_in(language, Word::figure), true},
+                                    {word_in(language, Word::calculation_surface), true},
+                                    {word_in(language, Word::value)},
+                                    {word_in(language, Word::limit), true},
+                                    {word_in(language, Word::verdict), true}}};
+    for (const Requirement& requirement : of_area) {
+      table.rows.push_back(requirement_row(requirement, language));
+    }
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
+DocumentTable eye_table(const LightingReport& report, Language language) {
+  DocumentTable table{.columns = {{word_in(language, Word::observer), true},
+                                  {"E<sub>v</sub>, lx"},
+                                  {word_in(language, Word::melanopic_edi)},
+                                  {"DER"},
+                                  {"CCT, K"},
+                                  {"R<sub>a</sub>"}}};
+  const auto number = [&](const char* form, double value) {
+    return TableCell{number_in(language, fmt::format(fmt::runtime(form), value))};
+  };
+  for (const Observer& observer : report.observers) {
+    TableRow row{{{marked(observer.name)}, {lux_text(observer.lux, language)}}};
+    if (std::isfinite(observer.lux_within)) {
+      row.cells.back().bound = lux_text(observer.lux_within, language);
+    }
+    row.cells.resize(table.columns.size(), {"–"});
+    if (observer.light) {
+      const EyeLight& light = *observer.light;
+      row.cells[2] = {lux_text(light.melanopic_ratio() * light.lux, language)};
+      row.cells[3] = number("{:.2f}", light.melanopic_ratio());
+      if (light.colour_temperature) row.cells[4] = number("{:.0f}", *light.colour_temperature);
+      if (light.colour_rendering) row.cells[5] = number("{:.0f}", *light.colour_rendering);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+MarkedText energy_text(const LightingReport& report, Language language) {
+  if (!report.energy) return {};
+  const LightingEnergy& energy = *report.energy;
+  return worded(language, Word::energy_of_year,
+                {marked(energy.surface), number_in(language, fmt::format("{:.1f}", energy.area)),
+                 number_in(language, fmt::format("{:.2f}", energy.indicator))});
+}
+
+}  // namespace lightwell
