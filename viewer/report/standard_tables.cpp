@@ -54,7 +54,7 @@ TableRow requirement_row(const Requirement& requirement, Language language) {
   if (requirement.value) {
     value = {std::isfinite(*requirement.value) ? number(*requirement.value) : "∞"};
     if (requirement.within > 0.0) {
-      value.bound = number_in(language, fmt::format("{:.2g}", requirement.within));
+      value.bound = number_in(language, fmt::format("± {:.2g}", requirement.within));
     }
   }
   return {{{marked_symbol(requirement.figure)},
@@ -97,7 +97,7 @@ DocumentTable eye_table(const LightingReport& report, Language language) {
   for (const Observer& observer : report.observers) {
     TableRow row{{{marked(observer.name)}, {lux_text(observer.lux, language)}}};
     if (std::isfinite(observer.lux_within)) {
-      row.cells.back().bound = lux_text(observer.lux_within, language);
+      row.cells.back().bound = "± " + lux_text(observer.lux_within, language);
     }
     row.cells.resize(table.columns.size(), {"–"});
     if (observer.light) {

@@ -11,6 +11,7 @@
 #include "viewer/document/pdf_document.h"
 #include "viewer/report/figures.h"
 #include "viewer/report/lighting_tables.h"
+#include "viewer/report/standard_tables.h"
 
 namespace lightwell::lighting_document_test {
 namespace {
@@ -104,6 +105,53 @@ TEST(LightingDocument, PartsOfTheLightHaveRowsOfTheirOwn) {
   EXPECT_EQ(table.rows[0].kind, RowKind::group);
   for (const TableRow& row : table.rows) EXPECT_EQ(row.cells.size(), table.columns.size());
   EXPECT_EQ(table.rows[3].cells[0].text, "both");
+}
+
+/// Limits have a table for each area, with the figure, its bound, the limit and the verdict;
+/// without a figure, a dash.
+TEST(LightingDocument, LimitsOfStandardsHaveATableForEachArea) {
+  LightingReport report = made_report(1, 1);
+  report.requirements = {
+      {.area = "desk", .place = "top", .limit = 500, .value = 512, .within = 4},
+      {.area = "desk", .place = "chair", .figure = Figure::glare, .is_upper = true, .limit = 19},
+      {.area = "way",
+       .place = "floor",
+       .figure = Figure::uniformity,
+       .is_recommended = true,
+       .limit = 0.4,
+       .value = 0.31,
+       .within = 0.02}};
+  const auto tables = requirement_tables(report, Language::german);
+  ASSERT_EQ(tables.size(), 2u);
+  EXPECT_EQ(tables[0].title, "desk: eingehalten");
+  ASSERT_EQ(tables[0].rows.size(), 2u);
+  EXPECT_EQ(tables[0].rows[0].cells[2].text, "512");
+  EXPECT_EQ(tables[0].rows[0].cells[2].bound, "± 4");
+  EXPECT_EQ(tables[0].rows[0].cells[3].text, "≥ 500");
+  EXPECT_EQ(tables[0].rows[1].cells[2].text, "–");
+  EXPECT_EQ(tables[0].rows[1].cells[3].text, "≤ 19,0");
+  EXPECT_EQ(tables[1].rows[0].cells[2].text, "0,31");
+  EXPECT_EQ(tables[1].rows[0].cells[4].text, "verfehlt (empfohlen)");
+  EXPECT_EQ(tables[1].title, "way: eingehalten") << "advice misses nothing";
+  EXPECT_TRUE(says(html_of(report), "Limits of standards"));
+}
+
+/// Without wavelengths there are lux alone.
+TEST(LightingDocument, LightAtTheEyeHasARowForEachObserver) {
+  LightingReport report = made_report(1, 1);
+  ASSERT_FALSE(report.observers.empty());
+  Observer& first = report.observers.front();
+  first.lux = 312.0;
+  first.lux_within = 2.5;
+  const TableRow grey = eye_table(report, Language::french).rows.front();
+  EXPECT_EQ(grey.cells[1].text, "312");
+  EXPECT_EQ(grey.cells[1].bound, "± 2,50");
+  EXPECT_EQ(grey.cells[2].text, "–");
+  first.light = eye_light(daylight_illuminant(6504.0));
+  const TableRow row = eye_table(report, Language::french).rows.front();
+  EXPECT_EQ(row.cells[3].text, "1,00");
+  EXPECT_EQ(row.cells[4].text, "6504");
+  EXPECT_EQ(row.cells[5].text, "100");
 }
 
 /// Without surfaces, luminaires, observers or pictures there is a document still.

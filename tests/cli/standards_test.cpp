@@ -1,0 +1,146 @@
+// Limits of standards, and light at the eye, by 'lightwell report'.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "tests/cli/report_command.h"
+
+namespace lightwell::standards_test {
+namespace {
+using Words = std::vector<std::string>;
+using Json = nlohmann::json;
+
+const std::string areas = R"(
+[[grids]]
+name = "desk"
+surface = "room"
+height = 0.75
+part = { min = [1, 1, 0], max = [3, 2, 0] }
+[[grids]]
+name = "around"
+surface = "room"
+height = 0.75
+leaves_out = ["desk"]
+[[grids]]
+name = "way"
+surface = "room"
+part = { min = [1, 0.5, 0], max = [2, 2.5, 0] }
+[[areas]]
+name = "work"
+activity = "mine"
+grid = "desk"
+surround = "around"
+[[areas]]
+name = "escape"
+emergency = "escape route"
+grid = "way"
+[maintenance]
+room = 0.5
+[energy]
+surface = "room"
+daylight_hours = 2000
+night_hours = 500
+)";
+
+/// The limit for cylindrical illuminance asks for a grid of its own; E_max / E_min of the route and
+/// the least of its direct light are those of the grids in the report. The figures of limits are
+/// copies of those of grids, so they are equal.
+TEST_F(ReportCommand, AreasAreHeldToTheLimitsOfStandards) {
+  folder.write("areas.toml", areas);
+  folder.write("mine.toml",
+               "[activities.mine]\nmean = 1\nuniformity = 0.01\ncylindrical = 1e6\nglare = 1\n");
+  const Json json = run_json({"report", "room.toml", "room.vtp", "--areas", "areas.toml",
+                              "--activities", "mine.toml", "--watts", "panel=40", "--rays", "64"});
+  EXPECT_EQ(json["maintenance_factor"], 0.5);
+  const auto surface = [&](const std::string& name) -> const Json& {
+    for (const Json& one : json["surfaces"]) {
+      if (one["name"] == name) return one;
+    }
+    throw std::runtime_error("no surface " + name);
+  };
+  const auto limit = [&](const std::string& place, const std::string& figure) -> const Json& {
+    for (const Json& one : json["requirements"]) {
+      if (one["place"] == place && one["figure"] == figure) return one;
+    }
+    throw std::runtime_error("no limit of " + place);
+  };
+  EXPECT_EQ(limit("desk", "E_m")["value"], surface("desk")["E_m"]);
+  EXPECT_EQ(limit("desk", "E_m")["within"], surface("desk")["mean_within"]);
+  EXPECT_EQ(limit("desk", "E_m")["verdict"], "met");
+  const std::string eyes = "desk, eyes at 1.2 m, cylindrical";
+  EXPECT_EQ(surface(eyes)["quantity"], "cylindrical");
+  EXPECT_EQ(limit(eyes, "E_m,z")["value"], surface(eyes)["E_m"]);
+  EXPECT_EQ(limit(eyes, "E_m,z")["verdict"], "missed");
+  EXPECT_EQ(surface("way, direct light")["light"], "direct");
+  EXPECT_EQ(limit("way, direct light, centre line", "E_min")["value"],
+            surface("way, direct light, centre line")["E_min"]);
+  EXPECT_LT(surface("way, direct light")["E_m"].get<double>(), surface("way")["E_m"].get<double>());
+  EXPECT_EQ(json["verdict"], "missed");
+  // 40 W for 2500 h over 12 m2.
+  EXPECT_DOUBLE_EQ(json["energy"]["LENI_kWh_per_m2"].get<double>(), 100.0 / 12.0);
+  EXPECT_EQ(surface("around")["points"].get<int>() > 0, true);
+}
+
+TEST_F(ReportCommand, APlaneIsHeldToTheLimitsOfAnActivity) {
+  const Words words = {"report", "room.toml", "room.vtp", "--plane", "room@0.75", "--rays", "64"};
+  const Json json = run_json(words + Words{"--activity", "corridor"});
+  EXPECT_EQ(json["requirements"][0]["area"], "room + 0.75 m");
+  EXPECT_EQ(json["requirements"][0]["at_least"], 100.0);
+  expect_refused({"--plane", "room@0.75", "--activity", "corridoor"}, 3,
+                 "Did you mean 'corridor'?");
+  folder.write("wide.toml",
+               "[[grids]]\nname = \"hall\"\nsurface = \"room\"\n[[areas]]\nemergency = \"escape "
+               "route\"\ngrid = \"hall\"\n");
+  expect_refused({"--areas", "wide.toml"}, 3, "EN 1838 has them up to 2 m wide");
+  folder.write("none.toml", "[activities.mine]\nuniformity = 0.4\n");
+  expect_refused({"--plane", "room@0.75", "--activities", "none.toml"}, 3, "mean");
+}
+
+class EyeLightReport : public CommandTest {};
+
+/// An observer before a panel of CIE illuminant E: its spectrum is even, and so is that of what
+/// grey walls reflect. The published ratio of E is 0.9058; bands of 5 nm follow the receptors to
+/// 1e-3.
+TEST_F(EyeLightReport, ObserversHaveTheLightOfTheirSpectrum) {
+  folder.write("room.toml", R"(
+unit = "m"
+[bands]
+kind = "spectral"
+from = 377.5
+to = 782.5
+step = 5
+[materials.grey]
+reflectance = 0.5
+[materials.panel]
+exitance = 2
+[[surfaces]]
+name = "room"
+material = "grey"
+box = { min = [0, 0, 0], max = [4, 3, 2.5], inward = true }
+[[surfaces]]
+name = "panel"
+material = "panel"
+polygon = [[1, 1, 2.4], [1, 2, 2.4], [3, 2, 2.4], [3, 1, 2.4]]
+[[cameras]]
+name = "chair"
+position = [0.5, 1.5, 1.2]
+direction = [1, 0, 0]
+)");
+  const Ended solved = run(Words{"solve", "room.toml", "-o", "room.vtp", "--quiet"} + quick());
+  ASSERT_EQ(solved.code, 0) << solved.err;
+  const Json eye = run_json(
+      {"report", "room.toml", "room.vtp", "--observer", "chair", "--rays", "64"})["observers"][0];
+  EXPECT_GT(eye["E_v"].get<double>(), 0.0);
+  EXPECT_NEAR(eye["melanopic_DER"].get<double>(), 0.9058, 1e-3);
+  EXPECT_NEAR(eye["x"].get<double>(), 1.0 / 3.0, 1e-3);
+  EXPECT_NEAR(eye["alpha_opic"]["melanopic"]["EDI"].get<double>(),
+              eye["melanopic_DER"].get<double>() * eye["E_v"].get<double>(),
+              1e-4 * eye["E_v"].get<double>());
+  EXPECT_NEAR(eye["CCT"].get<double>(), 5455.0, 5.0) << "CIE 15: 5455 K";
+}
+
+}  // namespace
+}  // namespace lightwell::standards_test
