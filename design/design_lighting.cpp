@@ -129,11 +129,6 @@ struct BoundedValue {
 };
 
 // 0 where nothing is known, since there is no light.
-double known_bound(const LuxField& field, double lux) {
-  const double within = bound_at(field, lux);
-  return std::isnan(within) ? 0.0 : within;
-}
-
 BoundedValue value_of_field(LimitKind kind, const LuxField& field) {
   switch (kind) {
     case LimitKind::least_at_least:
@@ -141,10 +136,8 @@ BoundedValue value_of_field(LimitKind kind, const LuxField& field) {
     case LimitKind::greatest_at_most:
       return {field.greatest, known_bound(field, field.greatest)};
     case LimitKind::uniformity_at_least: {
-      if (!(field.mean > 0.0)) return {};
-      // U_0 is a quotient: relative errors of both its parts add up in quadrature.
-      return {field.uniformity, std::hypot(known_bound(field, field.least) / field.mean,
-                                           field.uniformity * field.mean_within)};
+      const Requirement uniformity = uniformity_at_least(0.0, {.field = &field});
+      return {*uniformity.value, uniformity.within};
     }
     default:
       return {field.mean, field.mean_within * field.mean};
@@ -154,12 +147,6 @@ BoundedValue value_of_field(LimitKind kind, const LuxField& field) {
 BoundedValue value_of_glare(const Glare& glare, double error_estimate) {
   if (!glare.ugr) return {};
   return {*glare.ugr, 8.0 * std::log10(1.0 + 2.0 * error_estimate)};
-}
-
-Verdict verdict_of(LimitKind kind, double limit, const BoundedValue& reached) {
-  const double beyond = is_lower_limit(kind) ? reached.value - limit : limit - reached.value;
-  if (beyond >= reached.within) return Verdict::met;
-  return beyond < -reached.within ? Verdict::missed : Verdict::undecided;
 }
 
 // Outcomes of all limits at the readings.
@@ -175,7 +162,10 @@ std::vector<LimitOutcome> outcomes_of(const DesignTask& task, const LightReading
     outcomes.push_back({.limit = task.request.limits.limits[k],
                         .reached = reached.value,
                         .within = reached.within,
-                        .verdict = verdict_of(limit.kind, limit.value, reached)});
+                        .verdict = verdict_of(Requirement{.is_upper = !is_lower_limit(limit.kind),
+                                                          .limit = limit.value,
+                                                          .value = reached.value,
+                                                          .within = reached.within})});
   }
   return outcomes;
 }

@@ -7,6 +7,7 @@
 #include "design/limits_file.h"
 #include "design/luminaires.h"
 #include "scene/progress.h"
+#include "standards/requirement.h"
 #include "viewer/report/lighting_report.h"
 #include "viewer/report/make_report.h"
 
@@ -32,10 +33,6 @@ struct DesignTask {
 /// luminaires, for a name that is not there, and what read_lighting_design() throws.
 DesignTask plan_design(const Scene& scene, DesignRequest request);
 
-/// Whether a measurement meets a limit: undecided if the bound of its error reaches across the
-/// limit.
-enum class Verdict { met, missed, undecided };
-
 /// A limit, and what was measured at the levels of a plan.
 struct LimitOutcome {
   WordedLimit limit{};
@@ -43,7 +40,7 @@ struct LimitOutcome {
   /// Bound of the error of `reached`, with odds of about 19 to 1. Of UGR: that of the background
   /// luminance, taken as twice the error estimate of the solution.
   double within = 0.0;
-  Verdict verdict = Verdict::undecided;
+  Verdict verdict = Verdict::too_close;
   double at_full = 0.0;  ///< value with all luminaires at full level
   double price = 0.0;    ///< derivative of the least cost by the limit, W or lm for each unit
 };

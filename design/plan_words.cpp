@@ -53,7 +53,7 @@ std::string sentence_of(const LimitOutcome& outcome) {
   const WordedLimit& limit = outcome.limit;
   const std::string asked = value_text(limit.kind, limit.value);
   const char* const quantity = quantity_name(limit.kind);
-  if (outcome.verdict == Verdict::undecided) {
+  if (outcome.verdict == Verdict::too_close) {
     return fmt::format(
         "{}: {} is {} for a limit of {}, too close to tell within {}; more --grid-rays or a better "
         "--accuracy tell",
@@ -74,18 +74,6 @@ std::string sentence_of(const LimitOutcome& outcome) {
 
 const char* cost_unit(const LightingPlan& plan) {
   return plan.is_in_watts ? "W" : "lm";
-}
-
-const char* verdict_name(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::met:
-      return "met";
-    case Verdict::missed:
-      return "missed";
-    case Verdict::undecided:
-      break;
-  }
-  return "too close to tell";
 }
 
 const char* quantity_name(LimitKind kind) {

@@ -7,9 +7,6 @@
 
 namespace lightwell {
 
-/// "met", "missed" or "too close to tell".
-const char* verdict_name(Verdict verdict);
-
 /// "E_m", "E_min", "E_max", "U_0" or "UGR".
 const char* quantity_name(LimitKind kind);
 

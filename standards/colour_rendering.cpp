@@ -116,7 +116,10 @@ NearestBlackBody nearest_black_body(const Eigen::Vector2d& uv) {
   }
   const double kelvin = 1e6 / (0.5 * (from + to));
   const Eigen::Vector2d off = uv - uv_of_black_body(kelvin);
-  return {.kelvin = kelvin, .duv = std::copysign(off.norm(), off[1])};
+  const double at = 1e6 / kelvin, rounding = 1e-6 * step;
+  return {.kelvin = kelvin,
+          .duv = std::copysign(off.norm(), off[1]),
+          .is_at_end = at < low + rounding || at > high - rounding};
 }
 
 SpectralPower daylight_illuminant(double kelvin) {

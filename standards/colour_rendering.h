@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <optional>
 
+#include "scene/spectrum_samples.h"
 #include "standards/eye_light.h"
 
 namespace lightwell {
@@ -23,6 +24,7 @@ struct NearestBlackBody {
   double kelvin = 0.0;
   double duv =
       0.0;  ///< distance in CIE 1960 u, v; positive where v is above that of the black body
+  bool is_at_end = false;  ///< true: a black body outside of the range could be nearer
 };
 
 /// Returns the black body, from 1000 to 100 000 K, whose chromaticity is next to `uv`, to 1e-6 of

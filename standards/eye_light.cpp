@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/colour_matching.h"
+#include "scene/spectrum_samples.h"
 #include "standards/colour_rendering.h"
 
 namespace lightwell {
@@ -71,7 +72,7 @@ std::optional<EyeLight> eye_light(const SpectralPower& power) {
   light.duv = nearest.duv;
   // CIE 15 defines no CCT farther away.
   constexpr double farthest = 0.05;
-  if (std::abs(nearest.duv) > farthest) return light;
+  if (std::abs(nearest.duv) > farthest || nearest.is_at_end) return light;
   light.colour_temperature = nearest.kelvin;
   light.colour_rendering = general_colour_rendering(power, nearest);
   return light;

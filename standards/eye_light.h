@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "scene/bands.h"
-#include "scene/spectrum_samples.h"
 
 namespace lightwell {
 

@@ -7,12 +7,6 @@
 namespace lightwell {
 namespace {
 
-// Bound of a point of a field; 0 where no light was found at all, so that nothing is known.
-double known_bound(const LuxField& field, double lux) {
-  const double within = bound_at(field, lux);
-  return std::isfinite(within) ? within : 0.0;
-}
-
 double share(double part, double whole) {
   return whole > 0.0 ? part / whole : 0.0;
 }
@@ -39,24 +33,25 @@ const char* figure_symbol(Figure figure) {
   return "UGR";
 }
 
-const char* standing_name(Standing standing) {
+const char* verdict_name(Verdict standing) {
   switch (standing) {
-    case Standing::met:
+    case Verdict::met:
       return "met";
-    case Standing::missed:
+    case Verdict::missed:
       return "missed";
-    case Standing::too_close:
+    case Verdict::too_close:
       break;
   }
   return "too close to tell";
 }
 
-Standing standing_of(const Requirement& requirement) {
-  if (!requirement.value) return Standing::met;
+Verdict verdict_of(const Requirement& requirement) {
+  if (!requirement.value) return Verdict::met;
   const double above = *requirement.value - requirement.limit;
   const double spare = requirement.is_upper ? -above : above;
-  if (std::abs(spare) < requirement.within) return Standing::too_close;
-  return spare >= 0.0 ? Standing::met : Standing::missed;
+  const bool is_known = !std::isnan(requirement.within);
+  if (!is_known || std::abs(spare) < requirement.within) return Verdict::too_close;
+  return spare >= 0.0 ? Verdict::met : Verdict::missed;
 }
 
 std::vector<std::span<const Requirement>> by_area(std::span<const Requirement> requirements) {
@@ -70,15 +65,20 @@ std::vector<std::span<const Requirement>> by_area(std::span<const Requirement> r
   return areas;
 }
 
-Standing standing_of(std::span<const Requirement> requirements) {
-  Standing worst = Standing::met;
+Verdict verdict_of(std::span<const Requirement> requirements) {
+  Verdict worst = Verdict::met;
   for (const Requirement& requirement : requirements) {
     if (requirement.is_recommended) continue;
-    const Standing standing = standing_of(requirement);
-    if (standing == Standing::missed) return Standing::missed;
-    if (standing == Standing::too_close) worst = Standing::too_close;
+    const Verdict standing = verdict_of(requirement);
+    if (standing == Verdict::missed) return Verdict::missed;
+    if (standing == Verdict::too_close) worst = Verdict::too_close;
   }
   return worst;
+}
+
+double known_bound(const LuxField& field, double lux) {
+  const double within = bound_at(field, lux);
+  return std::isfinite(within) ? within : 0.0;
 }
 
 Requirement mean_at_least(double limit, const GridField& of) {

@@ -24,10 +24,10 @@ enum class Figure {
 const char* figure_symbol(Figure figure);
 
 /// How a figure stands to its limit.
-enum class Standing {
+enum class Verdict {
   met,       ///< by more than the error of the figure
   missed,    ///< by more than the error of the figure
-  too_close  ///< the limit lies within the error of the figure
+  too_close  ///< the limit lies within the error of the figure, or the error is not known
 };
 
 /// A limit of a standard, and the figure that is held to it.
@@ -39,19 +39,20 @@ struct Requirement {
   bool is_recommended = false;  ///< true: the standard advises, and does not require
   double limit = 0.0;
   std::optional<double>
-      value{};          ///< empty: there is nothing to rate, such as glare without luminaires
-  double within = 0.0;  ///< bound of the error of `value`, with odds of about 19 to 1
+      value{};  ///< empty: there is nothing to rate, such as glare without luminaires
+  /// Bound of the error of `value`, with odds of about 19 to 1; NaN: unknown.
+  double within = 0.0;
 };
 
 /// "met", "missed" or "too close to tell".
-const char* standing_name(Standing standing);
+const char* verdict_name(Verdict standing);
 
 /// How a requirement stands. A requirement without a value is met.
-Standing standing_of(const Requirement& requirement);
+Verdict verdict_of(const Requirement& requirement);
 
 /// How requirements stand together, recommendations left out: missed if one is missed, too close if
 /// one is too close and none is missed.
-Standing standing_of(std::span<const Requirement> requirements);
+Verdict verdict_of(std::span<const Requirement> requirements);
 
 /// Runs of requirements that belong to one area, in their order.
 std::vector<std::span<const Requirement>> by_area(std::span<const Requirement> requirements);
@@ -61,6 +62,10 @@ struct GridField {
   std::string name{};
   const LuxField* field = nullptr;
 };
+
+/// Bound of the point of a field whose illuminance is nearest to `lux`, lx; 0 where no light was
+/// found at all, so that nothing is known.
+double known_bound(const LuxField& field, double lux);
 
 /// Requirement for the mean of a field, and for the uniformity of a field. The bound of U_0 is the
 /// sum of the relative bounds of E_min and E_m.

@@ -48,15 +48,14 @@ void add_modelling(const WorkPlace& place, Requirements& requirements) {
   requirements.add(index);
 }
 
-Requirement glare_at_most(double limit, const NamedGlare& of, double error_estimate) {
+Requirement glare_at_most(double limit, const NamedGlare& of) {
   constexpr double per_relative = 8.0 / std::numbers::ln10;
-  constexpr double odds_of_19 = 2.0;  // standard errors
   return {.place = of.name,
           .figure = Figure::glare,
           .is_upper = true,
           .limit = limit,
           .value = of.glare->ugr,
-          .within = per_relative * odds_of_19 * error_estimate};
+          .within = per_relative * of.background_within};
 }
 
 }  // namespace
@@ -91,7 +90,7 @@ std::vector<Requirement> work_place_requirements(const WorkPlace& place, const A
   add_modelling(place, requirements);
   if (activity.glare > 0.0) {
     for (const NamedGlare& observer : place.observers) {
-      requirements.add(glare_at_most(activity.glare, observer, place.error_estimate));
+      requirements.add(glare_at_most(activity.glare, observer));
     }
   }
   return requirements.take();

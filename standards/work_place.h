@@ -13,6 +13,7 @@ namespace lightwell {
 struct NamedGlare {
   std::string name{};
   const Glare* glare = nullptr;
+  double background_within = 0.0;  ///< relative bound of the background's luminance; NaN: unknown
 };
 
 /// What was measured of a work place, of maintained electric light. Fields without a name were not
@@ -24,7 +25,6 @@ struct WorkPlace {
   GridField cylindrical{};  ///< cylindrical illuminance over the task area
   GridField horizontal{};   ///< planar illuminance at the points of `cylindrical`
   std::vector<NamedGlare> observers{};
-  double error_estimate = 0.0;  ///< of the solution, relative RMS; 0: unknown
 };
 
 /// Least mean illuminance of the immediate surroundings of a task area, lx, for the one that the
@@ -38,9 +38,9 @@ double surround_mean(double task_mean);
 /// - walls and ceilings: E_m of the activity and U_0 0.10;
 /// - cylindrical illuminance: E_m,z of the activity and U_0 0.10; recommended: a modelling index
 ///   E_m,z / E_m from 0.30 to 0.60;
-/// - R_UG of each observer. Its bound is that of the background's luminance, which is taken as
-/// twice
-///   the error estimate of the solution: 8 / ln 10 times the relative bound.
+/// - R_UG of each observer. The bound of R_UG is that of the background's luminance: 8 / ln 10
+/// times
+///   the relative bound.
 std::vector<Requirement> work_place_requirements(const WorkPlace& place, const Activity& activity,
                                                  bool is_raised);
 

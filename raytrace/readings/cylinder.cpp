@@ -29,13 +29,17 @@ std::vector<Probe> cylinder_probes(const LuxGrid& grid, const Eigen::Vector3d& p
   const Eigen::Vector3d ahead =
       is_half ? grid.facing : Eigen::Vector3d(grid.upright.unitOrthogonal());
   const Eigen::Vector3d aside = grid.upright.cross(ahead);
-  const double around = is_half ? std::numbers::pi : 2.0 * std::numbers::pi;
   std::vector<Probe> probes;
-  for (int i = 0; i < planes_of_a_cylinder; ++i) {
-    const double angle = around * ((i + 0.5) / planes_of_a_cylinder - 0.5);
-    probes.push_back(
-        {.position = position, .normal = std::cos(angle) * ahead + std::sin(angle) * aside});
-  }
+  const auto add_planes = [&](double around, int count) {
+    for (int i = 0; i < count; ++i) {
+      const double angle = around * ((i + 0.5) / count - 0.5);
+      probes.push_back(
+          {.position = position, .normal = std::cos(angle) * ahead + std::sin(angle) * aside});
+    }
+  };
+  constexpr double circle = 2.0 * std::numbers::pi;
+  add_planes(is_half ? 0.5 * circle : circle, planes_of_a_cylinder);
+  if (is_half) add_planes(circle, planes_all_around);
   return probes;
 }
 
@@ -54,23 +58,24 @@ LuxReadings read_cylinders(const LitScene& lit, const RadiositySolution& solutio
   constexpr int n = planes_of_a_cylinder;
   constexpr double step = std::numbers::pi / n;
   const bool is_half = grid.quantity == GridQuantity::semicylindrical;
-  const double of_steps = step * step / (is_half ? 8.0 : 12.0);
+  const int each = n + (is_half ? planes_all_around : 0);
   const auto count = static_cast<Eigen::Index>(grid.points.size());
   LuxReadings read{.lux = Eigen::ArrayXd(count),
                    .lux_within = Eigen::ArrayXd(count),
                    .read_within = Eigen::ArrayXd(count)};
   for (Eigen::Index i = 0; i < count; ++i) {
-    const Eigen::ArrayXd within = planes.lux_within.segment(i * n, n);
-    const Eigen::ArrayXd shared = planes.read_within.segment(i * n, n);
-    read.lux[i] = planes.lux.segment(i * n, n).mean();
+    const Eigen::ArrayXd within = planes.lux_within.segment(i * each, n);
+    const Eigen::ArrayXd shared = planes.read_within.segment(i * each, n);
+    read.lux[i] = planes.lux.segment(i * each, n).mean();
+    const double steps =
+        is_half ? step * step / 8.0 * planes.lux.segment(i * each + n, planes_all_around).mean()
+                : step * step / 12.0 * read.lux[i];
     // A plane for which nothing is known (NaN) got no light.
     const double noise =
         within.isNaN().select(0.0, (within.square() - shared.square()).max(0.0)).sum();
-    read.read_within[i] = shared.mean();
+    read.read_within[i] = shared.mean() + steps;
     read.lux_within[i] =
-        within.isNaN().all()
-            ? within[0]
-            : std::hypot(std::sqrt(noise) / n, read.read_within[i]) + of_steps * read.lux[i];
+        within.isNaN().all() ? within[0] : std::hypot(std::sqrt(noise) / n, read.read_within[i]);
   }
   return read;
 }

@@ -15,6 +15,8 @@ struct LuxReadings {
 
 /// Planes around a cylinder, or around half of one, over which its illuminance is a mean.
 inline constexpr int planes_of_a_cylinder = 25;
+/// Planes all around that half a cylinder has besides, which tell how much light is behind it.
+inline constexpr int planes_all_around = 5;
 
 /// Probes whose mean is the illuminance of the side of an upright cylinder, or of the half of it
 /// that faces `grid.facing`:
@@ -22,7 +24,8 @@ inline constexpr int planes_of_a_cylinder = 25;
 ///     E_z = (1/pi) int L sin(beta) dw                    mean over the whole side
 ///     E_sz = (1/pi) int L sin(beta) (1 + cos(alpha)) dw  mean over half of it
 ///
-/// where beta is the angle from `grid.upright`, and alpha that around it from `grid.facing`.
+/// where beta is the angle from `grid.upright`, and alpha that around it from `grid.facing`. For
+/// half a cylinder, `planes_all_around` probes follow, whose mean is E_z.
 ///
 /// An odd number n of planes: for light from one direction, the mean of n planes around a cylinder
 /// differs from E_z by at most (pi/n)^2 / 12 of it, and that around half a cylinder from E_sz by at
@@ -30,7 +33,8 @@ inline constexpr int planes_of_a_cylinder = 25;
 std::vector<Probe> cylinder_probes(const LuxGrid& grid, const Eigen::Vector3d& position);
 
 /// Readings of cylinders, see cylinder_probes(). The bounds contain the error of the finite number
-/// of planes for a single small lamp. Each plane takes an eighth of the rays of `options`.
+/// of planes for a single small lamp, which all points share. Each plane takes an eighth of the
+/// rays of `options`.
 LuxReadings read_cylinders(const LitScene& lit, const RadiositySolution& solution,
                            const LuxGrid& grid, const GatherOptions& options);
 

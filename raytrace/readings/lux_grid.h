@@ -43,8 +43,8 @@ struct LuxGrid {
   Eigen::Vector3d u = Eigen::Vector3d::UnitX(), v = Eigen::Vector3d::UnitY();  ///< unit, in plane
   double step_u = 0.0, step_v = 0.0;  ///< m, size of a cell
   int columns = 0, rows = 0;
-  double area = 0.0;            ///< m^2, area of the surface, margin included
-  std::vector<int> cell{};      ///< row * columns + column of each point, rising
+  double area = 0.0;        ///< m^2, of the surface, margin included; of the rectangle of a part
+  std::vector<int> cell{};  ///< row * columns + column of each point, rising
   std::vector<Probe> points{};  ///< points inside the surface's outline less the margin
 };
 
@@ -72,7 +72,8 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid);
 LuxGrid without_points_over(const LuxGrid& other, LuxGrid grid);
 
 /// Returns the grid without the points that surfaces hide from all points of `eyes`, or from 64 of
-/// them. If that leaves nothing, the grid is returned as it is.
+/// them, evenly spread, which bounds the time. If that leaves nothing, the grid is returned as it
+/// is.
 LuxGrid points_seen_from(const ElementCaster& caster, const LuxGrid& eyes, const LuxGrid& grid);
 
 /// Makes a grid measure another quantity than planar illuminance. `up` and `facing` are unit

@@ -87,7 +87,7 @@ TEST_F(ReportCommand, AreasAreHeldToTheLimitsOfStandards) {
 TEST_F(ReportCommand, APlaneIsHeldToTheLimitsOfAnActivity) {
   const Words words = {"report", "room.toml", "room.vtp", "--plane", "room@0.75", "--rays", "64"};
   const Json json = run_json(words + Words{"--activity", "corridor"});
-  EXPECT_EQ(json["requirements"][0]["area"], "room + 0.75 m");
+  EXPECT_EQ(json["requirements"][0]["area"], "room + 0.75 m (corridor)");
   EXPECT_EQ(json["requirements"][0]["at_least"], 100.0);
   expect_refused({"--plane", "room@0.75", "--activity", "corridoor"}, 3,
                  "Did you mean 'corridor'?");

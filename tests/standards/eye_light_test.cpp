@@ -119,6 +119,13 @@ TEST(EyeLight, NeedsWavelengthsAndLight) {
   EXPECT_FALSE(eye_light(*spectral_power(bands, Spectrum::Zero(10))).has_value());
 }
 
+/// A black body of 800 K is redder than the coolest of the search.
+TEST(EyeLight, BeyondTheBlackBodiesOfTheSearchHasNoColourTemperature) {
+  std::vector<double> samples;
+  for (int nm = 380; nm <= 780; ++nm) samples.push_back(black_body_radiance(nm, 800.0));
+  EXPECT_FALSE(eye_light(around_samples(samples, 1.0))->colour_temperature.has_value());
+}
+
 /// Green light of one wavelength has no colour temperature, and no R_a.
 TEST(EyeLight, FarFromBlackBodiesHasNoColourTemperature) {
   std::vector<double> samples(401, 0.0);

@@ -21,10 +21,10 @@ LuxField four_points() {
 TEST(Requirement, IsMetOrMissedByMoreThanItsError) {
   const LuxField field = four_points();
   const GridField of{"desk", &field};
-  EXPECT_EQ(standing_of(mean_at_least(244.0, of)), Standing::met);
-  EXPECT_EQ(standing_of(mean_at_least(246.0, of)), Standing::too_close);
-  EXPECT_EQ(standing_of(mean_at_least(254.0, of)), Standing::too_close);
-  EXPECT_EQ(standing_of(mean_at_least(256.0, of)), Standing::missed);
+  EXPECT_EQ(verdict_of(mean_at_least(244.0, of)), Verdict::met);
+  EXPECT_EQ(verdict_of(mean_at_least(246.0, of)), Verdict::too_close);
+  EXPECT_EQ(verdict_of(mean_at_least(254.0, of)), Verdict::too_close);
+  EXPECT_EQ(verdict_of(mean_at_least(256.0, of)), Verdict::missed);
 }
 
 /// U_0 = 100/250 = 0.40, E_max/E_min = 4. Relative bounds: E_min 4 %, E_m 2 %, E_max 2.5 %. The
@@ -35,25 +35,25 @@ TEST(Requirement, OfARatioAddsTheErrorsOfBoth) {
   const Requirement uniformity = uniformity_at_least(0.6, of);
   EXPECT_NEAR(*uniformity.value, 0.40, 1e-12);
   EXPECT_NEAR(uniformity.within, 0.40 * (0.04 + 0.02), 1e-12);
-  EXPECT_EQ(standing_of(uniformity), Standing::missed);
+  EXPECT_EQ(verdict_of(uniformity), Verdict::missed);
   const Requirement diversity = diversity_at_most(40.0, of);
   EXPECT_NEAR(*diversity.value, 4.0, 1e-12);
   EXPECT_NEAR(diversity.within, 4.0 * (0.04 + 0.025), 1e-12);
-  EXPECT_EQ(standing_of(diversity), Standing::met);
+  EXPECT_EQ(verdict_of(diversity), Verdict::met);
 }
 
 /// The error of a point without any light is not known; the limit is missed all the same.
 TEST(Requirement, IsMissedInTheDark) {
   LuxField field = field_of(Eigen::Array3d(0, 10, 20));
   const GridField of{"stairs", &field};
-  EXPECT_EQ(standing_of(least_at_least(1.0, of)), Standing::missed);
-  EXPECT_EQ(standing_of(diversity_at_most(40.0, of)), Standing::missed);
-  EXPECT_EQ(standing_of(uniformity_at_least(0.1, of)), Standing::missed);
+  EXPECT_EQ(verdict_of(least_at_least(1.0, of)), Verdict::missed);
+  EXPECT_EQ(verdict_of(diversity_at_most(40.0, of)), Verdict::missed);
+  EXPECT_EQ(verdict_of(uniformity_at_least(0.1, of)), Verdict::missed);
 }
 
 TEST(Requirement, WithoutAFigureIsMet) {
-  EXPECT_EQ(standing_of(Requirement{.figure = Figure::glare, .is_upper = true, .limit = 19.0}),
-            Standing::met);
+  EXPECT_EQ(verdict_of(Requirement{.figure = Figure::glare, .is_upper = true, .limit = 19.0}),
+            Verdict::met);
 }
 
 /// A missed limit weighs more than one that is too close; a recommendation does not count.
@@ -63,9 +63,9 @@ TEST(Requirement, StandsWithOthersAsTheWorstOfThem) {
   const Requirement missed{.limit = 3.0, .value = 2.0};
   Requirement advice = missed;
   advice.is_recommended = true;
-  EXPECT_EQ(standing_of(std::array{met, advice}), Standing::met);
-  EXPECT_EQ(standing_of(std::array{met, close}), Standing::too_close);
-  EXPECT_EQ(standing_of(std::array{close, missed, met}), Standing::missed);
+  EXPECT_EQ(verdict_of(std::array{met, advice}), Verdict::met);
+  EXPECT_EQ(verdict_of(std::array{met, close}), Verdict::too_close);
+  EXPECT_EQ(verdict_of(std::array{close, missed, met}), Verdict::missed);
 }
 
 TEST(Requirement, OfOneAreaAreToldTogether) {

@@ -35,8 +35,7 @@ TEST(WorkPlace, IsHeldToTheLimitsOfItsActivity) {
                         .walls = {{"wall", &dim}},
                         .cylindrical = {"eyes", &dim},
                         .horizontal = {"level", &bright},
-                        .observers = {{"chair", &glare}},
-                        .error_estimate = 0.01};
+                        .observers = {{"chair", &glare, 0.02}}};
   const auto activities = usual_activities();
   const auto all =
       work_place_requirements(place, find_activity(activities, "writing", "desk"), false);
@@ -46,14 +45,14 @@ TEST(WorkPlace, IsHeldToTheLimitsOfItsActivity) {
   EXPECT_EQ(of(all, "surround", Figure::uniformity).limit, 0.40);
   EXPECT_EQ(of(all, "background", Figure::mean).limit, 100.0);
   EXPECT_EQ(of(all, "background", Figure::uniformity).limit, 0.10);
-  EXPECT_EQ(standing_of(of(all, "wall", Figure::mean)), Standing::missed);  // 100 of 150 lx
+  EXPECT_EQ(verdict_of(of(all, "wall", Figure::mean)), Verdict::missed);  // 100 of 150 lx
   EXPECT_EQ(of(all, "eyes", Figure::cylindrical).limit, 150.0);
   // The modelling index 100/550 is below the advice of 0.30, and misses nothing.
   EXPECT_TRUE(of(all, "eyes", Figure::modelling).is_recommended);
-  EXPECT_EQ(standing_of(of(all, "eyes", Figure::modelling)), Standing::missed);
+  EXPECT_EQ(verdict_of(of(all, "eyes", Figure::modelling)), Verdict::missed);
   // 8 lg(1.02) = 0.0688 is 8/ln 10 * 0.02 to its second order, 1 % of it.
   EXPECT_NEAR(of(all, "chair", Figure::glare).within, 8.0 * std::log10(1.02), 0.01 * 0.0695);
-  EXPECT_EQ(standing_of(of(all, "chair", Figure::glare)), Standing::met);
+  EXPECT_EQ(verdict_of(of(all, "chair", Figure::glare)), Verdict::met);
   const auto raised =
       work_place_requirements(place, find_activity(activities, "writing", "desk"), true);
   EXPECT_EQ(of(raised, "task", Figure::mean).limit, 1000.0);

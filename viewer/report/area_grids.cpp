@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <utility>
 
 #include "scene/errors.h"
@@ -33,80 +35,125 @@ Eigen::Vector3d middle_of(const LuxGrid& grid) {
          0.5 * (grid.columns * grid.step_u * grid.u + grid.rows * grid.step_v * grid.v);
 }
 
-// The points over the task area at the height of eyes.
+// The depth of the floor below the points of a task area, m: that of the lowest surface within 1.5
+// m, which is more than furniture has and less than a storey. 0 without any.
+double depth_of_floor(const LuxGrid& task, const GridList& list) {
+  constexpr double deepest = 1.5, beyond = 1e-6;  // m
+  constexpr int most_surfaces = 64;
+  double depth = 0.0;
+  for (const Probe& point : task.points) {
+    // A point on a surface begins above the surface.
+    double at = -beyond;
+    for (int i = 0; i < most_surfaces; ++i) {
+      const Ray ray{
+          .origin = point.position - at * list.up, .direction = -list.up, .t_max = deepest - at};
+      ElementHit hit;
+      list.caster.closest_hits({&ray, 1}, {&hit, 1});
+      if (hit.facet < 0) break;
+      at += hit.t + beyond;
+      depth = std::max(depth, at - beyond);
+    }
+  }
+  return depth;
+}
+
+// The points over the task area at the height of eyes above the floor.
 LuxGrid eyes_of(const DesignArea& area, const GridList& list) {
-  const LuxGrid& task = list.grids[static_cast<std::size_t>(area.grid)];
-  LuxGridOptions options = task.options;
-  options.height = area.eye_height;
-  LuxGrid eyes = lux_grid(list.scene, task.surface, list.up, options);
-  eyes.name = fmt::format("{}, eyes at {:g} {}", task.name,
+  LuxGrid eyes = list.grids[static_cast<std::size_t>(area.grid)];
+  constexpr double level = 0.9;  // cosine of the steepest plane over which eyes are
+  if (eyes.points.front().normal.dot(list.up) < level) {
+    throw InputError(fmt::format(
+        "area '{}': its grid '{}' is not level, and the activity has limits at eyes over it; name "
+        "a level grid, or an activity without limits for walls, ceiling and cylindrical "
+        "illuminance",
+        area.name, eyes.name));
+  }
+  const double lift = area.eye_height - depth_of_floor(eyes, list);
+  eyes.corner += lift * list.up;
+  eyes.options.height += lift;
+  for (Probe& point : eyes.points) {
+    point.position += lift * list.up;
+    point.normal = list.up;
+  }
+  eyes.name = fmt::format("{}, eyes at {:g} {}", eyes.name,
                           area.eye_height / list.scene.metres_per_unit, list.scene.unit_name);
   return eyes;
 }
 
-// Adds the grid of a wall or a ceiling, which faces the eyes. Points that furniture hides from all
-// eyes are left out. Several areas share the grid.
-int add_inner_surface(int surface, const LuxGrid& eyes, GridList& list) {
-  const std::string& name = list.scene.surfaces[static_cast<std::size_t>(surface)].name;
-  const auto known = std::ranges::find(list.grids, name, &LuxGrid::name);
-  if (known != list.grids.end()) return static_cast<int>(known - list.grids.begin());
-  const LuxGrid grid = lux_grid(list.scene, surface, list.up, {.towards = middle_of(eyes)});
-  return list.add(points_seen_from(list.caster, eyes, grid));
+/// Walls and ceilings, and the eyes of all areas that have limits for them.
+using EyesBySurface = std::map<int, LuxGrid>;
+
+void add_eyes(const std::vector<int>& surfaces, const LuxGrid& eyes, EyesBySurface& all) {
+  for (const int surface : surfaces) {
+    const auto [at, is_new] = all.try_emplace(surface, eyes);
+    if (is_new) continue;
+    at->second.points.insert(at->second.points.end(), eyes.points.begin(), eyes.points.end());
+  }
 }
 
-AreaGrids grids_of_activity(const DesignArea& area, const Activity& activity, GridList& list) {
-  AreaGrids made{.task = area.grid, .surround = area.surround, .background = area.background};
-  LuxGrid eyes = eyes_of(area, list);
-  const auto add_all = [&](const std::vector<int>& surfaces, double limit) {
-    std::vector<int> added;
-    for (const int surface : surfaces) {
-      if (limit > 0.0) added.push_back(add_inner_surface(surface, eyes, list));
-    }
-    return added;
-  };
-  made.walls = add_all(area.walls, activity.walls);
-  made.ceilings = add_all(area.ceilings, activity.ceiling);
-  if (!(activity.cylindrical > 0.0)) return made;
-  made.horizontal = list.add(eyes);
-  measure_as(GridQuantity::cylindrical, list.up, Eigen::Vector3d::Zero(), eyes);
-  eyes.name += ", cylindrical";
-  made.cylindrical = list.add(std::move(eyes));
+// Adds the grids of walls and ceilings, which face the eyes. Points that furniture hides from all
+// eyes are left out. Returns the grid of each surface.
+std::map<int, int> add_inner_surfaces(const EyesBySurface& surfaces, GridList& list) {
+  std::map<int, int> made;
+  for (const auto& [surface, eyes] : surfaces) {
+    const LuxGrid grid = lux_grid(list.scene, surface, list.up, {.towards = middle_of(eyes)});
+    made[surface] = list.add(points_seen_from(list.caster, eyes, grid));
+  }
   return made;
 }
 
-// The grid's points within a quarter of its width of the line along its middle.
+bool is_along_u(const LuxGrid& grid) {
+  return grid.columns * grid.step_u >= grid.rows * grid.step_v;
+}
+
+// The middle half of a route's width: the cells of the grid at half their width.
 LuxGrid middle_half(const LuxGrid& grid) {
-  const bool is_along_u = grid.columns * grid.step_u >= grid.rows * grid.step_v;
+  const bool along_u = is_along_u(grid);
   LuxGrid half = grid;
-  double& step = is_along_u ? half.step_v : half.step_u;
-  const Eigen::Vector3d across = is_along_u ? grid.v : grid.u;
-  const int count = is_along_u ? grid.rows : grid.columns;
-  half.corner += 0.25 * count * step * across;
+  double& step = along_u ? half.step_v : half.step_u;
+  const Eigen::Vector3d across = along_u ? grid.v : grid.u;
+  const int count = along_u ? grid.rows : grid.columns;
+  const double whole_step = step;
   step *= 0.5;
+  half.area *= 0.5;
+  half.corner += 0.25 * count * whole_step * across;
   for (std::size_t i = 0; i < half.points.size(); ++i) {
-    const int at = is_along_u ? grid.cell[i] / grid.columns : grid.cell[i] % grid.columns;
-    half.points[i].position =
-        grid.points[i].position + (0.25 * count - 0.5 * (at + 0.5)) * 2.0 * step * across;
+    const int at = along_u ? grid.cell[i] / grid.columns : grid.cell[i] % grid.columns;
+    half.points[i].position += (0.25 * count - 0.5 * (at + 0.5)) * whole_step * across;
   }
   return half;
 }
 
-// The line along the middle of a grid: one row of its cells, or one column.
+// The line along the middle of a route: one row of its cells, or one column. The line has a point
+// where the grid has one beside the line.
 LuxGrid centre_line(const LuxGrid& grid) {
-  const bool is_along_u = grid.columns * grid.step_u >= grid.rows * grid.step_v;
+  const bool along_u = is_along_u(grid);
   LuxGrid line = grid;
-  int& across = is_along_u ? line.rows : line.columns;
-  (is_along_u ? line.step_v : line.step_u) *= across;
+  int& across = along_u ? line.rows : line.columns;
+  const int low = (across - 1) / 2, high = across / 2;
+  (along_u ? line.step_v : line.step_u) *= across;
   across = 1;
   line.cell.clear();
   line.points.clear();
-  const int along = is_along_u ? line.columns : line.rows;
+  const int along = along_u ? line.columns : line.rows;
   for (int i = 0; i < along; ++i) {
-    const double u = is_along_u ? i + 0.5 : 0.5, v = is_along_u ? 0.5 : i + 0.5;
+    const auto has = [&](int row) {
+      const int cell = along_u ? row * grid.columns + i : i * grid.columns + row;
+      return std::ranges::binary_search(grid.cell, cell);
+    };
+    if (!has(low) && !has(high)) continue;
+    const double u = along_u ? i + 0.5 : 0.5, v = along_u ? 0.5 : i + 0.5;
     line.cell.push_back(i);
     line.points.push_back(
         {.position = line.corner + u * line.step_u * line.u + v * line.step_v * line.v,
          .normal = grid.points.front().normal});
+  }
+  if (line.points.empty()) {
+    throw InputError(
+        fmt::format("grid '{}' has no point along its middle, where EN 1838 has a limit; give the "
+                    "route another "
+                    "'part'",
+                    grid.name));
   }
   return line;
 }
@@ -156,11 +203,19 @@ class Fields {
   const LightingReport& report_;
 };
 
+// Relative bound of an observer's background: that of the illuminance of the eye over the part of
+// the illuminance that is reflected.
+double background_within(const Observer& observer, double maintenance_factor) {
+  const double reflected = maintenance_factor * std::numbers::pi * observer.glare.background;
+  return reflected > 0.0 ? observer.lux_within / reflected : 0.0;
+}
+
 std::vector<NamedGlare> observers_of(const DesignArea& area, const LightingReport& report) {
   std::vector<NamedGlare> observers;
   for (const std::string& name : area.observers) {
     const auto at = std::ranges::find(report.observers, name, &Observer::name);
-    if (at != report.observers.end()) observers.push_back({name, &at->glare});
+    if (at == report.observers.end()) continue;
+    observers.push_back({name, &at->glare, background_within(*at, report.maintenance_factor)});
   }
   return observers;
 }
@@ -172,12 +227,37 @@ std::vector<AreaGrids> add_area_grids(const std::vector<DesignArea>& areas,
                                       const ElementCaster& caster, const Eigen::Vector3d& up,
                                       std::vector<LuxGrid>& grids) {
   GridList list{scene, caster, up, grids};
-  std::vector<AreaGrids> made;
-  for (const DesignArea& area : areas) {
-    made.push_back(
-        area.emergency
-            ? grids_of_emergency(area, list)
-            : grids_of_activity(area, find_activity(activities, area.activity, area.name), list));
+  std::vector<AreaGrids> made(areas.size());
+  EyesBySurface inner;
+  for (std::size_t a = 0; a < areas.size(); ++a) {
+    const DesignArea& area = areas[a];
+    if (area.emergency) {
+      made[a] = grids_of_emergency(area, list);
+      continue;
+    }
+    made[a] = {.task = area.grid, .surround = area.surround, .background = area.background};
+    const Activity& activity = find_activity(activities, area.activity, area.name);
+    const bool has_walls = activity.walls > 0.0 && !area.walls.empty();
+    const bool has_ceilings = activity.ceiling > 0.0 && !area.ceilings.empty();
+    if (!(activity.cylindrical > 0.0 || has_walls || has_ceilings)) continue;
+    LuxGrid eyes = eyes_of(area, list);
+    if (has_walls) add_eyes(area.walls, eyes, inner);
+    if (has_ceilings) add_eyes(area.ceilings, eyes, inner);
+    if (!(activity.cylindrical > 0.0)) continue;
+    made[a].horizontal = list.add(eyes);
+    measure_as(GridQuantity::cylindrical, up, Eigen::Vector3d::Zero(), eyes);
+    eyes.name += ", cylindrical";
+    made[a].cylindrical = list.add(std::move(eyes));
+  }
+  const std::map<int, int> grid_of = add_inner_surfaces(inner, list);
+  for (std::size_t a = 0; a < areas.size(); ++a) {
+    const auto add_known = [&](const std::vector<int>& surfaces, std::vector<int>& to) {
+      for (const int surface : surfaces) {
+        if (const auto at = grid_of.find(surface); at != grid_of.end()) to.push_back(at->second);
+      }
+    };
+    add_known(areas[a].walls, made[a].walls);
+    add_known(areas[a].ceilings, made[a].ceilings);
   }
   return made;
 }
@@ -207,8 +287,7 @@ std::vector<Requirement> judge_areas(const std::vector<DesignArea>& areas,
                                       .ceilings = fields.all(grids.ceilings),
                                       .cylindrical = fields[grids.cylindrical],
                                       .horizontal = fields[grids.horizontal],
-                                      .observers = observers_of(area, report),
-                                      .error_estimate = report.error_estimate},
+                                      .observers = observers_of(area, report)},
                                      find_activity(activities, area.activity, area.name),
                                      area.is_raised);
     }

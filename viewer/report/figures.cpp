@@ -145,7 +145,7 @@ Json requirement_json(const Requirement& requirement) {
                {"value", nullptr},
                {"within", requirement.within},
                {"recommended", requirement.is_recommended},
-               {"verdict", standing_name(standing_of(requirement))}};
+               {"verdict", verdict_name(verdict_of(requirement))}};
   if (requirement.value && std::isfinite(*requirement.value)) json["value"] = *requirement.value;
   return json;
 }
@@ -153,12 +153,12 @@ Json requirement_json(const Requirement& requirement) {
 // An area's verdict, and a line for each limit that is not surely kept.
 std::string area_text(std::span<const Requirement> of_area) {
   std::string text =
-      fmt::format("{}: {}\n", of_area.front().area, standing_name(standing_of(of_area)));
+      fmt::format("{}: {}\n", of_area.front().area, verdict_name(verdict_of(of_area)));
   for (const Requirement& requirement : of_area) {
-    const Standing standing = standing_of(requirement);
-    if (standing == Standing::met) continue;
+    const Verdict verdict = verdict_of(requirement);
+    if (verdict == Verdict::met) continue;
     text += fmt::format("  {}{}: {} {} of {} ± {:.2g}, {} {}\n",
-                        requirement.is_recommended ? "recommended, " : "", standing_name(standing),
+                        requirement.is_recommended ? "recommended, " : "", verdict_name(verdict),
                         figure_symbol(requirement.figure),
                         figure_text(requirement.figure, *requirement.value), requirement.place,
                         requirement.within, requirement.is_upper ? "at most" : "at least",
@@ -212,7 +212,7 @@ nlohmann::ordered_json figures_json(const LightingReport& report) {
     requirements.push_back(requirement_json(requirement));
   }
   figures["requirements"] = std::move(requirements);
-  figures["verdict"] = standing_name(standing_of(report.requirements));
+  figures["verdict"] = verdict_name(verdict_of(report.requirements));
   return figures;
 }
 

@@ -117,12 +117,30 @@ std::vector<DesignArea> areas_of(const ReportPlan& plan, const std::vector<LuxGr
     const bool is_plane = grid.options.height > 0.0 && grid.quantity == GridQuantity::planar;
     const bool has_area = std::ranges::find(areas, g, &DesignArea::grid) != areas.end();
     if (!is_plane || has_area) continue;
-    areas.push_back({.name = grid.name,
+    areas.push_back({.name = fmt::format("{} ({})", grid.name, plan.request.activity),
                      .activity = plan.request.activity,
                      .grid = g,
                      .observers = plan.request.observers});
   }
+  if (areas.empty()) {
+    throw InputError(
+        "there is no working plane to hold to the activity; name one with '--plane floor@0.75', or "
+        "as [[grids]] with a height");
+  }
   return areas;
+}
+
+// Refuses emergency light that cannot be told from daylight.
+void require_lamps_alone(const std::vector<DesignArea>& areas, LightContent content) {
+  if (content == LightContent::electric || content == LightContent::apart) return;
+  for (const DesignArea& area : areas) {
+    if (!area.emergency) continue;
+    throw InputError(fmt::format(
+        "area '{}': EN 1838 counts luminaires alone, and the solution {}", area.name,
+        content == LightContent::daylight
+            ? "has no electric light that is switched on; relight it"
+            : "does not keep electric light and daylight apart; solve without '--channels off'"));
+  }
 }
 
 // Heading and provenance of a report, without measurements.
@@ -144,15 +162,14 @@ LightingReport report_of(const ReportPlan& plan, const Scene& scene, const Solve
 
 // The year's energy of luminaires whose power is known; empty otherwise, and without [energy].
 std::optional<LightingEnergy> energy_of(const LightingDesign& design, const LightingReport& report,
-                                        const Scene& scene, const Eigen::Vector3d& up) {
-  if (!design.use) return {};
+                                        const LuxGrid& floor) {
+  if (!design.use || report.luminaires.empty()) return {};
   const LightingUse& use = *design.use;
   double watts = 0.0;
   for (const LuminaireRow& row : report.luminaires) {
     if (!(row.watts > 0.0)) return {};
     watts += row.watts;
   }
-  const LuxGrid floor = lux_grid(scene, use.surface, up);
   return LightingEnergy{
       .surface = floor.name,
       .area = floor.area,
@@ -183,7 +200,8 @@ ReportPlan plan_report(const Scene& scene, ReportRequest request) {
   if (!request.areas.empty()) read_design_tables(request.areas, scene, plan.design);
   plan.activities =
       request.activities.empty() ? usual_activities() : read_activities(request.activities);
-  if (!request.activity.empty()) find_activity(plan.activities, request.activity, "all planes");
+  if (!request.activity.empty())
+    find_activity(plan.activities, request.activity, "all working planes");
   for (const DesignArea& area : plan.design.areas) {
     for (const std::string& name : area.observers) {
       const bool is_known = std::ranges::find(request.observers, name) != request.observers.end();
@@ -216,13 +234,16 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   const Eigen::Vector3d up = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
   std::vector<LuxGrid> grids = requested_grids(plan.request.grids, plan.design.grids, apart, up);
   const std::vector<DesignArea> areas = areas_of(plan, grids);
+  require_lamps_alone(areas, light_content(scene, solved));
+  std::optional<LuxGrid> floor;
+  if (plan.design.use) floor = lux_grid(apart, plan.design.use->surface, up);
   const std::vector<AreaGrids> of_areas =
       add_area_grids(areas, plan.activities, apart, caster, up, grids);
   for (LuxGrid& grid : grids) {
     what.grids.push_back(without_buried_points(caster, std::move(grid)));
   }
   measure(scene, solved, what, made);
-  made.energy = energy_of(plan.design, made, apart, up);
+  if (floor) made.energy = energy_of(plan.design, made, *floor);
   made.requirements = judge_areas(areas, plan.activities, of_areas, made);
   made.picture = picture_of(plan.request, scene, solved, progress);
   return made;

@@ -178,8 +178,12 @@ void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
   report.observers = observers(lamps, what);
   const std::vector<EyeReading> by_lamps = eye_readings(lamps, what, what.maintenance_factor);
   for (std::size_t i = 0; i < seen.size(); ++i) {
+    // No bound is known where there is no light; then the bound is that of the other part.
+    const auto bound = [&](const EyeReading& part) {
+      return (part.irradiance == 0.0f).all() ? 0.0 : part.lux_within;
+    };
+    seen[i].lux_within = bound(seen[i]) + bound(by_lamps[i]);
     seen[i].irradiance += by_lamps[i].irradiance;
-    seen[i].lux_within += by_lamps[i].lux_within;
   }
   set_eye_light(scene.bands, seen, report);
   relight(solved, scales);

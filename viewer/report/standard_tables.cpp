@@ -30,13 +30,13 @@ MarkedText marked_symbol(Figure figure) {
   return "R<sub>UG</sub>";
 }
 
-const char* standing_word(Standing standing, Language language) {
-  switch (standing) {
-    case Standing::met:
+const char* verdict_word(Verdict verdict, Language language) {
+  switch (verdict) {
+    case Verdict::met:
       return word_in(language, Word::met);
-    case Standing::missed:
+    case Verdict::missed:
       return word_in(language, Word::missed);
-    case Standing::too_close:
+    case Verdict::too_close:
       break;
   }
   return word_in(language, Word::too_close);
@@ -46,7 +46,7 @@ TableRow requirement_row(const Requirement& requirement, Language language) {
   const auto number = [&](double value) {
     return number_in(language, figure_text(requirement.figure, value));
   };
-  MarkedText verdict = standing_word(standing_of(requirement), language);
+  MarkedText verdict = verdict_word(verdict_of(requirement), language);
   if (requirement.is_recommended) {
     verdict += fmt::format(" ({})", word_in(language, Word::recommended));
   }
@@ -70,7 +70,7 @@ std::vector<DocumentTable> requirement_tables(const LightingReport& report, Lang
   std::vector<DocumentTable> tables;
   for (const auto& of_area : by_area(report.requirements)) {
     DocumentTable table{.title = fmt::format("{}: {}", marked(of_area.front().area),
-                                             standing_word(standing_of(of_area), language)),
+                                             verdict_word(verdict_of(of_area), language)),
                         .columns = {{word_in(language, Word::figure), true},
                                     {word_in(language, Word::calculation_surface), true},
                                     {word_in(language, Word::value)},

@@ -1,5 +1,6 @@
-#include <algorithm>
+#include <fmt/format.h>
 
+#include "scene/errors.h"
 #include "scene/io/activity_file.h"
 #include "scene/io/text_file.h"
 #include "scene/io/toml/toml_document.h"
@@ -54,8 +55,13 @@ std::vector<Activity> read_activities(const std::filesystem::path& path) {
 }
 
 std::vector<Activity> parse_activities(std::string_view text, const std::filesystem::path& name) {
-  const toml::table root = toml::parse(text);
-  return activities_of(TomlValue(name, root, "table of activities"));
+  try {
+    const toml::table root = toml::parse(text);
+    return activities_of(TomlValue(name, root, "table of activities"));
+  } catch (const toml::parse_error& error) {
+    throw InputError(
+        fmt::format("{}:{}: {}", name.string(), error.source().begin.line, error.description()));
+  }
 }
 
 }  // namespace lightwell

@@ -176,7 +176,7 @@ std::vector<DesignArea> read_areas(const TomlValue& areas, const Scene& scene,
 MaintenanceParts read_maintenance(const TomlValue& value) {
   const TomlTable table = value.table({"lamp_flux", "lamp_survival", "luminaire", "room"});
   const auto part = [&](const char* key) {
-    constexpr double least = 1e-3;
+    constexpr double least = 1e-3;  // a factor of 0 would report darkness
     const auto given = table.find(key);
     return given ? given->number_within(least, 1.0) : 1.0;
   };
@@ -195,7 +195,7 @@ LightingUse read_use(const TomlValue& value, const Scene& scene) {
     const auto given = table.find(key);
     return given ? given->number_within(0.0, most) : usual;
   };
-  constexpr double any = 1e9;
+  constexpr double any = 1e9;  // no building has as much
   LightingUse use{.surface = find_surface(table.require("surface"), scene),
                   .daylight_hours = number("daylight_hours", hours_of_a_year, 0.0),
                   .night_hours = number("night_hours", hours_of_a_year, 0.0),
@@ -229,7 +229,10 @@ ReportHeading read_heading(const TomlValue& report) {
 }  // namespace
 
 void read_toml_design(const TomlValue& document, const Scene& scene, LightingDesign& design) {
-  if (const auto grids = document.member("grids")) design.grids = read_grids(*grids, scene);
+  if (const auto grids = document.member("grids")) {
+    design.grids = read_grids(*grids, scene);
+    design.areas.clear();  // they name earlier grids by index
+  }
   if (const auto areas = document.member("areas")) {
     design.areas = read_areas(*areas, scene, design.grids);
   }

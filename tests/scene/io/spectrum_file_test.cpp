@@ -9,34 +9,8 @@
 #include "scene/errors.h"
 #include "tests/temporary_folder.h"
 
-namespace lightwell::spectrum_samples_test {
+namespace lightwell::spectrum_file_test {
 namespace {
-
-const SpectrumSamples hat{.wavelengths_nm = {400, 500, 700}, .values = {0, 2, 0}};
-
-TEST(SpectrumMean, IsTheExactMeanOfTheBrokenLine) {
-  EXPECT_NEAR(mean(hat, 400, 700), 1.0, 1e-12);  // a triangle of height 2
-  EXPECT_NEAR(mean(hat, 400, 500), 1.0, 1e-12);
-  EXPECT_NEAR(mean(hat, 410, 420), 0.3, 1e-12);  // the value in the middle between two samples
-  // 450-500: mean 1.5 over 50 nm; 500-600: 1.5 over 100 nm.
-  EXPECT_NEAR(mean(hat, 450, 600), 1.5, 1e-12);
-}
-
-TEST(SpectrumMean, PiecesAddUpToTheWhole) {
-  double sum = 0.0;
-  for (int k = 0; k < 43; ++k) {
-    const double width = 300.0 / 43;
-    sum += mean(hat, 400 + k * width, 400 + (k + 1) * width) / 43;
-  }
-  EXPECT_NEAR(sum, mean(hat, 400, 700), 1e-12);
-}
-
-TEST(SpectrumCovers, ForgivesRoundingOnly) {
-  EXPECT_TRUE(covers(hat, 400, 700.0 + 1e-10));
-  EXPECT_FALSE(covers(hat, 400, 701));
-  EXPECT_FALSE(covers(hat, 399, 700));
-  EXPECT_FALSE(covers({}, 400, 700));
-}
 
 TEST(SpectrumCsv, ReadsTheNamedColumn) {
   const std::filesystem::path file = LIGHTWELL_TEST_DATA "/scene/spectra.csv";
@@ -78,9 +52,15 @@ TEST(SpectrumTm27, SaysWhatIsWrongAndWhere) {
   says(refused("1.0e0", "bright"), "lamp.spdx:7: the value 'bright' is not a finite number");
   says(refused("\"550\"", "\"350\""), "lamp.spdx:7: wavelength 350 nm follows 400 nm");
   says(refused("</SpectralDistribution>", ""), "this is not XML");
-  says(refused("IESTM2714", "TM33"), "this is not XML");
-  says(refused("<SpectralDistribution>", "<!--"), "this is not XML");
+  says(refused("<SpectralDistribution>", "<Header><SpectralDistribution>"), "this is not XML");
+  const auto whole = [&](const char* text) {
+    return message_of<InputError>([&] { read_tm27(folder.write("lamp.spdx", text)); });
+  };
+  says(whole("<IESTM33></IESTM33>"), "there is no <SpectralDistribution> in <IESTM2714>");
+  says(whole("<IESTM2714><SpectralDistribution><SpectralData wavelength=\"400\">1</SpectralData>"
+             "</SpectralDistribution></IESTM2714>"),
+       "at least two");
 }
 
 }  // namespace
-}  // namespace lightwell::spectrum_samples_test
+}  // namespace lightwell::spectrum_file_test

