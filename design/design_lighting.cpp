@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "design/measured_light.h"
@@ -19,11 +20,9 @@ namespace {
 /// depends on the levels, so that the second measurement nearly always ends the search.
 constexpr int most_measurements = 4;
 
-// Index of a grid of the task, which takes the scene's grid at its first limit.
+// Place among the limited grids of the task of the grid that a limit names.
 int grid_index(const Scene& scene, const WordedLimit& limit,
-               const std::vector<CalculationGrid>& of_scene, std::vector<CalculationGrid>& grids) {
-  const auto known = std::ranges::find(grids, limit.place, &CalculationGrid::name);
-  if (known != grids.end()) return static_cast<int>(known - grids.begin());
+               const std::vector<CalculationGrid>& of_scene, std::vector<int>& limited) {
   const auto at = std::ranges::find(of_scene, limit.place, &CalculationGrid::name);
   if (at == of_scene.end()) {
     std::vector<std::string> names;
@@ -33,8 +32,11 @@ int grid_index(const Scene& scene, const WordedLimit& limit,
     throw InputError(fmt::format("{}: the scene {} has no grid of that name.{}", limit.origin,
                                  scene.file.string(), remedy));
   }
-  grids.push_back(*at);
-  return static_cast<int>(grids.size()) - 1;
+  const auto grid = static_cast<int>(at - of_scene.begin());
+  const auto known = std::ranges::find(limited, grid);
+  if (known != limited.end()) return static_cast<int>(known - limited.begin());
+  limited.push_back(grid);
+  return static_cast<int>(limited.size()) - 1;
 }
 
 int eye_index(const Scene& scene, const WordedLimit& limit, std::vector<Camera>& eyes) {
@@ -128,7 +130,6 @@ struct BoundedValue {
   double value = 0.0, within = 0.0;
 };
 
-// 0 where nothing is known, since there is no light.
 BoundedValue value_of_field(LimitKind kind, const LuxField& field) {
   switch (kind) {
     case LimitKind::least_at_least:
@@ -144,9 +145,15 @@ BoundedValue value_of_field(LimitKind kind, const LuxField& field) {
   }
 }
 
+// UGR rises most where the background is darker than it was read, by twice the error estimate.
 BoundedValue value_of_glare(const Glare& glare, double error_estimate) {
-  if (!glare.ugr) return {};
-  return {*glare.ugr, 8.0 * std::log10(1.0 + 2.0 * error_estimate)};
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double shares = 0.0;
+  for (const GlareSource& source : glare.sources) shares += source.share;
+  if (!glare.ugr) return {shares > 0.0 ? infinity : 0.0, 0.0};
+  if (!(error_estimate > 0.0)) return {*glare.ugr, std::numeric_limits<double>::quiet_NaN()};
+  const double darkest = 1.0 - 2.0 * error_estimate;
+  return {*glare.ugr, darkest > 0.0 ? -8.0 * std::log10(darkest) : infinity};
 }
 
 // Outcomes of all limits at the readings.
@@ -178,7 +185,7 @@ void tighten(const std::vector<LimitOutcome>& outcomes, DimmingProblem& problem)
     DimmingLimit& limit = problem.limits[k];
     const double sign = is_lower_limit(limit.kind) ? 1.0 : -1.0;
     const double lack = sign * (outcome.limit.value - outcome.reached) + outcome.within;
-    if (!(lack > 0.0)) continue;
+    if (!(lack > 0.0) || !std::isfinite(lack)) continue;
     constexpr double least_share = 0.01;  // of a limit, which stays above zero
     limit.value =
         std::max(limit.value + sign * a_little_more * lack, least_share * outcome.limit.value);
@@ -242,11 +249,10 @@ DesignTask plan_design(const Scene& scene, DesignRequest request) {
         "{}: the scene names no unit of light, so no limit in lx can be met", scene.file.string()));
   }
   DesignTask task{.design = read_lighting_design(scene)};
-  const std::vector<CalculationGrid> of_scene = std::exchange(task.design.grids, {});
   for (const WordedLimit& limit : request.limits.limits) {
     const int place = limit.kind == LimitKind::ugr_at_most
                           ? eye_index(scene, limit, task.eyes)
-                          : grid_index(scene, limit, of_scene, task.design.grids);
+                          : grid_index(scene, limit, task.design.grids, task.grids);
     task.limits.push_back({.kind = limit.kind, .place = place, .value = limit.value});
   }
   require_luminaires(scene, request.watts);
@@ -257,15 +263,17 @@ DesignTask plan_design(const Scene& scene, DesignRequest request) {
 LightingPlan design_lighting(const DesignTask& task, const ReportedScene& of, SolvedScene& solved,
                              const Progress& progress) {
   require_channels(solved.solution);
-  LightingPlan plan{.luminaires = luminaires_of(of.scene, solved, task.design, task.request.watts),
-                    .maintenance_factor = task.request.limits.maintenance_factor,
-                    .rays = task.request.rays};
+  LightingPlan plan{
+      .luminaires = luminaires_of(of.scene, solved, task.design, task.request.watts),
+      .maintenance_factor = maintenance_factor(task.request.limits.maintenance_factor, task.design),
+      .rays = task.request.rays};
   for (const LightChannel& channel : solved.solution.channels) plan.groups.push_back(channel.name);
   const std::vector<int> channels = channels_to_dim(of.scene, solved.solution, plan.luminaires);
   DimmingProblem problem{.limits = task.limits};
   set_costs(task, channels, plan, problem);
   MeasuredLight light(of, solved,
                       {.grids = task.design.grids,
+                       .limited = task.grids,
                        .eyes = task.eyes,
                        .luminous_heights = task.design.luminous_height,
                        .maintenance_factor = plan.maintenance_factor,

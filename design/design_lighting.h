@@ -23,7 +23,8 @@ struct DesignRequest {
 /// A request whose names were found.
 struct DesignTask {
   DesignRequest request{};
-  LightingDesign design{};             ///< with the limited grids alone
+  LightingDesign design{};
+  std::vector<int> grids{};            ///< limited ones: indices into LightingDesign::grids
   std::vector<Camera> eyes{};          ///< of the limited observers
   std::vector<DimmingLimit> limits{};  ///< in the order of the request
 };
@@ -37,8 +38,8 @@ DesignTask plan_design(const Scene& scene, DesignRequest request);
 struct LimitOutcome {
   WordedLimit limit{};
   double reached = 0.0;  ///< lx, U_0 or UGR
-  /// Bound of the error of `reached`, with odds of about 19 to 1. Of UGR: that of the background
-  /// luminance, taken as twice the error estimate of the solution.
+  /// Bound of the error of `reached`, with odds of about 19 to 1; NaN: unknown. Of UGR: that of the
+  /// background luminance, taken as twice the error estimate of the solution.
   double within = 0.0;
   Verdict verdict = Verdict::too_close;
   double at_full = 0.0;  ///< value with all luminaires at full level

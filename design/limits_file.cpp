@@ -29,18 +29,15 @@ double limit_value(LimitKind kind, const TomlValue& value) {
   return number;
 }
 
-// Refuses limits of one grid that no light can meet.
+// Refuses limits of one grid that contradict each other, since E_min <= E_m <= E_max.
 void require_consistent(const TomlTable& table) {
-  const auto least = table.find("mean_at_least"), most = table.find("mean_at_most");
-  if (least && most && least->number() > most->number()) {
-    table.fail(fmt::format("cannot be met: mean_at_least, {:g} lx, is above mean_at_most, {:g} lx",
-                           least->number(), most->number()));
-  }
-  const auto darkest = table.find("least_at_least"), brightest = table.find("greatest_at_most");
-  if (darkest && brightest && darkest->number() > brightest->number()) {
-    table.fail(
-        fmt::format("cannot be met: least_at_least, {:g} lx, is above greatest_at_most, {:g} lx",
-                    darkest->number(), brightest->number()));
+  for (const char* const low : {"least_at_least", "mean_at_least"}) {
+    for (const char* const high : {"mean_at_most", "greatest_at_most"}) {
+      const auto least = table.find(low), most = table.find(high);
+      if (!least || !most || least->number() <= most->number()) continue;
+      table.fail(fmt::format("cannot be met: {}, {:g} lx, is above {}, {:g} lx", low,
+                             least->number(), high, most->number()));
+    }
   }
 }
 
@@ -142,7 +139,7 @@ LightingLimits read_limits(const std::filesystem::path& path) {
   LightingLimits read;
   if (const auto factor = document.find("maintenance")) {
     read.maintenance_factor = factor->positive();
-    if (read.maintenance_factor > 1.0) {
+    if (*read.maintenance_factor > 1.0) {
       factor->fail("is above 1; it is the share of the first light that is left, such as 0.8");
     }
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,9 @@ struct WordedGroup {
 /// Limits of a lighting design and rules of dimming, as a file has them (docs/design.md).
 struct LightingLimits {
   std::vector<WordedLimit> limits{};
-  double maintenance_factor = 1.0;  ///< of electric light, (0,1]
-  double least_level = 0.0;         ///< of each luminaire, [0,1]
+  /// Of electric light, (0,1]; empty: that of the scene's design.
+  std::optional<double> maintenance_factor{};
+  double least_level = 0.0;  ///< of each luminaire, [0,1]
   std::vector<WordedGroup> groups{};
 };
 

@@ -173,12 +173,20 @@ std::vector<Luminaire> luminaires_of(const Scene& scene, const SolvedScene& solv
   }
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const std::size_t i = of_surface[static_cast<std::size_t>(mesh.surface[p])];
-    if (i == members.size()) continue;
+    // The back of a surface that emits from its front is in no channel.
+    const bool emits = (solution.full_emission.row(p) > 0.0f).any();
+    if (i == members.size() || !emits) continue;
     Luminaire& luminaire = luminaires[i];
     luminaire.lumens +=
         mesh.area[p] * luminous(scene.bands, solution.full_emission.row(p).transpose());
     const int channel = solution.patch_channel[static_cast<std::size_t>(p)];
-    if (channel >= 0) luminaire.channel = channel;
+    if (channel < 0 || (luminaire.channel >= 0 && luminaire.channel != channel)) {
+      throw InputError(fmt::format(
+          "luminaire '{}' {} of the solution; solve with --channels per-luminaire, or leave the "
+          "solution out",
+          luminaire.name, channel < 0 ? "is in no channel" : "is in several channels"));
+    }
+    luminaire.channel = channel;
   }
   for (int e = 0; e < mesh.element_count(); ++e) {
     const std::size_t i = of_surface[static_cast<std::size_t>(mesh.surface[mesh.patch[e]])];
@@ -194,6 +202,7 @@ std::vector<Luminaire> luminaires_of(const Scene& scene, const SolvedScene& solv
       if (is_named(known.name, members[i])) luminaires[i].watts = known.value;
     }
   }
+  std::erase_if(luminaires, [](const Luminaire& made) { return made.channel < 0; });
   return luminaires;
 }
 

@@ -20,7 +20,7 @@ struct Luminaire {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, the middle
   double watts = 0.0;                                  ///< electric power; 0: unknown
   double lumens = 0.0;                                 ///< flux as solved, at full level
-  int channel = 0;                                     ///< of the solution
+  int channel = -1;                                    ///< of the solution
 };
 
 /// Channels for dimming: one for each luminaire, or for each group, and one each for sky and sun.
@@ -32,8 +32,9 @@ EmitterChannels dimming_channels(const Scene& scene, std::span<const WordedGroup
 /// Throws InputError if the scene has no luminaires, or none of a name in `watts`.
 void require_luminaires(const Scene& scene, std::span<const NamedNumber> watts);
 
-/// The luminaires of a solution with channels, surfaces first. Power is that of the design, or that
-/// in `watts` for luminaires of a name.
+/// The luminaires of a solution with channels, surfaces first; surfaces without patches are left
+/// out. Throws InputError for a luminaire without a channel, or with several. Power is that of the
+/// design, or that in `watts` for luminaires of a name.
 std::vector<Luminaire> luminaires_of(const Scene& scene, const SolvedScene& solved,
                                      const LightingDesign& design,
                                      std::span<const NamedNumber> watts);

@@ -19,8 +19,10 @@ MeasuredLight::MeasuredLight(const ReportedScene& of, SolvedScene& solved, Light
       tables_(of.scene, solved.mesh) {
   const Eigen::Vector3d up = guess_up_axis(scene_.cameras, mesh_bounds(solved.mesh));
   const Scene named = of.names ? of.names->apart(scene_) : scene_;
-  for (LuxGrid& grid : requested_grids({}, places_.grids, named, up)) {
-    grids_.push_back(without_buried_points(caster_, std::move(grid)));
+  // Grids leave out others by their places in the whole list.
+  const std::vector<LuxGrid> all = requested_grids({}, places_.grids, named, up);
+  for (const int grid : places_.limited) {
+    grids_.push_back(without_buried_points(caster_, all[static_cast<std::size_t>(grid)]));
   }
 }
 

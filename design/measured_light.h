@@ -17,6 +17,7 @@ namespace lightwell {
 /// Places where light is measured, and how.
 struct LightPlaces {
   std::vector<CalculationGrid> grids{};
+  std::vector<int> limited{};  ///< indices of those that are measured
   std::vector<Camera> eyes{};
   std::vector<double> luminous_heights{};  ///< see unified_glare_rating()
   double maintenance_factor = 1.0;         ///< of illuminance; glare is that of new luminaires

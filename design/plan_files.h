@@ -7,9 +7,6 @@
 
 namespace lightwell {
 
-/// "W" or "lm", the unit of the costs of a plan.
-const char* cost_unit(const LightingPlan& plan);
-
 /// A table of the luminaires: name, position in the unit of the scene's file, level, electric power
 /// (empty where unknown) and group.
 std::string levels_csv(const LightingPlan& plan, double metres_per_unit);

@@ -63,11 +63,15 @@ CalculationSurface labelled(const LightingPlan& plan, CalculationSurface surface
   for (const Luminaire& luminaire : plan.luminaires) {
     const Eigen::Vector3d from_corner = luminaire.position - grid.corner;
     const Eigen::Vector2d flat(grid.u.dot(from_corner), grid.v.dot(from_corner));
+    PlanLuminaire* nearest = nullptr;
+    double least = same_place;
     for (PlanLuminaire& drawn : surface.lines.luminaires) {
-      if ((drawn.middle - flat).norm() > same_place || !drawn.label.empty()) continue;
-      drawn.label = fmt::format("{:.0f} %", 100.0 * level_of(plan, luminaire));
-      break;
+      const double distance = (drawn.middle - flat).norm();
+      if (!(distance <= least) || !drawn.label.empty()) continue;
+      least = distance;
+      nearest = &drawn;
     }
+    if (nearest) nearest->label = fmt::format("{:.0f} %", 100.0 * level_of(plan, luminaire));
   }
   return surface;
 }

@@ -49,7 +49,7 @@ std::string place_text(const WordedLimit& limit) {
 }
 
 // Why a limit is not met.
-std::string sentence_of(const LimitOutcome& outcome) {
+std::string sentence_of(const LightingPlan& plan, const LimitOutcome& outcome) {
   const WordedLimit& limit = outcome.limit;
   const std::string asked = value_text(limit.kind, limit.value);
   const char* const quantity = quantity_name(limit.kind);
@@ -65,6 +65,11 @@ std::string sentence_of(const LimitOutcome& outcome) {
   if (is_of_lux && outcome.at_full < limit.value) {
     return fmt::format("even with every luminaire at full power, {} reaches {} of {} of {}",
                        place_text(limit), value_text(limit.kind, outcome.at_full), asked, quantity);
+  }
+  if (plan.is_feasible) {
+    return fmt::format("{}: measurement {} of the levels has {} {} where {} is asked for",
+                       place_text(limit), plan.measurements, quantity,
+                       value_text(limit.kind, outcome.reached), asked);
   }
   return fmt::format("{}: no levels meet this limit and the others; {} is {} where {} is asked for",
                      place_text(limit), quantity, value_text(limit.kind, outcome.reached), asked);
@@ -142,7 +147,7 @@ std::vector<std::string> power_sentences(const LightingPlan& plan) {
 std::vector<std::string> unmet_sentences(const LightingPlan& plan) {
   std::vector<std::string> sentences;
   for (const LimitOutcome& outcome : plan.limits) {
-    if (outcome.verdict != Verdict::met) sentences.push_back(sentence_of(outcome));
+    if (outcome.verdict != Verdict::met) sentences.push_back(sentence_of(plan, outcome));
   }
   return sentences;
 }

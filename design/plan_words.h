@@ -7,6 +7,9 @@
 
 namespace lightwell {
 
+/// "W" or "lm", the unit of the costs of a plan.
+const char* cost_unit(const LightingPlan& plan);
+
 /// "E_m", "E_min", "E_max", "U_0" or "UGR".
 const char* quantity_name(LimitKind kind);
 

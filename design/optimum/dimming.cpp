@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <stdexcept>
@@ -12,7 +13,9 @@
 namespace lightwell {
 namespace {
 
+// Programmes of one search at most: a longer one is taken to cycle.
 constexpr int most_rounds = 200;
+
 // 4 * 10^(UGR/8): the allowed ratio of sum a d^2 to sum b d.
 double glare_ratio(double ugr) {
   return 4.0 * std::pow(10.0, ugr / 8.0);
@@ -71,14 +74,12 @@ class DimmingProgram {
   // The optimum, with tangents added until squares are those of the levels. `rounds` counts the
   // programmes.
   LinearOptimum solve(int& rounds) {
-    while (true) {
+    for (int round = 0; round < most_rounds; ++round) {
       LinearOptimum optimum = solve_linear(program_);
       ++rounds;
       if (!optimum.is_feasible || !add_tangents(optimum.x)) return optimum;
-      if (rounds >= most_rounds) {
-        throw std::runtime_error("the levels for a limit of glare do not converge");
-      }
     }
+    throw std::runtime_error("the levels for a limit of glare do not converge");
   }
 
   Eigen::VectorXd levels(const LinearOptimum& optimum) const {
@@ -122,6 +123,7 @@ class DimmingProgram {
   // A column t >= d^2 for each luminaire that an observer with a limit sees.
   void add_squares() {
     square_.assign(problem_.luminaires.size(), -1);
+    tangents_.resize(problem_.luminaires.size());
     for (const DimmingLimit& limit : problem_.limits) {
       if (limit.kind != LimitKind::ugr_at_most) continue;
       const Eigen::VectorXd& a = observer_of(problem_, limit).glare;
@@ -138,6 +140,7 @@ class DimmingProgram {
 
   // t_i >= 2 e d_i - e^2.
   void add_tangent(int i, double e) {
+    tangents_[static_cast<std::size_t>(i)].push_back(e);
     program_.rows.push_back(
         {.terms = {{square_[static_cast<std::size_t>(i)], 1.0}, {i, -2.0 * e}}, .least = -e * e});
   }
@@ -150,6 +153,12 @@ class DimmingProgram {
     for (int i = 0; i < count(); ++i) {
       const int t = square_[static_cast<std::size_t>(i)];
       if (t < 0 || x[i] * x[i] <= x[t] + exact) continue;
+      // A tangent that is there already has the square as exactly as the rows of the programme
+      // hold.
+      const bool is_there =
+          std::ranges::any_of(tangents_[static_cast<std::size_t>(i)],
+                              [&](double e) { return (x[i] - e) * (x[i] - e) <= exact; });
+      if (is_there) continue;
       add_tangent(i, x[i]);
       any = true;
     }
@@ -236,6 +245,7 @@ class DimmingProgram {
   LinearProgram program_{};
   int worst_ = -1;             // column of the largest shortfall; -1: limits are not elastic
   std::vector<int> square_{};  // column of t_i per luminaire; -1: none
+  std::vector<std::vector<double>> tangents_{};  // places per luminaire
   std::vector<LimitRows> rows_{};
 };
 
@@ -252,7 +262,8 @@ double value_at(const DimmingProblem& problem, const DimmingLimit& limit,
     const DimmedObserver& observer = observer_of(problem, limit);
     const double background = observer.background.dot(levels);
     const double glare = observer.glare.dot(levels.cwiseAbs2());
-    if (!(glare > 0.0 && background > 0.0)) return 0.0;
+    if (!(glare > 0.0)) return 0.0;
+    if (!(background > 0.0)) return std::numeric_limits<double>::infinity();
     return std::max(0.0, 8.0 * std::log10(0.25 * glare / background));
   }
   const Eigen::VectorXd lux = grid_of(problem, limit).lux * levels;
@@ -281,6 +292,9 @@ DimmingPlan best_dimming(const DimmingProblem& problem) {
   } else {
     DimmingProgram elastic(problem, true);
     optimum = elastic.solve(plan.rounds);
+    if (!optimum.is_feasible) {
+      throw std::runtime_error("the linear programme of the nearest levels has no solution");
+    }
     for (const auto next : {&DimmingProgram::minimise_sum, &DimmingProgram::minimise_cost}) {
       (elastic.*next)(optimum);
       LinearOptimum better = elastic.solve(plan.rounds);

@@ -77,10 +77,14 @@ bool run_simplex(glp_prob* problem) {
   options.tol_bnd = options.tol_dj = tolerance;
   glp_scale_prob(problem, GLP_SF_AUTO);
   glp_adv_basis(problem, 0);
-  if (glp_simplex(problem, &options) == 0) return true;
+  // A basis that is infeasible proves nothing about others.
+  const auto is_settled = [&] {
+    return glp_simplex(problem, &options) == 0 && glp_get_status(problem) != GLP_INFEAS;
+  };
+  if (is_settled()) return true;
   options.meth = GLP_PRIMAL;
   glp_std_basis(problem);
-  return glp_simplex(problem, &options) == 0;
+  return is_settled();
 }
 
 }  // namespace
@@ -96,7 +100,7 @@ LinearOptimum solve_linear(const LinearProgram& program) {
     throw std::runtime_error("the simplex method found no basis to go on from");
   }
   const int status = glp_get_status(problem.get());
-  if (status == GLP_NOFEAS || status == GLP_INFEAS) return {};
+  if (status == GLP_NOFEAS) return {};
   if (status != GLP_OPT) throw std::runtime_error("a linear programme has no least cost");
   LinearOptimum optimum{
       .is_feasible = true,

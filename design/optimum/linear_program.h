@@ -42,7 +42,7 @@ struct LinearOptimum {
   Eigen::VectorXd row_price{};
 };
 
-/// The optimum by the simplex method (GLPK), to a relative tolerance of 1e-8 in each row; rows and
+/// The optimum by the simplex method (GLPK), to a tolerance of about 1e-8 in each row; rows and
 /// costs should be scaled to the size of 1. Throws std::invalid_argument for numbers that are not
 /// finite, std::runtime_error if the objective is unbounded or the simplex method fails.
 LinearOptimum solve_linear(const LinearProgram& program);

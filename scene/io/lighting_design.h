@@ -88,6 +88,11 @@ struct LightingDesign {
   ReportHeading heading{};
 };
 
+/// The maintenance factor of electric light: `given`, or that of the design, or 1.
+inline double maintenance_factor(std::optional<double> given, const LightingDesign& design) {
+  return given.value_or(design.maintenance.value_or(MaintenanceParts{}).factor());
+}
+
 /// Reads the design from the file of `scene`: the tables [[grids]], [[areas]], [maintenance],
 /// [energy] and [report], and the photometric files and electric power of the [[lamps]] tables. The
 /// power of a lamp is its key `watts`, else the power in its photometric file. The photometric

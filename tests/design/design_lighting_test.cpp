@@ -67,7 +67,7 @@ struct WordedValue {
   double value;
 };
 
-/// A task with grids "left", "right" and "room".
+/// A task with grids "left" and "right".
 DesignTask task_of(const std::vector<WordedValue>& limits) {
   DesignTask task{.request = {.limits = {.maintenance_factor = 0.8}, .rays = 256}};
   for (int i = 0; i < columns * rows; ++i) {
@@ -76,6 +76,7 @@ DesignTask task_of(const std::vector<WordedValue>& limits) {
   }
   task.design.grids = {{.name = "left", .surface = desk_left, .spacing = 0.4},
                        {.name = "right", .surface = desk_right, .spacing = 0.4}};
+  task.grids = {0, 1};
   for (const auto& [kind, place, value] : limits) {
     task.request.limits.limits.push_back({.kind = kind, .place = place, .value = value});
     task.limits.push_back({.kind = kind, .place = place == "right" ? 1 : 0, .value = value});
@@ -108,9 +109,12 @@ TEST(DesignLighting, LimitsHoldWithLessPowerThanByEvenDimming) {
     EXPECT_FLOAT_EQ(solved.solution.channels[c].scale[0], static_cast<float>(plan.levels[c]));
   }
 
-  MeasuredLight light(
-      {scene}, solved,
-      {.grids = task.design.grids, .eyes = task.eyes, .maintenance_factor = 0.8, .rays = 256});
+  MeasuredLight light({scene}, solved,
+                      {.grids = task.design.grids,
+                       .limited = task.grids,
+                       .eyes = task.eyes,
+                       .maintenance_factor = 0.8,
+                       .rays = 256});
   constexpr std::uint64_t unseen = 1000;
   const LightReadings anew = light.measure(plan.levels, unseen);
   for (const LuxField& field : anew.fields) {
@@ -161,6 +165,29 @@ TEST(Luminaires, GroupsDimTogetherAndEachLuminaireIsInOne) {
   EXPECT_THROW(dimming_channels(scene, twice), InputError);
   const std::vector<WordedGroup> unknown = {{.names = {"surfice 3"}, .origin = "group 1"}};
   EXPECT_THROW(dimming_channels(scene, unknown), InputError);
+}
+
+/// The limited grid leaves out one that has no limit and stands before it in the scene's list: 2 m
+/// x 1 m of a floor of 4 m x 3 m, in cells of 1 m.
+TEST(DesignLighting, LimitedGridsLeaveOutThoseOfTheScene) {
+  const Scene scene = office();
+  SolvedScene solved = solved_office();
+  const Eigen::AlignedBox3d part(Eigen::Vector3d(1, 1, 0), Eigen::Vector3d(3, 2, 0));
+  const Eigen::AlignedBox3d corner(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(4, 3, 0));
+  const std::vector<CalculationGrid> grids = {
+      {.name = "unlimited", .surface = desk_left, .spacing = 0.4},
+      {.name = "desk", .surface = room, .height = 0.8, .margin = 0.0, .spacing = 1.0, .part = part},
+      {.name = "around",
+       .surface = room,
+       .height = 0.8,
+       .margin = 0.0,
+       .spacing = 1.0,
+       .part = corner,
+       .leaves_out = {1}}};
+  const MeasuredLight light({scene}, solved, {.grids = grids, .limited = {2}, .rays = 64});
+  ASSERT_EQ(light.grids().size(), 1u);
+  EXPECT_EQ(light.grids()[0].name, "around");
+  EXPECT_EQ(light.grids()[0].points.size(), 10u);
 }
 
 }  // namespace

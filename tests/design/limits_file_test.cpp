@@ -33,7 +33,7 @@ ugr_at_most = 19
 least = 0.1
 groups = [["row *", "spot"], ["wall washer"]]
 )");
-  EXPECT_DOUBLE_EQ(limits.maintenance_factor, 0.8);
+  EXPECT_DOUBLE_EQ(limits.maintenance_factor.value(), 0.8);
   EXPECT_DOUBLE_EQ(limits.least_level, 0.1);
   ASSERT_EQ(limits.limits.size(), 4u);
   EXPECT_EQ(limits.limits[0].kind, LimitKind::mean_at_least);

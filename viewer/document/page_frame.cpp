@@ -57,7 +57,7 @@ std::string drawing_style(const std::string& family) {
 }
 
 std::string page_begin(const std::string& title, const char* language) {
-  return fmt::format(fmt::runtime(page_head), html_text(title), for_style(title),
+  return fmt::format(fmt::runtime(page_head), marked(title), for_style(title),
                      drawing_style("system-ui, sans-serif"), language);
 }
 

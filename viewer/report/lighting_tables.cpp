@@ -199,7 +199,7 @@ DocumentTable source_table(const Observer& observer, Language language) {
                            {fmt::format("{:.0f}", source.luminance)},
                            {number_in(language, fmt::format("{:.3g}", source.solid_angle))},
                            {number_in(language, fmt::format("{:.2f}", source.position_index))},
-                           {percent_text(source.share / all, language)}}});
+                           {percent_text(all > 0.0 ? source.share / all : 0.0, language)}}});
   }
   return table;
 }

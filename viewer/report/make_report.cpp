@@ -103,11 +103,6 @@ std::optional<ReportPicture> picture_of(const ReportRequest& asked, const Scene&
       .png = encode_png(camera.width, camera.height, tone_map(image, scene.bands, tone))};
 }
 
-double maintenance_factor(const ReportPlan& plan) {
-  const MaintenanceParts parts = plan.design.maintenance.value_or(MaintenanceParts{});
-  return plan.request.maintenance_factor.value_or(parts.factor());
-}
-
 // The areas of the design, and one for each working plane that has none if all are asked for.
 std::vector<DesignArea> areas_of(const ReportPlan& plan, const std::vector<LuxGrid>& grids) {
   std::vector<DesignArea> areas = plan.design.areas;
@@ -145,14 +140,15 @@ void require_lamps_alone(const std::vector<DesignArea>& areas, LightContent cont
 
 // Heading and provenance of a report, without measurements.
 LightingReport report_of(const ReportPlan& plan, const Scene& scene, const SolvedScene& solved) {
-  LightingReport made{.title = scene.title.empty() ? scene.file.filename().string() : scene.title,
-                      .heading = plan.design.heading,
-                      .provenance = solved.solution.provenance,
-                      .metres_per_unit = scene.metres_per_unit,
-                      .unit_name = scene.unit_name,
-                      .maintenance_factor = maintenance_factor(plan),
-                      .rays = plan.request.rays,
-                      .error_estimate = solved.solution.error_estimate};
+  LightingReport made{
+      .title = scene.title.empty() ? scene.file.filename().string() : scene.title,
+      .heading = plan.design.heading,
+      .provenance = solved.solution.provenance,
+      .metres_per_unit = scene.metres_per_unit,
+      .unit_name = scene.unit_name,
+      .maintenance_factor = maintenance_factor(plan.request.maintenance_factor, plan.design),
+      .rays = plan.request.rays,
+      .error_estimate = solved.solution.error_estimate};
   if (scene.sky) {
     made.sky = scene.sky->name.empty() ? "sky" : scene.sky->name;
     made.north = scene.sky->north;

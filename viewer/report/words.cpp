@@ -348,14 +348,14 @@ constexpr std::array entries = {
            "figure; else it is too close to tell. Figures are of maintained electric light where "
            "it is known by itself.",
            "Ein Grenzwert ist eingehalten oder verfehlt, wenn der Wert um mehr als sein ± auf der "
-           "einen oder anderen Seite liegt; sonst ist es zu knapp für ein Urteil. Die Werte gelten "
-           "für gewartetes Kunstlicht, wo es für sich bekannt ist.",
+           "einen oder anderen Seite liegt; sonst ist es zu knapp für ein Urteil. Die Werte sind "
+           "Wartungswerte des Kunstlichts, wo es für sich bekannt ist.",
            "Une exigence est respectée ou manquée si la valeur se trouve d’un côté ou de l’autre "
            "de plus que son ± ; sinon, l’écart est trop faible pour conclure. Les valeurs sont "
-           "celles de la lumière électrique à maintenir, quand elle est connue séparément.",
+           "celles à maintenir de la lumière électrique, quand elle est connue séparément.",
            "Un límite se cumple o no se cumple si el valor queda a un lado o al otro por más de su "
-           "±; si no, está demasiado cerca para decidir. Los valores son de luz eléctrica "
-           "mantenida, cuando se conoce por separado."}},
+           "±; si no, está demasiado cerca para decidir. Los valores son los mantenidos de la luz "
+           "eléctrica, cuando se conoce por separado."}},
     Entry{Word::figure, {"figure", "Größe", "grandeur", "magnitud"}},
     Entry{Word::value, {"value", "Wert", "valeur", "valor"}},
     Entry{Word::limit, {"limit", "Grenzwert", "exigence", "límite"}},
