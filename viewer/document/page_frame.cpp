@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "viewer/document/document.h"
 #include "viewer/export/page_data.h"
 
 namespace lightwell {
