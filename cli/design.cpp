@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <limits>
 #include <memory>
 
 #include "cli/arguments.h"
@@ -141,19 +140,7 @@ Action add_design(CLI::App& command) {
   command.add_option("-o,--output", arguments->output, "folder for the results")
       ->required()
       ->type_name("DIR");
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--watts",
-          [arguments](const std::vector<std::string>& texts) {
-            for (const auto& text : texts) {
-              arguments->watts.push_back(
-                  named_number(text, '=', "--watts", std::numeric_limits<double>::min()));
-            }
-          },
-          "electric power of each luminaire of this name; may be repeated")
-      ->type_name("NAME=W")
-      ->type_size(1)
-      ->allow_extra_args(false);
+  add_watts(command, arguments->watts);
   command
       .add_option("--grid-rays", arguments->rays,
                   "gather rays per point of a grid, a power of two (default 1024)")

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <charconv>
+#include <limits>
 
 #include "cli/arguments.h"
 
@@ -57,6 +58,22 @@ GridRequest GridArguments::in_metres(const Scene& scene) const {
   if (scaled.margin) *scaled.margin *= metres;
   scaled.spacing *= metres;
   return scaled;
+}
+
+void add_watts(CLI::App& command, std::vector<NamedNumber>& watts) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--watts",
+          [&watts](const std::vector<std::string>& texts) {
+            for (const auto& text : texts) {
+              watts.push_back(
+                  named_number(text, '=', "--watts", std::numeric_limits<double>::min()));
+            }
+          },
+          "electric power of each luminaire of this name; may be repeated")
+      ->type_name("NAME=W")
+      ->type_size(1)
+      ->allow_extra_args(false);
 }
 
 }  // namespace lightwell

@@ -21,4 +21,8 @@ struct GridArguments {
   GridRequest in_metres(const Scene& scene) const;
 };
 
+/// Adds "--watts NAME=W", the electric power of luminaires, which may be repeated. `watts` must
+/// outlive the command.
+void add_watts(CLI::App& command, std::vector<NamedNumber>& watts);
+
 }  // namespace lightwell

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <optional>
 
@@ -139,19 +138,7 @@ Action add_report(CLI::App& command) {
       .add_option("--activities", arguments->activities,
                   "table of activities in place of the program's")
       ->type_name("FILE.toml");
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--watts",
-          [arguments](const std::vector<std::string>& texts) {
-            for (const auto& text : texts) {
-              arguments->watts.push_back(
-                  named_number(text, '=', "--watts", std::numeric_limits<double>::min()));
-            }
-          },
-          "electric power of each luminaire of this name; may be repeated")
-      ->type_name("NAME=W")
-      ->type_size(1)
-      ->allow_extra_args(false);
+  add_watts(command, arguments->watts);
   command
       .add_option("--rays", arguments->rays, "gather rays per point, a power of two (default 1024)")
       ->type_name("N")

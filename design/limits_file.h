@@ -26,7 +26,7 @@ struct WordedGroup {
 /// Limits of a lighting design and rules of dimming, as a file has them (docs/design.md).
 struct LightingLimits {
   std::vector<WordedLimit> limits{};
-  /// Of electric light, (0,1]; empty: that of the scene's design.
+  /// Maintenance factor of electric light, (0,1]; empty: that of the scene's design.
   std::optional<double> maintenance_factor{};
   double least_level = 0.0;  ///< of each luminaire, [0,1]
   std::vector<WordedGroup> groups{};

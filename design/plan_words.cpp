@@ -21,7 +21,7 @@ const char* step_name(LimitKind kind) {
   }
 }
 
-// What a step of step_name() towards a stricter limit costs, >= 0.
+// The cost of a step of step_name() towards a stricter limit, >= 0.
 double cost_of(const LimitOutcome& outcome) {
   const LimitKind kind = outcome.limit.kind;
   const double step = kind == LimitKind::uniformity_at_least ? 0.01

@@ -16,7 +16,7 @@ const char* quantity_name(LimitKind kind);
 /// A value with the digits and the unit that its quantity is given with.
 std::string value_text(LimitKind kind, double value);
 
-/// What a small step to a stricter limit costs, such as "2.4 W for 10 lx"; empty: nothing.
+/// The cost of a small step to a stricter limit, such as "2.4 W for 10 lx"; empty: nothing.
 std::string cost_of_step(const LightingPlan& plan, const LimitOutcome& outcome);
 
 /// Power at the levels, the margin in it, the power of even dimming and the limit that binds most:

@@ -14,7 +14,7 @@ std::vector<Activity> usual_activities() {
 }
 
 const Activity& find_activity(const std::vector<Activity>& activities, const std::string& key,
-                              const std::string& area) {
+                              const std::string& asked_by) {
   const auto at = std::ranges::find(activities, key, &Activity::key);
   if (at != activities.end()) return *at;
   std::string known;
@@ -24,9 +24,9 @@ const Activity& find_activity(const std::vector<Activity>& activities, const std
     keys.push_back(activity.key);
   }
   throw InputError(fmt::format(
-      "area '{}': there is no activity '{}'.{} The table has {}; '--activities FILE' reads another "
+      "{}: there is no activity '{}'.{} The table has {}; '--activities FILE' reads another "
       "table.",
-      area, key, did_you_mean(key, keys), known));
+      asked_by, key, did_you_mean(key, keys), known));
 }
 
 }  // namespace lightwell

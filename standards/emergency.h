@@ -11,7 +11,7 @@ namespace lightwell {
 /// Greatest width of an escape route, m; wider ones are several routes, or an open area (EN 1838).
 inline constexpr double widest_escape_route = 2.0;
 
-/// What was measured of an area in an emergency: maintained light straight from the luminaires. EN
+/// Measurements of an area in an emergency, of maintained light straight from the luminaires. EN
 /// 1838 leaves reflected light out.
 struct EmergencyLight {
   std::string name{};

@@ -16,7 +16,7 @@ struct NamedGlare {
   double background_within = 0.0;  ///< relative bound of the background's luminance; NaN: unknown
 };
 
-/// What was measured of a work place, of maintained electric light. Fields without a name were not
+/// Measurements of a work place, of maintained electric light. Fields without a name were not
 /// asked for.
 struct WorkPlace {
   std::string name{};

@@ -21,7 +21,7 @@ struct DimmedGrid {
   Eigen::MatrixXd lux{};
 };
 
-/// What the unified glare rating of an observer is made of, per luminaire at full level. At levels
+/// Parts of the unified glare rating of an observer, per luminaire at full level. At levels
 /// d, UGR = 8 log10(0.25 sum_i glare_i d_i^2 / sum_i background_i d_i): the luminance of a source
 /// goes with its level, and so does the light of the background.
 struct DimmedObserver {

@@ -43,6 +43,8 @@ std::vector<Probe> cylinder_probes(const LuxGrid& grid, const Eigen::Vector3d& p
   return probes;
 }
 
+namespace {
+
 LuxReadings read_cylinders(const LitScene& lit, const RadiositySolution& solution,
                            const LuxGrid& grid, const GatherOptions& options) {
   std::vector<Probe> probes;
@@ -80,9 +82,14 @@ LuxReadings read_cylinders(const LitScene& lit, const RadiositySolution& solutio
   return read;
 }
 
-LuxReadings read_planes(const LitScene& lit, const RadiositySolution& solution, const LuxGrid& grid,
-                        const GatherOptions& options) {
-  return read_probes(lit, solution, grid.points, options);
+}  // namespace
+
+LuxReadings read_grid(const LitScene& lit, const RadiositySolution& solution, const LuxGrid& grid,
+                      const GatherOptions& options) {
+  const bool is_round =
+      grid.quantity == GridQuantity::cylindrical || grid.quantity == GridQuantity::semicylindrical;
+  return is_round ? read_cylinders(lit, solution, grid, options)
+                  : read_probes(lit, solution, grid.points, options);
 }
 
 }  // namespace lightwell

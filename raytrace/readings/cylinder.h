@@ -32,14 +32,10 @@ inline constexpr int planes_all_around = 5;
 /// most (pi/n)^2 / 8 of E_z. An even n would leave four times as much around the whole.
 std::vector<Probe> cylinder_probes(const LuxGrid& grid, const Eigen::Vector3d& position);
 
-/// Readings of cylinders, see cylinder_probes(). The bounds contain the error of the finite number
-/// of planes for a single small lamp, which all points share. Each plane takes an eighth of the
-/// rays of `options`.
-LuxReadings read_cylinders(const LitScene& lit, const RadiositySolution& solution,
-                           const LuxGrid& grid, const GatherOptions& options);
-
-/// Readings of the planes at the points of a grid.
-LuxReadings read_planes(const LitScene& lit, const RadiositySolution& solution, const LuxGrid& grid,
-                        const GatherOptions& options);
+/// Readings at the points of a grid, of its quantity. The mean of a cylinder is that of its
+/// cylinder_probes(), each with an eighth of the rays of `options`; its bounds contain the error of
+/// the finite number of planes for a single small lamp, which all points share.
+LuxReadings read_grid(const LitScene& lit, const RadiositySolution& solution, const LuxGrid& grid,
+                      const GatherOptions& options);
 
 }  // namespace lightwell

@@ -390,10 +390,7 @@ LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const RadiositySolution& solution,
                       const LuxGrid& grid, double factor, const GatherOptions& options) {
   const auto count = static_cast<Eigen::Index>(grid.points.size());
-  const LuxReadings read =
-      grid.quantity == GridQuantity::cylindrical || grid.quantity == GridQuantity::semicylindrical
-          ? read_cylinders({scene, caster, direct_light}, solution, grid, options)
-          : read_planes({scene, caster, direct_light}, solution, grid, options);
+  const LuxReadings read = read_grid({scene, caster, direct_light}, solution, grid, options);
   LuxField field{.lux = factor * read.lux, .lux_within = factor * read.lux_within};
   summarise(field);
   if (!(field.mean > 0.0)) return field;

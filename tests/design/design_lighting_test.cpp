@@ -53,7 +53,7 @@ const SolvedScene& solved_office() {
     options.mesh.max_patch_size = 2.0;
     options.form_factors.rays_per_patch = 128;
     options.gather.rays = 64;
-    options.refine.tolerance = 0.0;
+    options.refine.tolerance = 0.0;  // elements are not refined
     options.error_points = 64;
     options.channels = dimming_channels(scene, {});
     return solve_scene(scene, options);
@@ -101,6 +101,8 @@ TEST(DesignLighting, LimitsHoldWithLessPowerThanByEvenDimming) {
   EXPECT_TRUE(plan.is_in_watts);
   EXPECT_DOUBLE_EQ(plan.cost_at_full, watts_each * columns * rows);
   ASSERT_TRUE(plan.cost_of_even);
+  // Even dimming lights 80 m2 where two desks of 2.6 m2 are asked for. A design that saves less
+  // than 15 % would not be worth its channels.
   EXPECT_LT(plan.cost, 0.85 * *plan.cost_of_even);
   EXPECT_GE(plan.cost, plan.cost_without_margin);
   // The solution is left with the light of the levels.
@@ -134,11 +136,12 @@ TEST(DesignLighting, WhatIsOutOfReachIsMissedAtFullFlux) {
   task.request.watts.pop_back();
   const LightingPlan plan = design_lighting(task, {scene}, solved, {});
   EXPECT_FALSE(plan.is_in_watts);
-  EXPECT_NEAR(plan.cost_at_full, 3600.0 * columns * rows, 1e-5 * 3600.0 * columns * rows);
+  // Weights of the bands have seven decimals (3e-7), exitances are floats (1e-7).
+  EXPECT_NEAR(plan.cost_at_full, 3600.0 * columns * rows, 4e-7 * 3600.0 * columns * rows);
   EXPECT_FALSE(plan.notes.empty());
   EXPECT_FALSE(plan.is_feasible);
   EXPECT_EQ(plan.limits[0].verdict, Verdict::missed);
-  EXPECT_LT(plan.limits[0].at_full, 5000.0);
+  EXPECT_LT(plan.limits[0].at_full, plan.limits[0].limit.value) << "or it would be in reach";
   // Another replica has other noise, within the bounds of both.
   EXPECT_NEAR(plan.limits[0].reached, plan.limits[0].at_full, 2.0 * plan.limits[0].within);
   // A luminaire far away gives the desk 1 lx or more; what the limit is missed by may grow by 1e-8

@@ -79,8 +79,8 @@ TEST(Activities, OfTheProgramHaveLimitsInOrder) {
 }
 
 TEST(Activities, ThatAreNotInTheTableAreNamed) {
-  const std::string message =
-      message_of<InputError>([] { find_activity(usual_activities(), "writting", "left desk"); });
+  const std::string message = message_of<InputError>(
+      [] { find_activity(usual_activities(), "writting", "area 'left desk'"); });
   EXPECT_NE(message.find("area 'left desk'"), std::string::npos) << message;
   EXPECT_NE(message.find("Did you mean 'writing'?"), std::string::npos) << message;
 }

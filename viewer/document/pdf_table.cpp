@@ -42,7 +42,7 @@ bool is_number(const MarkedText& text) {
 
 NumberParts parts_of(const MarkedText& text, char decimal_sign) {
   std::size_t end = text.find(decimal_sign);
-  // What follows the digits of a number without decimals is a unit.
+  // Text after the digits of a number without decimals is a unit.
   if (end == MarkedText::npos) end = text.find_first_not_of("0123456789+-e");
   return end == MarkedText::npos ? NumberParts{text, {}}
                                  : NumberParts{text.substr(0, end), text.substr(end)};

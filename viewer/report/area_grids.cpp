@@ -16,6 +16,10 @@
 namespace lightwell {
 namespace {
 
+const Activity& activity_of(const DesignArea& area, const std::vector<Activity>& activities) {
+  return find_activity(activities, area.activity, fmt::format("area '{}'", area.name));
+}
+
 /// Grids of a report under construction.
 struct GridList {
   const Scene& scene;
@@ -236,7 +240,7 @@ std::vector<AreaGrids> add_area_grids(const std::vector<DesignArea>& areas,
       continue;
     }
     made[a] = {.task = area.grid, .surround = area.surround, .background = area.background};
-    const Activity& activity = find_activity(activities, area.activity, area.name);
+    const Activity& activity = activity_of(area, activities);
     const bool has_walls = activity.walls > 0.0 && !area.walls.empty();
     const bool has_ceilings = activity.ceiling > 0.0 && !area.ceilings.empty();
     if (!(activity.cylindrical > 0.0 || has_walls || has_ceilings)) continue;
@@ -288,8 +292,7 @@ std::vector<Requirement> judge_areas(const std::vector<DesignArea>& areas,
                                       .cylindrical = fields[grids.cylindrical],
                                       .horizontal = fields[grids.horizontal],
                                       .observers = observers_of(area, report)},
-                                     find_activity(activities, area.activity, area.name),
-                                     area.is_raised);
+                                     activity_of(area, activities), area.is_raised);
     }
     requirements.insert(requirements.end(), some.begin(), some.end());
   }

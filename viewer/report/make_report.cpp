@@ -196,8 +196,7 @@ ReportPlan plan_report(const Scene& scene, ReportRequest request) {
   if (!request.areas.empty()) read_design_tables(request.areas, scene, plan.design);
   plan.activities =
       request.activities.empty() ? usual_activities() : read_activities(request.activities);
-  if (!request.activity.empty())
-    find_activity(plan.activities, request.activity, "all working planes");
+  if (!request.activity.empty()) find_activity(plan.activities, request.activity, "--activity");
   for (const DesignArea& area : plan.design.areas) {
     for (const std::string& name : area.observers) {
       const bool is_known = std::ranges::find(request.observers, name) != request.observers.end();

@@ -15,7 +15,7 @@ constexpr double mm = 72.0 / 25.4;
 class PdfDocument : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_pdftotext()) GTEST_SKIP() << "pdftotext is missing; package poppler-utils";
+    ASSERT_TRUE(has_pdftotext()) << "install poppler-utils, as tests/run does";
   }
 };
 

@@ -167,7 +167,7 @@ TEST(LightingDocument, OfNothingIsADocument) {
 class LightingPdf : public testing::Test {
  protected:
   void SetUp() override {
-    if (!has_pdftotext()) GTEST_SKIP() << "pdftotext is missing; package poppler-utils";
+    ASSERT_TRUE(has_pdftotext()) << "install poppler-utils, as tests/run does";
   }
   static PdfText pdf_of(const LightingReport& report, Language language = Language::english) {
     return read_pdf(pdf_document(lighting_document(report, {}, language)));
