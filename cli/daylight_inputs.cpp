@@ -84,6 +84,7 @@ DaylightInputs read_daylight_inputs(const DaylightArguments& arguments, Console&
   inputs.scene = read_scene_step(arguments.scene, console, report, &inputs.clean_up);
   inputs.windows = read_operated_windows(arguments, inputs.scene, console);
   refuse_joined_windows(inputs);
+  inputs.grids = read_sensor_grids(inputs.scene);
   for (const std::string& name : arguments.observers) {
     inputs.eyes.push_back(choose_camera(inputs.scene, name));
   }
@@ -119,6 +120,13 @@ DaylightSensors daylight_sensors(const DaylightArguments& arguments, const Dayli
     add_room({.name = grid.name, .grid = grid, .lines = plan_lines(scene, caster, grid, {})},
              grid.points, sensors);
   }
+  for (const SensorGrid& grid : inputs.grids) {
+    std::vector<Probe> points;
+    for (std::size_t i = 0; i < grid.positions.size(); ++i) {
+      points.push_back({.position = grid.positions[i], .normal = grid.directions[i]});
+    }
+    add_room({.name = grid.name}, points, sensors);
+  }
   if (!arguments.points.empty()) {
     add_room({.name = std::filesystem::path(arguments.points).filename().string()},
              read_probes(arguments.points, scene.metres_per_unit), sensors);
@@ -126,7 +134,7 @@ DaylightSensors daylight_sensors(const DaylightArguments& arguments, const Dayli
   if (sensors.probes.empty()) {
     throw InputError(
         "there are no sensors; name planes with '--plane floor@0.8' or as [[grids]] in the scene "
-        "file, or a file of points with '--points'");
+        "file, sensor grids in a Honeybee model, or a file of points with '--points'");
   }
   for (const Camera& eye : inputs.eyes) {
     sensors.eyes.push_back({.position = eye.position, .normal = eye.direction});

@@ -15,6 +15,7 @@
 #include "daylight/window_operation.h"
 #include "mesh/cleaning/planar_regions.h"
 #include "raytrace/readings/probe.h"
+#include "scene/io/sensor_grids.h"
 #include "scene/io/weather/weather_file.h"
 #include "scene/io/window_states.h"
 #include "scene/sun_position.h"
@@ -43,6 +44,7 @@ struct DaylightInputs {
   CleanUpReport clean_up{};
   Scene scene{};
   OperatedWindows windows{};
+  std::vector<SensorGrid> grids{};            ///< of the scene file
   std::vector<Camera> eyes{};                 ///< observers of glare
   std::vector<Eigen::Vector3d> sun_points{};  ///< m, of exposure to sunlight
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), north = Eigen::Vector3d::UnitY();

@@ -9,6 +9,7 @@
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "daylight/glare_of_year.h"
+#include "daylight/honeybee_metrics.h"
 #include "daylight/operated_year.h"
 #include "daylight/year_files.h"
 #include "raytrace/readings/probe_surface.h"
@@ -257,6 +258,21 @@ struct WrittenYear {
   std::span<const Probe> probes{};
 };
 
+constexpr const char* metrics_folder = "metrics";
+
+// The sensor grids of a Honeybee model among the rooms.
+std::vector<MetricGrid> metric_grids(const DaylightInputs& inputs, const YearReport& made) {
+  std::vector<MetricGrid> grids;
+  std::size_t next = 0;
+  for (const YearRoom& room : made.rooms) {
+    while (next < inputs.grids.size() && inputs.grids[next].positions.empty()) ++next;
+    if (room.grid || next == inputs.grids.size() || room.name != inputs.grids[next].name) continue;
+    grids.push_back({.name = room.name, .first = room.first, .count = room.count});
+    ++next;
+  }
+  return grids;
+}
+
 void write_files(const WrittenYear& written, const YearReport& made, const OperatedYear& year) {
   const OutputFolder& folder = written.folder;
   const DaylightInputs& inputs = written.inputs;
@@ -267,6 +283,9 @@ void write_files(const WrittenYear& written, const YearReport& made, const Opera
                                      .windows = inputs.windows,
                                      .states = year.states});
   if (!made.glare.empty()) write_glare(folder / "glare.csv", written.hours, made.glare);
+  if (const auto grids = metric_grids(inputs, made); !grids.empty()) {
+    write_honeybee_metrics(folder / metrics_folder, grids, made.sensors);
+  }
   write_whole(folder / "year.html", {year_page(made)});
   write_json(folder / "year.json", year_json(made));
 }
@@ -314,6 +333,11 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
               year);
   if (files) files->commit();
   for (const std::string& file : files_of(arguments)) report.add_file(folder / file);
+  if (const auto grids = metric_grids(inputs, made); !grids.empty()) {
+    for (const std::filesystem::path& file : honeybee_metric_files(grids)) {
+      report.add_file(folder / metrics_folder / file);
+    }
+  }
   report.add("patches", model.mesh().patch_count());
   report.add("sensors", sensors.probes.size());
   report.add("hours_with_light", hours.size());

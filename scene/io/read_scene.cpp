@@ -23,17 +23,19 @@ Scene read_any(const std::filesystem::path& path) {
   if (extension == ".rad" || extension == ".rif") return read_radiance(path);
   if (extension == ".mgf") return read_mgf(path);
   if (extension == ".pov" || extension == ".inc") return read_pov(path);
+  if (extension == ".hbjson") return read_honeybee(path);
   if (extension == ".oct") {
     throw InputError(
         fmt::format("{}: an octree is compiled from RADIANCE's scene files; read those: a .rad, or "
                     "a .rif that names several",
                     path.string()));
   }
-  throw InputError(fmt::format(
-      "{}: the extension '{}' is of no known scene format; readable are "
-      ".toml (native), .obj, .ply and .stl, .gltf and .glb, .dae (COLLADA), .fbx, "
-      "Mitsuba's .xml, RADIANCE's .rad and .rif, .mgf, POV-Ray's .pov and .inc, and View3D's .vs3",
-      path.string(), extension));
+  throw InputError(
+      fmt::format("{}: the extension '{}' is of no known scene format; readable are "
+                  ".toml (native), .obj, .ply and .stl, .gltf and .glb, .dae (COLLADA), .fbx, "
+                  "Mitsuba's .xml, RADIANCE's .rad and .rif, .mgf, POV-Ray's .pov and .inc, "
+                  "Honeybee's .hbjson, and View3D's .vs3",
+                  path.string(), extension));
 }
 
 }  // namespace

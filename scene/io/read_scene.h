@@ -11,9 +11,9 @@ enum class References { anywhere, inside_folder };
 
 /// Reads a scene whose format follows from the extension: .toml (native, docs/scene-format.md),
 /// .obj, .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .dae (COLLADA), .fbx, .mgf, .pov and
-/// .inc (POV-Ray), .rad and .rif (RADIANCE). The result has passed validate(). Throws InputError
-/// naming file, line or object, value and remedy; LimitError for a reference that `references`
-/// forbids.
+/// .inc (POV-Ray), .rad and .rif (RADIANCE), .hbjson (Honeybee). The result has passed validate().
+/// Throws InputError naming file, line or object, value and remedy; LimitError for a reference that
+/// `references` forbids.
 Scene read_scene(const std::filesystem::path& path, References references = References::anywhere);
 
 /// Reads the native format (grammar: docs/scene-format.md).
@@ -63,5 +63,10 @@ Scene read_pov(const std::filesystem::path& path);
 /// One unit is a metre; radiance is in W/(sr m^2) per band, 179 lm/W. Approximations and omissions
 /// are named in the notes. See docs/radiance-scenes.md.
 Scene read_radiance(const std::filesystem::path& path);
+
+/// Reads a model of Honeybee (JSON): rooms, faces, openings, shades, RADIANCE modifiers and views.
+/// Openings are cut out of their faces. Radiance is in W/(sr m^2) per band, 179 lm/W.
+/// Approximations and omissions are named in the notes. See docs/from-honeybee.md.
+Scene read_honeybee(const std::filesystem::path& path);
 
 }  // namespace lightwell

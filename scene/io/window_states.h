@@ -60,9 +60,16 @@ struct OperatedWindows {
 /// Most states of one group.
 inline constexpr int most_window_states = 16;
 
-/// Reads the [[windows]] tables of the file of `scene`, and of no other format than the native one.
-/// Throws InputError naming file, line, group and remedy.
+/// Reads the windows of the file of `scene`: the [[windows]] tables of a native file, or the
+/// openings with states of a Honeybee model; none from files of other formats. Throws InputError
+/// naming file, line, group and remedy.
 OperatedWindows read_windows(const Scene& scene);
+/// read_windows() of a native file.
+OperatedWindows read_toml_windows(const Scene& scene);
+/// read_windows() of a Honeybee model. A group is the openings of one dynamic group whose states
+/// have the same modifiers, by the rule of LM-83 with the second state closed. States change
+/// modifiers alone: further geometry of states is left out.
+OperatedWindows read_honeybee_windows(const Scene& scene);
 
 /// Reads the [[windows]] of a TOML file beside a scene of any format. Materials are those of the
 /// file's own [materials], then those of the scene. Throws what read_windows() throws.

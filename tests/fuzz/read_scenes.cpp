@@ -6,7 +6,9 @@
 #include "scene/io/mesh_file.h"
 #include "scene/io/mitsuba/mitsuba_serialized.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/sensor_grids.h"
 #include "scene/io/weather/weather_file.h"
+#include "scene/io/window_states.h"
 #include "scene/scene.h"
 #include "tests/fuzz/input_file.h"
 #include "tests/fuzz/target.h"
@@ -37,6 +39,12 @@ void read_epw_year(std::string_view bytes) {
 
 void read_toml_scene(std::string_view bytes) {
   read_lighting_design(read_scene_file("scene.toml", bytes));
+}
+
+void read_honeybee_parts(std::string_view bytes) {
+  const Scene scene = read_scene_file("model.hbjson", bytes);
+  read_sensor_grids(scene);
+  read_windows(scene);
 }
 
 // One input is both files, so that names of materials meet: lines behind "#mtl" are the MTL.

@@ -25,6 +25,7 @@ std::span<const Target> targets() {
       {.name = "pov",
        .read = [](std::string_view b) { read_scene_file("scene.pov", b); },
        .sources = "scene/io/pov"},
+      {.name = "hbjson", .read = read_honeybee_parts, .sources = "scene/io/honeybee"},
       {.name = "rif",
        .read = [](std::string_view b) { read_scene_file("scene.rif", b); },
        .sources = "scene/io/radiance"},

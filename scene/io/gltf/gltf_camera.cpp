@@ -20,7 +20,7 @@ void set_aspect(double aspect, Camera& camera) {
   camera.width = static_cast<int>(std::lround(camera.height * aspect));
 }
 
-void read_perspective(const GltfObject& from, Camera& camera) {
+void read_perspective(const JsonObject& from, Camera& camera) {
   const auto lens = from.object("perspective");
   if (!lens) from.fail("lacks 'perspective'");
   const double yfov = lens->number_or("yfov", 0.0), aspect = lens->number_or("aspectRatio", 1.0);
@@ -35,7 +35,7 @@ void read_perspective(const GltfObject& from, Camera& camera) {
 }
 
 // `scale` is that of the node along the camera's x axis.
-void read_orthographic(const GltfObject& from, double scale, Camera& camera) {
+void read_orthographic(const JsonObject& from, double scale, Camera& camera) {
   const auto lens = from.object("orthographic");
   if (!lens) from.fail("lacks 'orthographic'");
   const double xmag = lens->number_or("xmag", 0.0), ymag = lens->number_or("ymag", 0.0);
@@ -56,7 +56,7 @@ void read_orthographic(const GltfObject& from, double scale, Camera& camera) {
 
 }  // namespace
 
-void add_gltf_camera(const GltfObject& from, const GltfObject& node,
+void add_gltf_camera(const JsonObject& from, const JsonObject& node,
                      const Eigen::Affine3d& to_world, Scene& scene, Remarks& remarks) {
   const std::string name = from.has("name") ? from.name() : node.string_or("name", "");
   const std::string type = from.string_or("type", "");

@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "scene/io/gltf/gltf_object.h"
+#include "scene/io/json_object.h"
 #include "scene/io/remarks.h"
 #include "scene/scene.h"
 
@@ -11,7 +11,7 @@ namespace lightwell {
 /// Adds a perspective camera of a glTF file, 512 pixels high since glTF has no picture size. Other
 /// kinds of camera add a remark. `node` places the camera. Throws InputError naming the place in
 /// the file.
-void add_gltf_camera(const GltfObject& camera, const GltfObject& node,
+void add_gltf_camera(const JsonObject& camera, const JsonObject& node,
                      const Eigen::Affine3d& to_world, Scene& scene, Remarks& remarks);
 
 }  // namespace lightwell

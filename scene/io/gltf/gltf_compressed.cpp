@@ -19,7 +19,7 @@ namespace {
 constexpr const char* meshopt_name = "EXT_meshopt_compression";
 constexpr const char* draco_name = "KHR_draco_mesh_compression";
 
-[[noreturn]] void fail_damaged(const GltfObject& place, const char* extension) {
+[[noreturn]] void fail_damaged(const JsonObject& place, const char* extension) {
   place.fail(fmt::format("is damaged: {} cannot unpack it", extension));
 }
 
@@ -30,7 +30,7 @@ struct MeshoptView {
 };
 
 // Checks what meshopt asserts of its arguments, and that so many elements can come of so few bytes.
-void check_meshopt(const GltfObject& extension, const MeshoptView& view, std::size_t bytes) {
+void check_meshopt(const JsonObject& extension, const MeshoptView& view, std::size_t bytes) {
   const bool has_vertices = view.mode == "ATTRIBUTES";
   const bool strides_fit = has_vertices
                                ? view.stride >= 4 && view.stride <= 256 && view.stride % 4 == 0
@@ -119,7 +119,7 @@ std::optional<DracoCounts> counts_of(std::string_view bytes) {
 
 template <int size>
 std::vector<Eigen::Matrix<double, size, 1>> values_of(const draco::Mesh& mesh, std::int64_t number,
-                                                      const GltfObject& primitive) {
+                                                      const JsonObject& primitive) {
   if (number < 0) return {};
   const draco::PointAttribute* attribute =
       mesh.GetAttributeByUniqueId(static_cast<std::uint32_t>(number));
@@ -145,7 +145,7 @@ std::vector<Eigen::Matrix<double, size, 1>> values_of(const draco::Mesh& mesh, s
 
 }  // namespace
 
-std::string decode_meshopt(const GltfObject& extension, std::string_view compressed,
+std::string decode_meshopt(const JsonObject& extension, std::string_view compressed,
                            std::size_t most) {
   const MeshoptView view{.count = extension.index_or("count", 0),
                          .stride = extension.index_or("byteStride", 0),
@@ -173,7 +173,7 @@ std::string decode_meshopt(const GltfObject& extension, std::string_view compres
   return bytes;
 }
 
-DracoMesh decode_draco(const GltfObject& primitive, std::string_view compressed,
+DracoMesh decode_draco(const JsonObject& primitive, std::string_view compressed,
                        const DracoAttributes& attributes,
                        const std::function<void(std::int64_t triangles)>& expect) {
   const auto counts = counts_of(compressed);

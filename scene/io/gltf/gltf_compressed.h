@@ -7,14 +7,14 @@
 #include <string_view>
 #include <vector>
 
-#include "scene/io/gltf/gltf_object.h"
+#include "scene/io/json_object.h"
 
 namespace lightwell {
 
 /// Bytes of a buffer view from those that EXT_meshopt_compression made of them; `extension` is the
 /// view's object of this extension. Throws InputError naming the view where the bytes are damaged
 /// or are fewer than its count can come of, and where the result has more than `most` bytes.
-std::string decode_meshopt(const GltfObject& extension, std::string_view compressed,
+std::string decode_meshopt(const JsonObject& extension, std::string_view compressed,
                            std::size_t most);
 
 /// Numbers of the attributes within a mesh of KHR_draco_mesh_compression; -1 for none.
@@ -32,7 +32,7 @@ struct DracoMesh {
 /// The mesh that KHR_draco_mesh_compression has packed into `compressed`. Calls `expect` with the
 /// number of triangles before any memory is taken for them. Throws InputError naming `primitive`
 /// where the bytes are damaged or have other content.
-DracoMesh decode_draco(const GltfObject& primitive, std::string_view compressed,
+DracoMesh decode_draco(const JsonObject& primitive, std::string_view compressed,
                        const DracoAttributes& attributes,
                        const std::function<void(std::int64_t triangles)>& expect);
 

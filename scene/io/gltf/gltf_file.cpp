@@ -94,7 +94,7 @@ struct GltfFile::Content {
   explicit Content(const std::filesystem::path& path) : file(path) {}
   TextFile file;
   nlohmann::json json{};
-  std::map<std::string, std::vector<GltfObject>, std::less<>> lists{};
+  std::map<std::string, std::vector<JsonObject>, std::less<>> lists{};
   std::vector<std::string> loaded{};              // decoded or loaded buffers
   std::vector<std::string_view> buffers{};        // views into `loaded` or the file
   std::vector<std::string> buffer_faults{};       // by buffer; empty for one that can be used
@@ -114,7 +114,8 @@ GltfFile::GltfFile(const std::filesystem::path& path)
   const std::string_view bytes = content_->file.text();
   Chunks chunks{.json = bytes};
   if (bytes.starts_with("glTF")) chunks = split_glb(path, bytes);
-  read_json(chunks.json);
+  content_->json = parse_json(path, chunks.json);
+  root_.emplace(path_, content_->json, "");
   const auto asset = root_->object("asset");
   const std::string version = asset ? asset->string_or("version", "") : "";
   if (!version.starts_with("2.")) {
@@ -128,26 +129,6 @@ GltfFile::GltfFile(const std::filesystem::path& path)
 }
 
 GltfFile::~GltfFile() = default;
-
-void GltfFile::read_json(std::string_view json) {
-  try {
-    content_->json = nlohmann::json::parse(json);
-  } catch (const nlohmann::json::exception& error) {
-    std::string_view what = error.what();
-    // Format of nlohmann's messages: "[json.exception.parse_error.101] parse error at line 3,
-    // column 7: syntax error ..."
-    what.remove_prefix(std::min(what.size(), what.find("] ") + 2));
-    std::string line;
-    if (const auto at = what.find("line "); at != std::string_view::npos) {
-      const std::string_view digits = what.substr(at + 5);
-      line = fmt::format("{}:", digits.substr(0, digits.find_first_not_of("0123456789")));
-    }
-    what = what.substr(0, what.find("; last read"));  // quotes the file, to any length
-    throw InputError(
-        fmt::format("{}:{} this is no well-formed JSON: {}", path_.string(), line, what));
-  }
-  root_.emplace(path_, content_->json, "");
-}
 
 void GltfFile::read_buffers(std::string_view binary) {
   const auto& buffers = content_->lists.at("buffers");
@@ -174,7 +155,7 @@ void GltfFile::read_buffers(std::string_view binary) {
   }
 }
 
-std::string GltfFile::resource(const GltfObject& owner, const std::string& uri) const {
+std::string GltfFile::resource(const JsonObject& owner, const std::string& uri) const {
   if (uri.starts_with("data:")) {
     auto bytes = decode_data_uri(uri);
     if (!bytes) owner.fail("has data that is not encoded in base64");
@@ -200,8 +181,8 @@ std::size_t GltfFile::count(const char* list) const {
   return content_->lists.at(list).size();
 }
 
-const GltfObject& GltfFile::at(const char* list, std::size_t index,
-                               const GltfObject& asking) const {
+const JsonObject& GltfFile::at(const char* list, std::size_t index,
+                               const JsonObject& asking) const {
   const auto& members = content_->lists.at(list);
   if (index < members.size()) return members[index];
   asking.fail(fmt::format("names {}[{}], but there are only {}, counted from 0", list, index,
@@ -209,7 +190,7 @@ const GltfObject& GltfFile::at(const char* list, std::size_t index,
 }
 
 // The part of a buffer that `owner`, a buffer view or the extension of one, names.
-std::string_view GltfFile::slice(std::size_t buffer, const GltfObject& owner) const {
+std::string_view GltfFile::slice(std::size_t buffer, const JsonObject& owner) const {
   at("buffers", buffer, owner);
   const std::string_view bytes = content_->buffers[buffer];
   const std::size_t offset = owner.index_or("byteOffset", 0);
@@ -223,8 +204,8 @@ std::string_view GltfFile::slice(std::size_t buffer, const GltfObject& owner) co
   return bytes.substr(offset, length);
 }
 
-std::string_view GltfFile::view(std::size_t buffer_view, const GltfObject& asking) const {
-  const GltfObject& view = at("bufferViews", buffer_view, asking);
+std::string_view GltfFile::view(std::size_t buffer_view, const JsonObject& asking) const {
+  const JsonObject& view = at("bufferViews", buffer_view, asking);
   const auto packed = view.extension("EXT_meshopt_compression");
   if (!packed) return slice(view.index_or("buffer", 0), view);
   auto& unpacked = content_->unpacked;
@@ -239,7 +220,7 @@ std::string_view GltfFile::view(std::size_t buffer_view, const GltfObject& askin
   return unpacked.emplace(buffer_view, std::move(bytes)).first->second;
 }
 
-GltfFile::Elements GltfFile::located(const GltfObject& owner, const GltfObject& a,
+GltfFile::Elements GltfFile::located(const JsonObject& owner, const JsonObject& a,
                                      std::size_t count, std::size_t size) const {
   const auto number = owner.index("bufferView");
   if (!number) owner.fail("has no bufferView, so it has no data");
@@ -257,7 +238,7 @@ GltfFile::Elements GltfFile::located(const GltfObject& owner, const GltfObject& 
 }
 
 // The elements of `dense`, which may lack data, and instead of some those that `sparse` lists.
-std::string GltfFile::substituted(const GltfObject& sparse, std::size_t size,
+std::string GltfFile::substituted(const JsonObject& sparse, std::size_t size,
                                   const Elements& dense) const {
   std::string packed(dense.count * size, '\0');
   if (dense.data) {
@@ -284,8 +265,8 @@ std::string GltfFile::substituted(const GltfObject& sparse, std::size_t size,
 }
 
 GltfFile::Elements GltfFile::elements(std::size_t accessor, std::string_view type,
-                                      const GltfObject& asking, std::string& store) const {
-  const GltfObject& a = at("accessors", accessor, asking);
+                                      const JsonObject& asking, std::string& store) const {
+  const JsonObject& a = at("accessors", accessor, asking);
   if (a.string_or("type", "") != type) a.fail(fmt::format("must be of type {}", type));
   const Component component = component_of(a.index_or("componentType", 0));
   if (component.size == 0) a.fail("has a componentType that does not exist");
@@ -311,7 +292,7 @@ GltfFile::Elements GltfFile::elements(std::size_t accessor, std::string_view typ
 
 template <int size>
 std::vector<Eigen::Matrix<double, size, 1>> GltfFile::tuples(std::size_t accessor,
-                                                             const GltfObject& asking) const {
+                                                             const JsonObject& asking) const {
   std::string store;
   const Elements from = elements(accessor, size == 3 ? "VEC3" : "VEC2", asking, store);
   std::vector<Eigen::Matrix<double, size, 1>> result(from.count);
@@ -330,16 +311,16 @@ std::vector<Eigen::Matrix<double, size, 1>> GltfFile::tuples(std::size_t accesso
 }
 
 std::vector<Eigen::Vector3d> GltfFile::vectors(std::size_t accessor,
-                                               const GltfObject& asking) const {
+                                               const JsonObject& asking) const {
   return tuples<3>(accessor, asking);
 }
 
-std::vector<Eigen::Vector2d> GltfFile::pairs(std::size_t accessor, const GltfObject& asking) const {
+std::vector<Eigen::Vector2d> GltfFile::pairs(std::size_t accessor, const JsonObject& asking) const {
   return tuples<2>(accessor, asking);
 }
 
 std::vector<int> GltfFile::indices(std::size_t accessor, std::size_t limit,
-                                   const GltfObject& asking) const {
+                                   const JsonObject& asking) const {
   std::string store;
   const Elements from = elements(accessor, "SCALAR", asking, store);
   std::vector<int> result(from.count);
@@ -355,11 +336,11 @@ std::vector<int> GltfFile::indices(std::size_t accessor, std::size_t limit,
 }
 
 template <class Read>
-auto GltfFile::read_texture(std::size_t texture, const GltfObject& asking, Read read) const
+auto GltfFile::read_texture(std::size_t texture, const JsonObject& asking, Read read) const
     -> decltype(read(std::string_view(), std::string())) {
   const auto source = at("textures", texture, asking).index("source");
   if (!source) return std::nullopt;  // the source is in an extension, in a format of its own
-  const GltfObject& image = at("images", *source, asking);
+  const JsonObject& image = at("images", *source, asking);
   const std::string called = fmt::format("{}: {}", path_.string(), image.place());
   if (const auto number = image.index("bufferView")) return read(view(*number, image), called);
   const std::string uri = image.string_or("uri", "");
@@ -368,14 +349,14 @@ auto GltfFile::read_texture(std::size_t texture, const GltfObject& asking, Read 
 }
 
 std::optional<PictureMean> GltfFile::texture_mean(std::size_t texture, PictureCode code,
-                                                  const GltfObject& asking) const {
+                                                  const JsonObject& asking) const {
   return read_texture(texture, asking, [&](std::string_view bytes, const std::string& called) {
     return picture_mean(bytes, code, called);
   });
 }
 
 std::optional<Picture> GltfFile::texture_picture(std::size_t texture, PictureCode code,
-                                                 const GltfObject& asking) const {
+                                                 const JsonObject& asking) const {
   return read_texture(texture, asking, [&](std::string_view bytes, const std::string& called) {
     return read_picture(bytes, code, called);
   });

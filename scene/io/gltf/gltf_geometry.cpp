@@ -9,13 +9,13 @@
 namespace lightwell {
 namespace {
 
-void check_count(const GltfObject& attributes, std::size_t count, const char* what,
+void check_count(const JsonObject& attributes, std::size_t count, const char* what,
                  std::size_t vertices) {
   if (count == 0 || count == vertices) return;
   attributes.fail(fmt::format("has {} {} for {} vertices", count, what, vertices));
 }
 
-GltfGeometry unpack(const GltfFile& file, const GltfObject& primitive, const GltfObject& draco,
+GltfGeometry unpack(const GltfFile& file, const JsonObject& primitive, const JsonObject& draco,
                     const std::string& uv_set,
                     const std::function<void(std::int64_t triangles)>& expect) {
   const auto attributes = draco.object("attributes");
@@ -37,8 +37,8 @@ GltfGeometry unpack(const GltfFile& file, const GltfObject& primitive, const Glt
 
 }  // namespace
 
-GltfGeometry read_geometry(const GltfFile& file, const GltfObject& primitive,
-                           const GltfObject& attributes, const std::string& uv_set,
+GltfGeometry read_geometry(const GltfFile& file, const JsonObject& primitive,
+                           const JsonObject& attributes, const std::string& uv_set,
                            const std::function<void(std::int64_t triangles)>& expect) {
   if (const auto draco = primitive.extension("KHR_draco_mesh_compression")) {
     return unpack(file, primitive, *draco, uv_set, expect);

@@ -27,8 +27,8 @@ struct GltfGeometry {
 /// Reads a primitive, plain or packed by KHR_draco_mesh_compression. `uv_set` names the set of
 /// texture coordinates ("TEXCOORD_0"); empty for none. Calls `expect` with the number of triangles
 /// of a packed mesh before it is unpacked. Throws InputError naming the faulty object.
-GltfGeometry read_geometry(const GltfFile& file, const GltfObject& primitive,
-                           const GltfObject& attributes, const std::string& uv_set,
+GltfGeometry read_geometry(const GltfFile& file, const JsonObject& primitive,
+                           const JsonObject& attributes, const std::string& uv_set,
                            const std::function<void(std::int64_t triangles)>& expect);
 
 }  // namespace lightwell

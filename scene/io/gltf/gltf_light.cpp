@@ -10,7 +10,7 @@
 namespace lightwell {
 namespace {
 
-SpotCone read_gltf_cone(const GltfObject& light) {
+SpotCone read_gltf_cone(const JsonObject& light) {
   const auto spot = light.object("spot");
   if (!spot) light.fail("is a spot and lacks 'spot'");
   const SpotCone cone{.inner = spot->number_or("innerConeAngle", 0.0),
@@ -24,7 +24,7 @@ SpotCone read_gltf_cone(const GltfObject& light) {
 
 }  // namespace
 
-void add_gltf_light(const GltfObject& light, const GltfObject& node,
+void add_gltf_light(const JsonObject& light, const JsonObject& node,
                     const Eigen::Affine3d& to_world, Scene& scene, Remarks& remarks) {
   const std::string type = light.string_or("type", "");
   const std::string name = node.has("name") ? node.name() : light.name();

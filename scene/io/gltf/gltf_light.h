@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "scene/io/gltf/gltf_object.h"
+#include "scene/io/json_object.h"
 #include "scene/io/remarks.h"
 #include "scene/scene.h"
 
@@ -12,7 +12,7 @@ namespace lightwell {
 /// as relative, as emission is; a spot's axis is the -z of `node`. A directional light becomes the
 /// scene's sun, which is remarked upon. A second sun, other types, and ranges (distances beyond
 /// which a light ends) are left out with a remark. Throws InputError naming the place in the file.
-void add_gltf_light(const GltfObject& light, const GltfObject& node,
+void add_gltf_light(const JsonObject& light, const JsonObject& node,
                     const Eigen::Affine3d& to_world, Scene& scene, Remarks& remarks);
 
 }  // namespace lightwell

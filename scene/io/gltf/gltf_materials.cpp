@@ -17,13 +17,13 @@ namespace {
 
 // Transmitted colour after the attenuationDistance of KHR_materials_volume; empty without
 // absorption.
-std::optional<Spectrum> attenuation(const std::optional<GltfObject>& volume) {
+std::optional<Spectrum> attenuation(const std::optional<JsonObject>& volume) {
   if (!(number_or(volume, "attenuationDistance", 0.0) > 0.0)) return std::nullopt;
   return gltf_color(volume, "attenuationColor", 3).max(0.0f).min(1.0f);
 }
 
 // Absorption coefficient in 1/m: exp(-absorption distance) is the attenuation colour.
-Spectrum absorption(const std::optional<GltfObject>& volume) {
+Spectrum absorption(const std::optional<JsonObject>& volume) {
   const auto passed = attenuation(volume);
   if (!passed) return {};
   constexpr double shortest = 1e-6;  // m
@@ -35,7 +35,7 @@ Spectrum absorption(const std::optional<GltfObject>& volume) {
 
 // Transmittance of a sheet per crossing of its two surfaces, that is of half its thickness at
 // normal incidence.
-Spectrum passed_by_each_face(const std::optional<GltfObject>& volume, double thickness) {
+Spectrum passed_by_each_face(const std::optional<JsonObject>& volume, double thickness) {
   const auto passed = attenuation(volume);
   if (!passed) return Spectrum::Ones(3);
   const double distance = number_or(volume, "attenuationDistance", 0.0);
@@ -44,7 +44,7 @@ Spectrum passed_by_each_face(const std::optional<GltfObject>& volume, double thi
 
 // Factor of the share of metal. A metal transmits no light: a file with transmission and no factor
 // means glass or paper.
-double metallic_factor(const GltfObject& from) {
+double metallic_factor(const JsonObject& from) {
   const auto pbr = from.object("pbrMetallicRoughness");
   const bool transmits = from.extension("KHR_materials_transmission") ||
                          from.extension("KHR_materials_diffuse_transmission");
@@ -54,7 +54,7 @@ double metallic_factor(const GltfObject& from) {
 
 }  // namespace
 
-int GltfMaterials::of_primitive(const GltfObject& primitive, bool is_closed) {
+int GltfMaterials::of_primitive(const JsonObject& primitive, bool is_closed) {
   const auto index = primitive.index("material");
   const auto [entry, is_new] =
       index_of_.emplace(std::pair(index, is_closed), static_cast<int>(scene_.materials.size()));
@@ -84,7 +84,7 @@ int GltfMaterials::of_primitive(const GltfObject& primitive, bool is_closed) {
   return entry->second;
 }
 
-Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
+Material GltfMaterials::read(const JsonObject& from, bool is_closed) {
   Material material = default_material(scene_.bands);
   material.name = from.name();
   const bool is_double_sided = from.boolean_or("doubleSided", false);
@@ -108,11 +108,11 @@ Material GltfMaterials::read(const GltfObject& from, bool is_closed) {
   return material;
 }
 
-float GltfMaterials::metal_factor_of(const GltfObject& from) {
+float GltfMaterials::metal_factor_of(const JsonObject& from) {
   return static_cast<float>(metallic_factor(from));
 }
 
-Spectrum GltfMaterials::base_color(const GltfObject& from) {
+Spectrum GltfMaterials::base_color(const JsonObject& from) {
   const BaseColor color_from(from);
   Spectrum result = gltf_color(color_from.owner, color_from.factor, 4);
   if (const auto picture = base_picture(from)) {
@@ -128,14 +128,14 @@ Spectrum GltfMaterials::base_color(const GltfObject& from) {
   return result;
 }
 
-void GltfMaterials::set_surface(const GltfObject& from, bool is_closed, Material& material) {
+void GltfMaterials::set_surface(const JsonObject& from, bool is_closed, Material& material) {
   const Spectrum base = base_color(from);
   set_shaded(from, base, is_closed, material);
   set_pattern_of(from, base, is_closed, material);
   if (!material.pattern) lay_on_picture(from, base, material);
 }
 
-void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, bool is_closed,
+void GltfMaterials::set_shaded(const JsonObject& from, const Spectrum& base, bool is_closed,
                                Material& material) {
   if (from.extension("KHR_materials_pbrSpecularGlossiness") ||
       from.extension("KHR_materials_unlit")) {
@@ -175,7 +175,7 @@ void GltfMaterials::set_shaded(const GltfObject& from, const Spectrum& base, boo
 // Passes light of the share `dielectric` of a material that scatters back the colour `base`:
 // `clear` of the light without being scattered, and a share of the rest diffusely, in a colour of
 // its own.
-void GltfMaterials::pass_light(const GltfObject& from, const Spectrum& base, float dielectric,
+void GltfMaterials::pass_light(const JsonObject& from, const Spectrum& base, float dielectric,
                                double clear, double alpha, Material& material) {
   const auto [scattered, hue] = diffusely_passed(from);
   const float straight = dielectric * static_cast<float>(clear);
@@ -188,7 +188,7 @@ void GltfMaterials::pass_light(const GltfObject& from, const Spectrum& base, flo
   add_transmittance(material, straight * base, alpha);
 }
 
-GltfMaterials::PassedLight GltfMaterials::diffusely_passed(const GltfObject& from) {
+GltfMaterials::PassedLight GltfMaterials::diffusely_passed(const JsonObject& from) {
   const auto diffuse = from.extension("KHR_materials_diffuse_transmission");
   double scattered = share_or(diffuse, "diffuseTransmissionFactor", 0.0);
   Spectrum hue = gltf_color(diffuse, "diffuseTransmissionColorFactor", 3).max(0.0f).min(1.0f);
@@ -201,7 +201,7 @@ GltfMaterials::PassedLight GltfMaterials::diffusely_passed(const GltfObject& fro
   return {.scattered = static_cast<float>(scattered), .hue = hue};
 }
 
-double GltfMaterials::clear_share(const GltfObject& from) {
+double GltfMaterials::clear_share(const JsonObject& from) {
   const auto transmission = from.extension("KHR_materials_transmission");
   const double clear = share_or(transmission, "transmissionFactor", 0.0);
   if (!(clear > 0.0)) return 0.0;
@@ -211,7 +211,7 @@ double GltfMaterials::clear_share(const GltfObject& from) {
 
 // Lays on the coat that a dielectric is, or its clear coat. Highlights of a roughness above 0.7 are
 // nearly diffuse and left to the base.
-void GltfMaterials::set_coat(const GltfObject& from, double alpha, Material& material) {
+void GltfMaterials::set_coat(const JsonObject& from, double alpha, Material& material) {
   const auto clear = from.extension("KHR_materials_clearcoat");
   const double clear_share = share_or(clear, "clearcoatFactor", 0.0);
   if (clear_share >= mostly_clear) {
@@ -226,7 +226,7 @@ void GltfMaterials::set_coat(const GltfObject& from, double alpha, Material& mat
   }
 }
 
-std::optional<GltfMaterials::CoatLayer> GltfMaterials::coat_layer(const GltfObject& from) {
+std::optional<GltfMaterials::CoatLayer> GltfMaterials::coat_layer(const JsonObject& from) {
   const auto specular = from.extension("KHR_materials_specular");
   const double index = number_or(from.extension("KHR_materials_ior"), "ior", 1.5);
   const Spectrum share = static_cast<float>(share_or(specular, "specularFactor", 1.0)) *
@@ -236,7 +236,7 @@ std::optional<GltfMaterials::CoatLayer> GltfMaterials::coat_layer(const GltfObje
   return CoatLayer{.index = static_cast<float>(index), .share = share};
 }
 
-void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, double alpha,
+void GltfMaterials::set_clear(const JsonObject& from, const Spectrum& base, double alpha,
                               bool is_closed, Material& material) {
   double index = number_or(from.extension("KHR_materials_ior"), "ior", 1.5);
   if (index == 0.0) index = 1.5;  // an ior of 0 selects a legacy mode without an index
@@ -261,7 +261,7 @@ void GltfMaterials::set_clear(const GltfObject& from, const Spectrum& base, doub
   material.one_sided = false;
 }
 
-void GltfMaterials::set_emission(const GltfObject& from, Material& material) {
+void GltfMaterials::set_emission(const JsonObject& from, Material& material) {
   if (!from.has("emissiveFactor")) {
     material.emission = Spectrum::Zero(3);
     return;

@@ -14,9 +14,9 @@
 namespace lightwell {
 namespace {}  // namespace
 
-std::optional<ShareTexture> GltfMaterials::share_picture(const std::optional<GltfObject>& owner,
+std::optional<ShareTexture> GltfMaterials::share_picture(const std::optional<JsonObject>& owner,
                                                          const char* key, int number, float factor,
-                                                         const GltfObject& from) {
+                                                         const JsonObject& from) {
   const auto info = owner ? owner->object(key) : std::nullopt;
   if (!info || !follows(*info, key, from)) return std::nullopt;
   const auto picture = linear_picture(*info, from);
@@ -29,8 +29,8 @@ std::optional<ShareTexture> GltfMaterials::share_picture(const std::optional<Glt
   return ShareTexture{.image = laid_on(*info, shown), .factor = factor};
 }
 
-std::optional<Picture> GltfMaterials::linear_picture(const GltfObject& info,
-                                                     const GltfObject& from) {
+std::optional<Picture> GltfMaterials::linear_picture(const JsonObject& info,
+                                                     const JsonObject& from) {
   const auto texture = info.index("index");
   if (!texture) info.fail("lacks the index of a texture");
   const auto known = linear_pictures_.find(*texture);
@@ -43,7 +43,7 @@ std::optional<Picture> GltfMaterials::linear_picture(const GltfObject& info,
 }
 
 // Pictures of one material, each empty if it has none that is laid over the surface.
-GltfMaterials::SharePictures GltfMaterials::share_pictures(const GltfObject& from,
+GltfMaterials::SharePictures GltfMaterials::share_pictures(const JsonObject& from,
                                                            float metal_factor) {
   const auto pbr = from.object("pbrMetallicRoughness");
   const auto clear = from.extension("KHR_materials_clearcoat");
@@ -73,7 +73,7 @@ GltfMaterials::SharePictures GltfMaterials::share_pictures(const GltfObject& fro
 }
 
 // `base` is the mean colour.
-void GltfMaterials::set_pattern_of(const GltfObject& from, const Spectrum& base, bool is_closed,
+void GltfMaterials::set_pattern_of(const JsonObject& from, const Spectrum& base, bool is_closed,
                                    Material& material) {
   if (from.extension("KHR_materials_pbrSpecularGlossiness") ||
       from.extension("KHR_materials_unlit")) {
@@ -120,7 +120,7 @@ void GltfMaterials::set_pattern_of(const GltfObject& from, const Spectrum& base,
 }
 
 // Coat and metal of a pattern of the diffuse colour `color`.
-void GltfMaterials::set_gloss(const GltfObject& from, const SharePictures& pictures,
+void GltfMaterials::set_gloss(const JsonObject& from, const SharePictures& pictures,
                               const Spectrum& color, bool has_metal, Material& material,
                               SurfacePattern& pattern) {
   pattern.roughness = pictures.roughness;

@@ -15,7 +15,7 @@ namespace {
 const char* const unusable_pictures = "Pictures that are missing or damaged became a grey of 0.5";
 const char* const unread_pictures = "Textures of a format that is not read became a grey of 0.5";
 
-TextureWrap wrap_of(const GltfObject& sampler, const char* key) {
+TextureWrap wrap_of(const JsonObject& sampler, const char* key) {
   constexpr std::size_t repeat = 10497, clamp = 33071, mirror = 33648;
   const std::size_t mode = sampler.index_or(key, repeat);
   if (mode != repeat && mode != clamp && mode != mirror) {
@@ -28,7 +28,7 @@ TextureWrap wrap_of(const GltfObject& sampler, const char* key) {
 
 // KHR_texture_transform: scale, then rotation, then offset. Rotations are counter-clockwise as seen
 // with v pointing down.
-Eigen::Matrix<double, 2, 3> placement_of(const GltfObject& info) {
+Eigen::Matrix<double, 2, 3> placement_of(const JsonObject& info) {
   Eigen::Matrix<double, 2, 3> placement = Eigen::Matrix<double, 2, 3>::Identity();
   const auto transform = info.extension("KHR_texture_transform");
   if (!transform) return placement;
@@ -44,7 +44,7 @@ Eigen::Matrix<double, 2, 3> placement_of(const GltfObject& info) {
 
 }  // namespace
 
-void GltfMaterials::set_relief(const GltfObject& from, Material& material) {
+void GltfMaterials::set_relief(const JsonObject& from, Material& material) {
   const auto info = from.object("normalTexture");
   if (!info) return;
   const auto base = BaseColor(from).info(), emissive = from.object("emissiveTexture");
@@ -67,17 +67,17 @@ void GltfMaterials::set_relief(const GltfObject& from, Material& material) {
   });
 }
 
-std::string GltfMaterials::texture_coordinates(const GltfObject& primitive) const {
+std::string GltfMaterials::texture_coordinates(const JsonObject& primitive) const {
   const auto index = primitive.index("material");
   if (!index || *index >= file_.count("materials")) return {};
   return coordinates_of_material(file_.at("materials", *index, primitive));
 }
 
-std::string GltfMaterials::coordinates_of_material(const GltfObject& material) const {
+std::string GltfMaterials::coordinates_of_material(const JsonObject& material) const {
   const auto base = BaseColor(material).info();
   auto info = base ? base : material.object("emissiveTexture");
   if (!info) info = material.object("normalTexture");
-  const auto try_picture = [&](const std::optional<GltfObject>& owner, const char* key) {
+  const auto try_picture = [&](const std::optional<JsonObject>& owner, const char* key) {
     if (!info && owner) info = owner->object(key);
   };
   try_picture(material.object("pbrMetallicRoughness"), "metallicRoughnessTexture");
@@ -91,8 +91,8 @@ std::string GltfMaterials::coordinates_of_material(const GltfObject& material) c
 }
 
 // True if the picture under `key` is laid over surfaces rather than read as its mean.
-bool GltfMaterials::follows(const GltfObject& info, std::string_view key,
-                            const GltfObject& from) const {
+bool GltfMaterials::follows(const JsonObject& info, std::string_view key,
+                            const JsonObject& from) const {
   constexpr std::array<std::string_view, 5> followed = {
       "metallicRoughnessTexture", "specularTexture", "clearcoatTexture",
       "clearcoatRoughnessTexture", "diffuseTransmissionTexture"};
@@ -100,14 +100,14 @@ bool GltfMaterials::follows(const GltfObject& info, std::string_view key,
          coordinates_of(info) == coordinates_of_material(from);
 }
 
-std::optional<Picture> GltfMaterials::base_picture(const GltfObject& from) {
+std::optional<Picture> GltfMaterials::base_picture(const JsonObject& from) {
   const auto info = BaseColor(from).info();
   return info ? color_picture(*info, from) : std::nullopt;
 }
 
 // Picture of sRGB colours of a texture's use by the material `from`.
-std::optional<Picture> GltfMaterials::color_picture(const GltfObject& info,
-                                                    const GltfObject& from) {
+std::optional<Picture> GltfMaterials::color_picture(const JsonObject& info,
+                                                    const JsonObject& from) {
   const auto texture = info.index("index");
   if (!texture) info.fail("lacks the index of a texture");
   auto known = color_pictures_.find(*texture);
@@ -122,12 +122,12 @@ std::optional<Picture> GltfMaterials::color_picture(const GltfObject& info,
   return known->second;
 }
 
-SurfaceTexture GltfMaterials::laid_on(const GltfObject& info,
+SurfaceTexture GltfMaterials::laid_on(const JsonObject& info,
                                       std::shared_ptr<const Texture> picture) const {
   SurfaceTexture image{.picture = std::move(picture), .placement = placement_of(info)};
-  const GltfObject& texture = file_.at("textures", info.index_or("index", 0), info);
+  const JsonObject& texture = file_.at("textures", info.index_or("index", 0), info);
   if (const auto number = texture.index("sampler")) {
-    const GltfObject& sampler = file_.at("samplers", *number, texture);
+    const JsonObject& sampler = file_.at("samplers", *number, texture);
     image.wrap = {wrap_of(sampler, "wrapS"), wrap_of(sampler, "wrapT")};
     constexpr std::size_t nearest = 9728, linear = 9729;
     image.is_smooth = sampler.index_or("magFilter", linear) != nearest;
@@ -136,7 +136,7 @@ SurfaceTexture GltfMaterials::laid_on(const GltfObject& info,
 }
 
 // The base colour's picture and its factor.
-std::optional<ReflectanceTexture> GltfMaterials::base_texture(const GltfObject& from) {
+std::optional<ReflectanceTexture> GltfMaterials::base_texture(const JsonObject& from) {
   const auto picture = base_picture(from);
   if (!picture) return std::nullopt;
   const BaseColor color_from(from);
@@ -146,7 +146,7 @@ std::optional<ReflectanceTexture> GltfMaterials::base_texture(const GltfObject& 
 }
 
 // `material` is the conversion for the uniform colour `base`.
-void GltfMaterials::lay_on_picture(const GltfObject& from, const Spectrum& base,
+void GltfMaterials::lay_on_picture(const JsonObject& from, const Spectrum& base,
                                    Material& material) {
   const BaseColor color_from(from);
   const auto picture = base_picture(from);
@@ -162,7 +162,7 @@ void GltfMaterials::lay_on_picture(const GltfObject& from, const Spectrum& base,
 
 // Alpha below a cutoff cuts holes. Blended alpha lets the share 1 - alpha through, except where a
 // picture of alpha cuts holes: most of its texels are then clear or opaque.
-void GltfMaterials::cut_by_alpha(const GltfObject& from, Material& material) {
+void GltfMaterials::cut_by_alpha(const JsonObject& from, Material& material) {
   if (!is_cut_by_alpha(from)) return;
   const BaseColor color_from(from);
   const auto factors =
@@ -198,8 +198,8 @@ void GltfMaterials::cut_by_alpha(const GltfObject& from, Material& material) {
   if (material.emission_texture) material.emission_texture->factor *= static_cast<float>(opacity);
 }
 
-PictureMean GltfMaterials::texture_mean(const std::optional<GltfObject>& owner, const char* key,
-                                        PictureCode code, const GltfObject& from) {
+PictureMean GltfMaterials::texture_mean(const std::optional<JsonObject>& owner, const char* key,
+                                        PictureCode code, const JsonObject& from) {
   PictureMean white;
   white.color.setOnes();
   white.covered_color.setOnes();

@@ -7,7 +7,7 @@
 
 namespace lightwell {
 
-Spectrum gltf_color(const std::optional<GltfObject>& owner, const char* key, std::size_t count) {
+Spectrum gltf_color(const std::optional<JsonObject>& owner, const char* key, std::size_t count) {
   Spectrum result = Spectrum::Ones(3);
   if (!owner) return result;
   const std::vector<double> factors = owner->numbers(key, count);
@@ -17,15 +17,15 @@ Spectrum gltf_color(const std::optional<GltfObject>& owner, const char* key, std
   return result;
 }
 
-double number_or(const std::optional<GltfObject>& owner, const char* key, double otherwise) {
+double number_or(const std::optional<JsonObject>& owner, const char* key, double otherwise) {
   return owner ? owner->number_or(key, otherwise) : otherwise;
 }
 
-double share_or(const std::optional<GltfObject>& owner, const char* key, double otherwise) {
+double share_or(const std::optional<JsonObject>& owner, const char* key, double otherwise) {
   return std::clamp(number_or(owner, key, otherwise), 0.0, 1.0);
 }
 
-BaseColor::BaseColor(const GltfObject& from)
+BaseColor::BaseColor(const JsonObject& from)
     : owner(from.extension("KHR_materials_pbrSpecularGlossiness")) {
   if (owner) {
     factor = "diffuseFactor";
@@ -35,13 +35,13 @@ BaseColor::BaseColor(const GltfObject& from)
   }
 }
 
-std::string coordinates_of(const GltfObject& info) {
+std::string coordinates_of(const JsonObject& info) {
   const auto transform = info.extension("KHR_texture_transform");
   const std::size_t set = info.index_or("texCoord", 0);
   return fmt::format("TEXCOORD_{}", transform ? transform->index_or("texCoord", set) : set);
 }
 
-bool is_cut_by_alpha(const GltfObject& from) {
+bool is_cut_by_alpha(const JsonObject& from) {
   const std::string mode = from.string_or("alphaMode", "OPAQUE");
   return mode == "MASK" || mode == "BLEND";
 }

@@ -43,7 +43,7 @@ constexpr std::array known_extensions = {"KHR_materials_emissive_strength",
 // Modes of primitives (glTF 2.0, 3.7.2.1).
 constexpr std::size_t triangle_list = 4, triangle_strip = 5, triangle_fan = 6;
 
-Eigen::Affine3d local_transform(const GltfObject& node) {
+Eigen::Affine3d local_transform(const JsonObject& node) {
   Eigen::Affine3d result = Eigen::Affine3d::Identity();
   if (const auto matrix = node.numbers("matrix", 16); !matrix.empty()) {
     result.matrix() = Eigen::Map<const Eigen::Matrix4d>(matrix.data());  // by columns, as in glTF
@@ -88,7 +88,7 @@ class GltfReader {
       remarks_.mention("Lights that no node places (KHR_lights_punctual) are not used",
                        lights_[i].name());
     }
-    for (const GltfObject& animation : file_.root().objects("animations")) {
+    for (const JsonObject& animation : file_.root().objects("animations")) {
       remarks_.add("Animations were left out; all stands where the file's nodes put it",
                    animation.name());
     }
@@ -117,13 +117,13 @@ class GltfReader {
 
   // Root nodes of the default scene; without scenes, the nodes that are no node's children.
   std::vector<std::size_t> roots() const {
-    const GltfObject& root = file_.root();
+    const JsonObject& root = file_.root();
     if (file_.count("scenes") > 0) {
       return file_.at("scenes", root.index_or("scene", 0), root).indices("nodes");
     }
     std::vector<char> is_child(file_.count("nodes"), 0);
     for (std::size_t i = 0; i < is_child.size(); ++i) {
-      const GltfObject& node = file_.at("nodes", i, root);
+      const JsonObject& node = file_.at("nodes", i, root);
       for (const std::size_t child : node.indices("children")) {
         file_.at("nodes", child, node);
         is_child[child] = 1;
@@ -147,7 +147,7 @@ class GltfReader {
   }
 
   void visit(const Placed& placed, std::vector<Placed>& open) {
-    const GltfObject& node = file_.at("nodes", placed.node, file_.root());
+    const JsonObject& node = file_.at("nodes", placed.node, file_.root());
     if (!seen_.insert(placed.node).second) {
       node.fail("has two parents or is its own descendant; nodes must form a tree");
     }
@@ -169,7 +169,7 @@ class GltfReader {
     }
   }
 
-  void add_light(const GltfObject& node, const Eigen::Affine3d& to_world) {
+  void add_light(const JsonObject& node, const Eigen::Affine3d& to_world) {
     const auto punctual = node.extension("KHR_lights_punctual");
     if (!punctual) return;
     const auto light = punctual->index("light");
@@ -180,21 +180,21 @@ class GltfReader {
     add_gltf_light(lights_[*light], node, to_world, scene_, remarks_);
   }
 
-  void add_mesh(const GltfObject& node, const Eigen::Affine3d& to_world) {
+  void add_mesh(const JsonObject& node, const Eigen::Affine3d& to_world) {
     const auto index = node.index("mesh");
     if (!index) return;
-    const GltfObject& mesh = file_.at("meshes", *index, node);
+    const JsonObject& mesh = file_.at("meshes", *index, node);
     const std::string name = node.has("name") ? node.name() : mesh.name();
     if (node.has("skin")) remarks_.add("Skins were left out; meshes keep their own shape", name);
     const auto primitives = mesh.objects("primitives");
-    for (const GltfObject& primitive : primitives) {
+    for (const JsonObject& primitive : primitives) {
       if (primitive.has("targets")) remarks_.add("Morph targets were left out", name);
       remarks_.attempt("Meshes that cannot be read were left out", primitive.place(),
                        [&] { add_primitive(primitive, to_world, name, primitives.size() > 1); });
     }
   }
 
-  void add_primitive(const GltfObject& primitive, const Eigen::Affine3d& to_world,
+  void add_primitive(const JsonObject& primitive, const Eigen::Affine3d& to_world,
                      const std::string& name, bool is_one_of_many) {
     if (primitive.index_or("mode", triangle_list) < triangle_list) {
       remarks_.add("Points and lines were left out", name);
@@ -216,7 +216,7 @@ class GltfReader {
          .shape = std::move(mesh)});
   }
 
-  PolygonMesh read_triangles(const GltfObject& primitive, const GltfObject& attributes,
+  PolygonMesh read_triangles(const JsonObject& primitive, const JsonObject& attributes,
                              const Eigen::Affine3d& to_world) {
     const auto count_in = [&](std::int64_t triangles) {
       size_.add(triangles, [&](const std::string& sentence) {
@@ -266,7 +266,7 @@ class GltfReader {
   Remarks remarks_;
   GltfMaterials materials_;
   Repairs repairs_;
-  std::vector<GltfObject> lights_{};
+  std::vector<JsonObject> lights_{};
   std::set<std::size_t> placed_lights_{};
   std::set<std::size_t> seen_;
   NumberedNames names_;

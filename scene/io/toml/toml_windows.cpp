@@ -242,8 +242,7 @@ OperatedWindows read_toml_windows(const TomlValue& windows, const Scene& scene,
   return read;
 }
 
-OperatedWindows read_windows(const Scene& scene) {
-  if (lower_extension(scene.file) != ".toml") return {};
+OperatedWindows read_toml_windows(const Scene& scene) {
   const TextFile file(scene.file);
   const toml::table root = parse_toml(file);
   const auto windows = TomlValue(file.path(), root, "").member("windows");

@@ -38,12 +38,17 @@ const std::map<std::string_view, Kind>& kinds() {
 
 }  // namespace
 
+std::string RadianceLocation::sentence(std::string_view problem) const {
+  if (line == 0) return fmt::format("{}: {}", file->string(), problem);
+  return fmt::format("{}:{}: {}", file->string(), line, problem);
+}
+
 void RadianceLocation::fail(std::string_view problem) const {
-  throw InputError(fmt::format("{}:{}: {}", file->string(), line, problem));
+  throw InputError(sentence(problem));
 }
 
 void RadianceLocation::fail_limit(std::string_view problem) const {
-  throw LimitError(fmt::format("{}:{}: {}", file->string(), line, problem));
+  throw LimitError(sentence(problem));
 }
 
 RadianceKind radiance_kind(std::string_view type) {

@@ -12,8 +12,10 @@ namespace lightwell {
 /// A position in the files of a RADIANCE scene.
 struct RadianceLocation {
   const std::filesystem::path* file = nullptr;
-  int line = 0;
+  int line = 0;  ///< 0: of a file whose lines say nothing
 
+  /// "file:line: problem"
+  std::string sentence(std::string_view problem) const;
   /// Throws InputError "file:line: problem".
   [[noreturn]] void fail(std::string_view problem) const;
   /// Throws LimitError "file:line: problem".

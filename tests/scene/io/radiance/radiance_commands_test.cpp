@@ -48,7 +48,7 @@ void expect_near(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double tole
 }
 
 // True if every edge of a mesh occurs once in either direction. Positions are rounded to 1e-9.
-bool is_closed(const PolygonMesh& mesh) {
+bool has_no_open_edge(const PolygonMesh& mesh) {
   std::map<std::array<long, 6>, int> crossed;
   for (const Facet& facet : mesh.facets) {
     for (std::size_t i = 0; i < facet.boundary.size(); ++i) {
@@ -149,7 +149,7 @@ TEST_F(RadianceCommands, ABoxIsClosedAndFacesOutwardsOrInwards) {
   ASSERT_EQ(out.surfaces.size(), 1u);
   EXPECT_EQ(out.surfaces[0].name, "box");
   EXPECT_EQ(mesh_of(out).facets.size(), 6u);
-  EXPECT_TRUE(is_closed(mesh_of(out)));
+  EXPECT_TRUE(has_no_open_edge(mesh_of(out)));
   EXPECT_NEAR(volume(mesh_of(out)), 6.0, 1e-12);
   EXPECT_NEAR(area_of(mesh_of(out)), 22.0, 1e-12);
   EXPECT_NEAR(volume(mesh_of(in)), -6.0, 1e-12);
@@ -160,14 +160,14 @@ TEST_F(RadianceCommands, ABoxIsClosedAndFacesOutwardsOrInwards) {
 TEST_F(RadianceCommands, ABevelledBoxLosesItsEdges) {
   const PolygonMesh box = mesh_of(read("!genbox grey box 4 4 4 -b 1"));
   EXPECT_EQ(box.facets.size(), 6u + 12u + 8u);
-  EXPECT_TRUE(is_closed(box));
+  EXPECT_TRUE(has_no_open_edge(box));
   // 64 minus 12 edges of length 2 and section 1/2, and 8 corners of 1 - 1/6.
   EXPECT_NEAR(volume(box), 64.0 - 12.0 - 8.0 * 5.0 / 6.0, 1e-12);
 }
 
 TEST_F(RadianceCommands, ARoundedBoxComesNearItsExactVolume) {
   const PolygonMesh box = mesh_of(read("!genbox grey box 4 5 6 -r 1"));
-  EXPECT_TRUE(is_closed(box));
+  EXPECT_TRUE(has_no_open_edge(box));
   // A core of 2 x 3 x 4 moved outwards by 1 has the volume V + A + pi (sum of sides) + 4 pi / 3
   // (Steiner). Chords of 22.5 degrees lose 2.6 % of a disk's area and 5 % of a ball's volume, which
   // reduces the last two terms.
@@ -180,7 +180,7 @@ TEST_F(RadianceCommands, ARoundedBoxComesNearItsExactVolume) {
 TEST_F(RadianceCommands, APrismIsClosedAndFacesAsItsCornersRun) {
   const std::string square = " 4 0 0 0 2 3 2 3 0 ";  // clockwise as seen from +z
   const PolygonMesh up = mesh_of(read("!genprism grey prism" + square + "-l 0 0 5"));
-  EXPECT_TRUE(is_closed(up));
+  EXPECT_TRUE(has_no_open_edge(up));
   EXPECT_NEAR(volume(up), 30.0, 1e-12);
   EXPECT_NEAR(volume(mesh_of(read("!genprism grey prism" + square + "-l 1 1 -5"))), -30.0, 1e-12);
   EXPECT_EQ(mesh_of(read("!genprism grey prism" + square + "-e -c")).facets.size(), 3u);
@@ -217,7 +217,7 @@ TEST_F(RadianceCommands, ASurfaceOfRevolutionIsClosedWhereItsOutlineIs) {
   const PolygonMesh torus =
       mesh_of(read("!genrev grey torus '.25*sin(2*PI*t)' '1+.25*cos(2*PI*t)' 32 -s"));
   EXPECT_EQ(torus.facets.size(), 32u * 32u);
-  EXPECT_TRUE(is_closed(torus));
+  EXPECT_TRUE(has_no_open_edge(torus));
   // 2 pi^2 R r^2, minus the loss of 32 chords in the tube's section (0.64 %), plus the gain of the
   // enlarged polygons about the axis (R^2 by 0.32 %, less 0.64 % of a disk's).
   const double exact = 2 * pi * pi * 0.25 * 0.25;

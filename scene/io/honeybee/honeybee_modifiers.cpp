@@ -1,0 +1,246 @@
+#include "scene/io/honeybee/honeybee_modifiers.h"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+#include "scene/io/honeybee/honeybee_bsdf.h"
+
+namespace lightwell {
+namespace {
+
+// Where a modifier set has the modifier of a kind, and which one Honeybee uses without a set: a
+// grey plastic of this reflectance, or a glass of this transmissivity.
+struct Slot {
+  const char* table;
+  const char* key;
+  const char* usual;
+  double value;
+  bool is_glass = false;
+};
+
+// Transmissivities of Honeybee's windows of a visible transmittance of 0.64 and 0.88.
+constexpr double outer_glass = 0.6975761815384331, inner_glass = 0.9584154328610596;
+
+Slot slot_of(HoneybeeKind kind) {
+  const auto grey = [](const char* table, const char* key, const char* usual, double value) {
+    return Slot{table, key, usual, value};
+  };
+  const auto outer = [](const char* table, const char* key) {
+    return Slot{table, key, "generic_exterior_window_vis_0.64", outer_glass, true};
+  };
+  const auto inner = [](const char* table, const char* key) {
+    return Slot{table, key, "generic_interior_window_vis_0.88", inner_glass, true};
+  };
+  switch (kind) {
+    case HoneybeeKind::wall:
+      return grey("wall_set", "exterior_modifier", "generic_wall_0.50", 0.5);
+    case HoneybeeKind::inner_wall:
+      return grey("wall_set", "interior_modifier", "generic_wall_0.50", 0.5);
+    case HoneybeeKind::floor:
+      return grey("floor_set", "exterior_modifier", "generic_floor_0.20", 0.2);
+    case HoneybeeKind::inner_floor:
+      return grey("floor_set", "interior_modifier", "generic_floor_0.20", 0.2);
+    case HoneybeeKind::roof:
+      return grey("roof_ceiling_set", "exterior_modifier", "generic_ceiling_0.80", 0.8);
+    case HoneybeeKind::ceiling:
+      return grey("roof_ceiling_set", "interior_modifier", "generic_ceiling_0.80", 0.8);
+    case HoneybeeKind::window:
+      return outer("aperture_set", "window_modifier");
+    case HoneybeeKind::operable_window:
+      return outer("aperture_set", "operable_modifier");
+    case HoneybeeKind::skylight:
+      return outer("aperture_set", "skylight_modifier");
+    case HoneybeeKind::inner_window:
+      return inner("aperture_set", "interior_modifier");
+    case HoneybeeKind::door:
+      return grey("door_set", "exterior_modifier", "generic_opaque_door_0.50", 0.5);
+    case HoneybeeKind::inner_door:
+      return grey("door_set", "interior_modifier", "generic_opaque_door_0.50", 0.5);
+    case HoneybeeKind::overhead_door:
+      return grey("door_set", "overhead_modifier", "generic_opaque_door_0.50", 0.5);
+    case HoneybeeKind::glass_door:
+      return outer("door_set", "exterior_glass_modifier");
+    case HoneybeeKind::inner_glass_door:
+      return inner("door_set", "interior_glass_modifier");
+    case HoneybeeKind::outdoor_shade:
+      return grey("shade_set", "exterior_modifier", "generic_exterior_shade_0.35", 0.35);
+    case HoneybeeKind::indoor_shade:
+      return grey("shade_set", "interior_modifier", "generic_interior_shade_0.50", 0.5);
+    case HoneybeeKind::context:
+      break;
+  }
+  return grey("", "", "generic_context_0.20", 0.2);
+}
+
+// Names of the arguments of a modifier in RADIANCE's order, with Honeybee's values for those that a
+// file leaves out.
+using Arguments = std::vector<std::pair<const char*, double>>;
+
+std::optional<Arguments> arguments_of(const std::string& type) {
+  const Arguments reflecting = {{"r_reflectance", 0.0},
+                                {"g_reflectance", 0.0},
+                                {"b_reflectance", 0.0},
+                                {"specularity", type == "Metal" ? 0.9 : 0.0},
+                                {"roughness", 0.0}};
+  const Arguments shining = {{"r_emittance", 0.0}, {"g_emittance", 0.0}, {"b_emittance", 0.0}};
+  const auto with = [](Arguments first, const Arguments& more) {
+    first.insert(first.end(), more.begin(), more.end());
+    return first;
+  };
+  if (type == "Plastic" || type == "Metal") return reflecting;
+  if (type == "Trans") {
+    return with(reflecting, {{"transmitted_diff", 0.0}, {"transmitted_spec", 0.0}});
+  }
+  if (type == "Glass") {
+    return Arguments{
+        {"r_transmissivity", 0.0}, {"g_transmissivity", 0.0}, {"b_transmissivity", 0.0}};
+  }
+  if (type == "Light") return shining;
+  if (type == "Glow") return with(shining, {{"max_radius", 0.0}});
+  if (type == "Mirror") {
+    return Arguments{{"r_reflectance", 1.0}, {"g_reflectance", 1.0}, {"b_reflectance", 1.0}};
+  }
+  return std::nullopt;
+}
+
+bool is_shade(HoneybeeKind kind) {
+  return kind == HoneybeeKind::outdoor_shade || kind == HoneybeeKind::indoor_shade ||
+         kind == HoneybeeKind::context;
+}
+
+std::string lower_case(std::string type) {
+  type.front() = static_cast<char>(type.front() - 'A' + 'a');
+  return type;
+}
+
+}  // namespace
+
+std::optional<JsonObject> radiance_properties(const JsonObject& object) {
+  const auto properties = object.object("properties");
+  return properties ? properties->object("radiance") : std::nullopt;
+}
+
+HoneybeeModifiers::HoneybeeModifiers(const std::filesystem::path& file,
+                                     const std::optional<JsonObject>& radiance, Scene& scene,
+                                     Remarks& remarks)
+    : file_(file), scene_(scene), remarks_(remarks), materials_(scene, remarks) {
+  if (!radiance) return;
+  if (const auto usual = radiance->object("global_modifier_set")) {
+    for (const JsonObject& modifier : usual->objects("modifiers")) define(modifier);
+  }
+  for (const JsonObject& modifier : radiance->objects("modifiers")) define(modifier);
+  for (const JsonObject& set : radiance->objects("modifier_sets")) {
+    sets_.insert_or_assign(set.string_or("identifier", ""), set);
+  }
+}
+
+void HoneybeeModifiers::define(const JsonObject& modifier) {
+  const std::string type = modifier.string_or("type", ""),
+                    name = modifier.string_or("identifier", "");
+  RadiancePrimitive primitive{.modifier = std::string(radiance_void),
+                              .name = name,
+                              .location = {.file = &file_, .line = 0}};
+  if (type == "BSDF") {
+    primitive.type = "trans";
+    primitive.reals = trans_of_bsdf(modifier, remarks_);
+  } else if (type == "Void") {
+    primitive.type = "antimatter";
+  } else if (const auto arguments = arguments_of(type)) {
+    primitive.type = lower_case(type);
+    for (const auto& [key, otherwise] : *arguments) {
+      primitive.reals.push_back(modifier.number_or(key, otherwise));
+    }
+    if (type == "Glass" && modifier.has("refraction_index")) {
+      primitive.reals.push_back(modifier.number_or("refraction_index", 1.52));
+    }
+  } else {
+    modifier.fail(fmt::format(
+        "modifier '{}' is of the type '{}', which is none of Plastic, Metal, Trans, Glass, Light, "
+        "Glow, Mirror, BSDF and Void",
+        name, type));
+  }
+  materials_.define(primitive);
+  primitives_.insert_or_assign(name, std::move(primitive));
+}
+
+// Defines the modifier that Honeybee itself has under a name.
+void HoneybeeModifiers::define_usual(const std::string& name) {
+  for (int k = 0; k <= static_cast<int>(HoneybeeKind::context); ++k) {
+    const Slot slot = slot_of(static_cast<HoneybeeKind>(k));
+    if (name != slot.usual) continue;
+    RadiancePrimitive primitive{.modifier = std::string(radiance_void),
+                                .type = slot.is_glass ? "glass" : "plastic",
+                                .name = name,
+                                .reals = {slot.value, slot.value, slot.value},
+                                .location = {.file = &file_, .line = 0}};
+    if (!slot.is_glass) primitive.reals.insert(primitive.reals.end(), {0.0, 0.0});
+    materials_.define(primitive);
+    primitives_.emplace(name, std::move(primitive));
+    return;
+  }
+}
+
+// The name of a modifier that a set has for a kind of object. Sets name modifiers, or contain them.
+std::optional<std::string> HoneybeeModifiers::from_set(const std::string& set, HoneybeeKind kind) {
+  const auto found = sets_.find(set);
+  if (found == sets_.end()) return std::nullopt;
+  const Slot slot = slot_of(kind);
+  const auto table = found->second.object(slot.table);
+  if (!table || !table->has(slot.key)) return std::nullopt;
+  if (table->is_object(slot.key)) {
+    const JsonObject modifier = *table->object(slot.key);
+    const std::string name = modifier.string_or("identifier", "");
+    if (!primitives_.contains(name)) define(modifier);
+    return name;
+  }
+  return table->string_or(slot.key, "");
+}
+
+std::optional<int> HoneybeeModifiers::named(const std::string& modifier) {
+  if (!primitives_.contains(modifier)) define_usual(modifier);
+  return materials_.of_surface({.modifier = modifier,
+                                .type = "polygon",
+                                .name = modifier,
+                                .location = {.file = &file_, .line = 0}});
+}
+
+std::optional<Material> HoneybeeModifiers::material(const std::string& modifier) {
+  if (!primitives_.contains(modifier)) define_usual(modifier);
+  const auto found = primitives_.find(modifier);
+  if (found == primitives_.end()) {
+    remarks_.add("Modifiers that are not defined", modifier);
+    return std::nullopt;
+  }
+  return read_radiance_material(found->second, {}, remarks_);
+}
+
+// The modifier that an object names itself: that of its first state, if it changes.
+std::string HoneybeeModifiers::own_modifier(const JsonObject& object, HoneybeeKind kind) {
+  const auto radiance = radiance_properties(object);
+  if (!radiance) return {};
+  const std::string own = radiance->string_or("modifier", "");
+  const std::vector<JsonObject> states = radiance->objects("states");
+  if (states.empty()) return own;
+  const std::string name = object.string_or("identifier", object.place());
+  if (is_shade(kind) && states.size() > 1) {
+    remarks_.add("Shades that change were read in their first state", name);
+  }
+  for (const JsonObject& state : states) {
+    if (!state.objects("shades").empty() || state.has("vmtx_geometry")) {
+      remarks_.add("What states add beside their modifier was left out", name);
+    }
+  }
+  return states.front().string_or("modifier", own);
+}
+
+std::optional<int> HoneybeeModifiers::of(const JsonObject& object, HoneybeeKind kind,
+                                         const std::string& set) {
+  if (const std::string own = own_modifier(object, kind); !own.empty()) return named(own);
+  if (!set.empty() && !sets_.contains(set)) {
+    remarks_.add("Modifier sets that are not defined were read as Honeybee's own", set);
+  }
+  return named(from_set(set, kind).value_or(slot_of(kind).usual));
+}
+
+}  // namespace lightwell

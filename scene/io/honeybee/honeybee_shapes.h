@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <set>
+#include <string>
+
+#include "scene/io/honeybee/honeybee_modifiers.h"
+#include "scene/io/json_object.h"
+#include "scene/io/mesh_builder.h"
+#include "scene/io/numbered_names.h"
+#include "scene/io/polygon_repair.h"
+#include "scene/io/remarks.h"
+#include "scene/io/scene_size.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Converts the rooms, faces, openings and shades of a Honeybee model to surfaces, one for each
+/// object, with the identifier of the object as name. Openings are cut out of their face. Faces and
+/// openings that two rooms share are read once, and air boundaries are open.
+class HoneybeeShapes {
+ public:
+  /// Keeps references. `metres_per_unit` scales all coordinates.
+  HoneybeeShapes(double metres_per_unit, HoneybeeModifiers& modifiers, Scene& scene,
+                 Remarks& remarks)
+      : metres_per_unit_(metres_per_unit),
+        modifiers_(modifiers),
+        scene_(scene),
+        remarks_(remarks) {}
+
+  /// Adds all objects of a model. Throws InputError naming file, object and fault.
+  void add(const JsonObject& model);
+  const Repairs& repairs() const { return repairs_; }
+
+ private:
+  void add_room(const JsonObject& room);
+  void add_face(const JsonObject& face, const std::string& set);
+  void add_opening(const JsonObject& opening, HoneybeeKind kind, const std::string& set);
+  void add_shades(const JsonObject& parent, const std::string& set);
+  void add_shade(const JsonObject& shade, HoneybeeKind kind, const std::string& set);
+  void add_shade_mesh(const JsonObject& mesh);
+  void add_polygon(const JsonObject& object, HoneybeeKind kind, const std::string& set,
+                   Polygon polygon);
+  void add_surface(const JsonObject& object, HoneybeeKind kind, const std::string& set,
+                   const MeshBuilder& mesh);
+  Loop scaled(Loop loop) const;
+  Polygon polygon_of(const JsonObject& object) const;
+  void account(const JsonObject& object, std::size_t corners);
+  bool is_read_already(const JsonObject& object);
+
+  double metres_per_unit_;
+  HoneybeeModifiers& modifiers_;
+  Scene& scene_;
+  Remarks& remarks_;
+  Repairs repairs_;
+  NumberedNames names_;
+  SceneSize size_;
+  std::set<std::string, std::less<>> read_{};  // identifiers of faces and openings
+};
+
+}  // namespace lightwell

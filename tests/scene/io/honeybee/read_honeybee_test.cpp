@@ -1,0 +1,425 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "scene/errors.h"
+#include "scene/io/read_scene.h"
+#include "scene/io/sensor_grids.h"
+#include "scene/io/window_states.h"
+#include "tests/temporary_folder.h"
+
+namespace lightwell::read_honeybee_test {
+namespace {
+
+using nlohmann::json;
+
+json rectangle(const std::array<double, 3>& corner, const std::array<double, 3>& u,
+               const std::array<double, 3>& v) {
+  json boundary = json::array();
+  for (const auto& [a, b] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+    json point = json::array();
+    for (std::size_t k = 0; k < 3; ++k) point.push_back(corner[k] + a * u[k] + b * v[k]);
+    boundary.push_back(point);
+  }
+  return {{"type", "Face3D"}, {"boundary", boundary}};
+}
+
+json object(const std::string& name, const json& geometry, const json& radiance = json::object()) {
+  return {{"identifier", name},
+          {"geometry", geometry},
+          {"properties", {{"radiance", radiance}}},
+          {"boundary_condition", {{"type", "Outdoors"}}}};
+}
+
+json face(const std::string& name, const std::string& type, const json& geometry,
+          const json& radiance = json::object()) {
+  json result = object(name, geometry, radiance);
+  result["face_type"] = type;
+  return result;
+}
+
+// A room of 4 x 3 x 2.5 m. Its southern wall has a window of 2 x 1 m, and a door of 0.8 x 2 m that
+// stands on the floor.
+json room() {
+  json south = face("south", "Wall", rectangle({0, 0, 0}, {4, 0, 0}, {0, 0, 2.5}));
+  south["apertures"] = {object("window", rectangle({0.5, 0, 1}, {2, 0, 0}, {0, 0, 1}))};
+  south["doors"] = {object("door", rectangle({3, 0, 0}, {0.8, 0, 0}, {0, 0, 2}))};
+  return {{"identifier", "room"},
+          {"properties", {{"radiance", json::object()}}},
+          {"faces",
+           {south, face("north", "Wall", rectangle({4, 3, 0}, {-4, 0, 0}, {0, 0, 2.5})),
+            face("west", "Wall", rectangle({0, 3, 0}, {0, -3, 0}, {0, 0, 2.5})),
+            face("east", "Wall", rectangle({4, 0, 0}, {0, 3, 0}, {0, 0, 2.5})),
+            face("floor", "Floor", rectangle({0, 3, 0}, {4, 0, 0}, {0, -3, 0})),
+            face("ceiling", "RoofCeiling", rectangle({0, 0, 2.5}, {4, 0, 0}, {0, 3, 0}))}}};
+}
+
+json model(const json& rooms = {room()}) {
+  return {{"type", "Model"},
+          {"identifier", "model"},
+          {"rooms", rooms},
+          {"properties", {{"radiance", {{"modifiers", json::array()}}}}}};
+}
+
+Scene read(const json& of) {
+  const TemporaryFolder folder;
+  return read_scene(folder.write("model.hbjson", of.dump()));
+}
+
+std::string error_of(const std::string& text) {
+  const TemporaryFolder folder;
+  try {
+    read_scene(folder.write("model.hbjson", text));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::map<std::string, double> areas(const Scene& scene) {
+  std::map<std::string, double> result;
+  for (const Surface& surface : scene.surfaces) result[surface.name] = surface_area(surface);
+  return result;
+}
+
+const Material& material_of(const Scene& scene, const std::string& surface) {
+  for (const Surface& s : scene.surfaces) {
+    if (s.name == surface) return scene.materials[static_cast<std::size_t>(s.material)];
+  }
+  throw std::runtime_error("no surface " + surface);
+}
+
+// Areas are sums and differences of a few products below 20 m^2.
+constexpr double rounding = 1e-12;
+
+TEST(ReadHoneybee, OpeningsAreCutOutOfTheirFaceAlsoAtItsEdge) {
+  const auto area = areas(read(model()));
+  ASSERT_EQ(area.size(), 8u);
+  EXPECT_NEAR(area.at("window"), 2.0, rounding);
+  EXPECT_NEAR(area.at("door"), 1.6, rounding);
+  EXPECT_NEAR(area.at("south"), 10.0 - 2.0 - 1.6, rounding);
+  EXPECT_NEAR(area.at("floor"), 12.0, rounding);
+}
+
+TEST(ReadHoneybee, HolesOfAFaceAreOpen) {
+  json shade = object("canopy", rectangle({0, 0, 4}, {3, 0, 0}, {0, 3, 0}));
+  shade["geometry"]["holes"] = {rectangle({1, 1, 4}, {1, 0, 0}, {0, 1, 0})["boundary"]};
+  json with_shade = model();
+  with_shade["orphaned_shades"] = {shade};
+  EXPECT_NEAR(areas(read(with_shade)).at("canopy"), 8.0, rounding);
+}
+
+TEST(ReadHoneybee, LengthsAreInTheUnitOfTheModel) {
+  json in_feet = model();
+  in_feet["units"] = "Feet";
+  const Scene scene = read(in_feet);
+  EXPECT_NEAR(areas(scene).at("floor"), 12.0 * 0.3048 * 0.3048, rounding);
+  EXPECT_EQ(scene.metres_per_unit, 0.3048);
+}
+
+TEST(ReadHoneybee, ObjectsWithoutModifierHaveHoneybeesOwn) {
+  const Scene scene = read(model());
+  EXPECT_EQ(material_of(scene, "floor").reflectance[0], 0.2f);
+  EXPECT_EQ(material_of(scene, "north").reflectance[0], 0.5f);
+  EXPECT_EQ(material_of(scene, "ceiling").reflectance[0], 0.8f);
+  ASSERT_TRUE(material_of(scene, "window").dielectric.has_value());
+  // The transmissivity t of a pane of n = 1.52 that passes T along its normal (RADIANCE's manual):
+  // t = (sqrt(0.8402528435 + 0.0072522239 T^2) - 0.9166530661) / 0.0036261119 / T
+  const double T = 0.64;
+  const double t =
+      (std::sqrt(0.8402528435 + 0.0072522239 * T * T) - 0.9166530661) / 0.0036261119 / T;
+  // The difference of two numbers of ten digits near 0.9, over 0.0023.
+  EXPECT_NEAR(material_of(scene, "window").dielectric->transmissivity[0], t, 1e-7);
+}
+
+TEST(ReadHoneybee, ModifiersOfObjectsGoBeforeThoseOfSets) {
+  json of = model();
+  json& radiance = of["properties"]["radiance"];
+  const auto grey = [](const char* name, double rho) {
+    return json{{"type", "Plastic"},
+                {"identifier", name},
+                {"r_reflectance", rho},
+                {"g_reflectance", rho},
+                {"b_reflectance", rho}};
+  };
+  radiance["modifiers"] = {grey("bright", 0.9), grey("dark", 0.1)};
+  radiance["modifier_sets"] = {{{"identifier", "set"},
+                                {"wall_set", {{"exterior_modifier", "dark"}}},
+                                {"floor_set", {{"exterior_modifier", nullptr}}},
+                                {"roof_ceiling_set", {{"exterior_modifier", grey("own", 0.7)}}}}};
+  of["rooms"][0]["properties"]["radiance"]["modifier_set"] = "set";
+  of["rooms"][0]["faces"][1]["properties"]["radiance"]["modifier"] = "bright";
+  const Scene scene = read(of);
+  EXPECT_EQ(material_of(scene, "north").reflectance[0], 0.9f);
+  EXPECT_EQ(material_of(scene, "west").reflectance[0], 0.1f);
+  EXPECT_EQ(material_of(scene, "floor").reflectance[0], 0.2f);
+  EXPECT_EQ(material_of(scene, "ceiling").reflectance[0], 0.7f);
+}
+
+TEST(ReadHoneybee, ModifiersAreThoseOfRadiance) {
+  json of = model();
+  of["properties"]["radiance"]["modifiers"] = {{{"type", "Trans"},
+                                                {"identifier", "cloth"},
+                                                {"r_reflectance", 0.8},
+                                                {"g_reflectance", 0.8},
+                                                {"b_reflectance", 0.8},
+                                                {"transmitted_diff", 0.5},
+                                                {"transmitted_spec", 0.25}},
+                                               {{"type", "Light"},
+                                                {"identifier", "lamp"},
+                                                {"r_emittance", 1.0},
+                                                {"g_emittance", 2.0},
+                                                {"b_emittance", 3.0}}};
+  of["rooms"][0]["faces"][1]["properties"]["radiance"]["modifier"] = "cloth";
+  of["rooms"][0]["faces"][2]["properties"]["radiance"]["modifier"] = "lamp";
+  const Scene scene = read(of);
+  // trans: (1 - T) rho C is reflected, T (1 - S) C passes diffusely, T S C straight on.
+  const Material& cloth = material_of(scene, "north");
+  EXPECT_FLOAT_EQ(cloth.reflectance[0], 0.4f);
+  EXPECT_FLOAT_EQ(cloth.transmittance[0], 0.3f);
+  EXPECT_FLOAT_EQ(cloth.regular_transmittance[0], 0.1f);
+  EXPECT_FLOAT_EQ(material_of(scene, "west").emission[1], 2.0f * std::numbers::pi_v<float>);
+}
+
+// Everything that decides the light is the same, bit for bit.
+TEST(ReadHoneybee, TheRoomIsThatOfASceneFile) {
+  const TemporaryFolder folder;
+  const std::string native = fmt::format(
+      R"(
+[bands]
+lumens_per_watt = 179
+[materials.pane]
+glass = {{ ior = 1.52, thin = true, transmissivity = {} }}
+[materials.wall]
+reflectance = 0.5
+[materials.floor]
+reflectance = 0.2
+[materials.ceiling]
+reflectance = 0.8
+[[surfaces]]
+name = "window"
+material = "pane"
+polygons = [[[0.5, 0, 1], [2.5, 0, 1], [2.5, 0, 2], [0.5, 0, 2]]]
+[[surfaces]]
+name = "south"
+material = "wall"
+polygon = [[0, 0, 0], [4, 0, 0], [4, 0, 2.5], [0, 0, 2.5]]
+holes = [[[0.5, 0, 1], [2.5, 0, 1], [2.5, 0, 2], [0.5, 0, 2]]]
+[[surfaces]]
+name = "floor"
+material = "floor"
+polygons = [[[0, 3, 0], [4, 3, 0], [4, 0, 0], [0, 0, 0]]]
+[[surfaces]]
+name = "ceiling"
+material = "ceiling"
+polygons = [[[0, 0, 2.5], [4, 0, 2.5], [4, 3, 2.5], [0, 3, 2.5]]]
+)",
+      0.6975761815384331);
+  json of = model();
+  json& faces = of["rooms"][0]["faces"];
+  faces[0].erase("doors");
+  for (int wall_number = 3; wall_number >= 1; --wall_number) faces.erase(wall_number);
+  EXPECT_EQ(scene_hash(read(of)), scene_hash(read_scene(folder.write("room.toml", native))));
+}
+
+// Two rooms side by side share a wall with a window; their other common face is air.
+TEST(ReadHoneybee, WhatTwoRoomsShareIsReadOnceAndAirIsOpen) {
+  const auto shared = [](const std::string& name, const std::string& other, double x) {
+    json wall = face(name, "Wall", rectangle({x, 0, 0}, {0, 3, 0}, {0, 0, 2.5}));
+    wall["boundary_condition"] = {{"type", "Surface"},
+                                  {"boundary_condition_objects", {other, "room of " + other}}};
+    json window = object("window of " + name, rectangle({x, 1, 1}, {0, 1, 0}, {0, 0, 1}));
+    window["boundary_condition"] = {
+        {"type", "Surface"},
+        {"boundary_condition_objects", {"window of " + other, other, "room of " + other}}};
+    wall["apertures"] = {window};
+    return wall;
+  };
+  json first = room(), second = room();
+  second["identifier"] = "second";
+  first["faces"] = {shared("a", "b", 4.0),
+                    face("air", "AirBoundary", rectangle({0, 0, 0}, {4, 0, 0}, {0, 0, 2.5}))};
+  second["faces"] = {shared("b", "a", 4.0)};
+  const Scene scene = read(model({first, second}));
+  const auto area = areas(scene);
+  ASSERT_EQ(area.size(), 2u);
+  EXPECT_NEAR(area.at("a"), 7.5 - 1.0, rounding);
+  EXPECT_NEAR(area.at("window of a"), 1.0, rounding);
+  // Inner windows have the clearer glass.
+  EXPECT_EQ(material_of(scene, "window of a").name, "generic_interior_window_vis_0.88");
+}
+
+TEST(ReadHoneybee, ShadesHaveTheModifierOfTheirPlace) {
+  json of = model();
+  const json plate = rectangle({0, -2, 3}, {4, 0, 0}, {0, 1, 0});
+  of["orphaned_shades"] = {object("porch", plate), object("neighbour", plate)};
+  of["orphaned_shades"][1]["is_detached"] = true;
+  of["rooms"][0]["indoor_shades"] = {object("table", plate)};
+  of["shade_meshes"] = {{{"identifier", "hill"},
+                         {"properties", json::object()},
+                         {"geometry",
+                          {{"vertices", {{0, 9, 0}, {1, 9, 0}, {1, 10, 0}, {0, 10, 0}}},
+                           {"faces", {{0, 1, 2}, {0, 2, 3}}}}}}};
+  const Scene scene = read(of);
+  EXPECT_EQ(material_of(scene, "porch").reflectance[0], 0.35f);
+  EXPECT_EQ(material_of(scene, "neighbour").reflectance[0], 0.2f);
+  EXPECT_EQ(material_of(scene, "table").reflectance[0], 0.5f);
+  EXPECT_EQ(material_of(scene, "hill").reflectance[0], 0.2f);
+  EXPECT_NEAR(areas(scene).at("hill"), 1.0, rounding);
+}
+
+TEST(ReadHoneybee, ViewsAreCameras) {
+  json of = model();
+  of["properties"]["radiance"]["views"] = {{{"identifier", "desk"},
+                                            {"position", {2, 1, 1.2}},
+                                            {"direction", {0, -1, 0}},
+                                            {"up_vector", {0, 0, 1}},
+                                            {"view_type", "h"},
+                                            {"h_size", 180},
+                                            {"v_size", 180},
+                                            {"shift", nullptr}}};
+  const Scene scene = read(of);
+  ASSERT_EQ(scene.cameras.size(), 1u);
+  EXPECT_EQ(scene.cameras[0].name, "desk");
+  EXPECT_EQ(scene.cameras[0].position, Eigen::Vector3d(2, 1, 1.2));
+  EXPECT_EQ(scene.cameras[0].direction, Eigen::Vector3d(0, -1, 0));
+}
+
+TEST(ReadHoneybee, SensorGridsAreInMetres) {
+  json of = model();
+  of["units"] = "Centimeters";
+  of["properties"]["radiance"]["sensor_grids"] = {
+      {{"identifier", "plane"},
+       {"sensors", {{{"pos", {100, 200, 80}}, {"dir", {0, 0, 2}}}, {{"pos", {150, 200, 80}}}}}}};
+  const TemporaryFolder folder;
+  const Scene scene = read_scene(folder.write("model.hbjson", of.dump()));
+  const auto grids = read_sensor_grids(scene);
+  ASSERT_EQ(grids.size(), 1u);
+  EXPECT_EQ(grids[0].name, "plane");
+  ASSERT_EQ(grids[0].positions.size(), 2u);
+  EXPECT_TRUE(grids[0].positions[0].isApprox(Eigen::Vector3d(1, 2, 0.8)));
+  EXPECT_EQ(grids[0].directions[0], Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(grids[0].directions[1], Eigen::Vector3d::UnitZ());
+}
+
+TEST(ReadHoneybee, OpeningsWithStatesAreOperatedTogether) {
+  json of = model();
+  const auto glass = [](const char* name, double t) {
+    return json{{"type", "Glass"},
+                {"identifier", name},
+                {"r_transmissivity", t},
+                {"g_transmissivity", t},
+                {"b_transmissivity", t}};
+  };
+  of["properties"]["radiance"]["modifiers"] = {glass("clear", 0.9), glass("tinted", 0.1)};
+  const json states = {{"dynamic_group_identifier", "panes"},
+                       {"states", {{{"modifier", "clear"}}, {{"modifier", "tinted"}}}}};
+  json& south = of["rooms"][0]["faces"][0];
+  south["apertures"][0]["properties"]["radiance"] = states;
+  south["doors"][0]["properties"]["radiance"] = states;
+  const TemporaryFolder folder;
+  const Scene scene = read_scene(folder.write("model.hbjson", of.dump()));
+  EXPECT_EQ(material_of(scene, "window").name, "clear");
+  const OperatedWindows windows = read_windows(scene);
+  ASSERT_EQ(windows.groups.size(), 1u);
+  const WindowGroup& group = windows.groups[0];
+  EXPECT_EQ(group.name, "panes");
+  EXPECT_EQ(group.surfaces.size(), 2u);
+  ASSERT_EQ(group.states.size(), 2u);
+  EXPECT_FALSE(group.states[0].material.has_value());
+  ASSERT_TRUE(group.states[1].material.has_value());
+  const Material& tinted = windows.materials[static_cast<std::size_t>(*group.states[1].material)];
+  EXPECT_EQ(tinted.dielectric->transmissivity[0], 0.1f);
+}
+
+// Two patches of directions: from the normal to 30 degrees and beyond, with projected solid angles
+// of pi / 4 and 3 pi / 4.
+std::string bsdf_xml(const std::string& transmission, const std::string& reflection) {
+  const auto data = [](const char* direction, const std::string& values) {
+    return fmt::format(
+        "<WavelengthData><Wavelength unit=\"Integral\">Visible</Wavelength><WavelengthDataBlock>"
+        "<WavelengthDataDirection>{}</WavelengthDataDirection><ScatteringData>{}</ScatteringData>"
+        "</WavelengthDataBlock></WavelengthData>",
+        direction, values);
+  };
+  const auto block = [](int lower, int upper) {
+    return fmt::format(
+        "<AngleBasisBlock><nPhis>1</nPhis><ThetaBounds><LowerTheta>{}</LowerTheta><UpperTheta>{}"
+        "</UpperTheta></ThetaBounds></AngleBasisBlock>",
+        lower, upper);
+  };
+  return "<WindowElement><Optical><Layer><DataDefinition><AngleBasis>" + block(0, 30) +
+         block(30, 90) + "</AngleBasis></DataDefinition>" +
+         data("Transmission Front", transmission) + data("Reflection Front", reflection) +
+         data("Reflection Back", reflection) + "</Layer></Optical></WindowElement>";
+}
+
+Material material_of_bsdf(const std::string& transmission, const std::string& reflection) {
+  json of = model();
+  of["properties"]["radiance"]["modifiers"] = {{{"type", "BSDF"},
+                                                {"identifier", "shade"},
+                                                {"bsdf_data", bsdf_xml(transmission, reflection)}}};
+  of["rooms"][0]["faces"][0]["apertures"][0]["properties"]["radiance"]["modifier"] = "shade";
+  return material_of(read(of), "window");
+}
+
+TEST(ReadHoneybee, BsdfsScatterAsMuchAsTheirMatrices) {
+  // A diffuser that passes 0.6 and reflects 0.3 has the values 0.6 / pi and 0.3 / pi everywhere.
+  const std::string even = fmt::format("{0}, {0}, {0}, {0}", 0.6 * std::numbers::inv_pi);
+  const std::string back = fmt::format("{0}, {0}, {0}, {0}", 0.3 * std::numbers::inv_pi);
+  const Material diffuser = material_of_bsdf(even, back);
+  // Shares are single precision.
+  constexpr float single = 1e-6f;
+  EXPECT_NEAR(diffuser.transmittance[0], 0.6f, single);
+  EXPECT_NEAR(diffuser.reflectance[0], 0.3f, single);
+  EXPECT_NEAR(diffuser.regular_transmittance[0], 0.0f, single);
+  // A clear sheet that passes 0.8 sends the light of a patch of the angle a on by 0.8 / a.
+  const double a = std::numbers::pi / 4.0;
+  const Material clear =
+      material_of_bsdf(fmt::format("{}, 0, 0, {}", 0.8 / a, 0.8 / (3.0 * a)), "0 0 0 0");
+  EXPECT_NEAR(clear.regular_transmittance[0], 0.8f, single);
+  EXPECT_NEAR(clear.transmittance[0], 0.0f, single);
+}
+
+TEST(ReadHoneybee, FaultsAreSentences) {
+  EXPECT_NE(error_of("{\"type\": \"Model\",\n oops}").find(":2:"), std::string::npos);
+  EXPECT_NE(error_of("{\"type\": \"Room\"}").find("a Honeybee model, whose type is 'Model'"),
+            std::string::npos);
+  json of = model();
+  of["units"] = "Cubits";
+  EXPECT_NE(error_of(of.dump()).find("'units' is 'Cubits'; write Meters"), std::string::npos);
+  of = model();
+  of["rooms"][0]["faces"][3]["geometry"]["boundary"].erase(0);
+  of["rooms"][0]["faces"][3]["geometry"]["boundary"].erase(0);
+  EXPECT_NE(error_of(of.dump()).find("rooms[0].faces[3].geometry: 'boundary' has 2 points"),
+            std::string::npos);
+  of = model();
+  of["properties"]["radiance"]["modifiers"] = {{{"type", "Velvet"}, {"identifier", "seat"}}};
+  EXPECT_NE(error_of(of.dump()).find("modifier 'seat' is of the type 'Velvet'"), std::string::npos);
+  of = model(json::array());
+  EXPECT_NE(error_of(of.dump()).find("the model has no surfaces"), std::string::npos);
+  of = model();
+  of["shade_meshes"] = {
+      {{"identifier", "hill"}, {"geometry", {{"vertices", {{0, 0, 0}}}, {"faces", {{0, 1, 2}}}}}}};
+  EXPECT_NE(error_of(of.dump()).find("'faces' has the vertex 1; there are 1"), std::string::npos);
+}
+
+TEST(ReadHoneybee, ModifiersThatAreMissingAreNamed) {
+  json of = model();
+  of["rooms"][0]["faces"][1]["properties"]["radiance"]["modifier"] = "gone";
+  const Scene scene = read(of);
+  EXPECT_EQ(material_of(scene, "north").reflectance[0], 0.5f);
+  ASSERT_FALSE(scene.losses.empty());
+  EXPECT_NE(scene.losses[0].find("'gone'"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace lightwell::read_honeybee_test
