@@ -127,12 +127,17 @@ HoneybeeModifiers::HoneybeeModifiers(const std::filesystem::path& file,
     : file_(file), scene_(scene), remarks_(remarks), materials_(scene, remarks) {
   if (!radiance) return;
   if (const auto usual = radiance->object("global_modifier_set")) {
-    for (const JsonObject& modifier : usual->objects("modifiers")) define(modifier);
+    for (const JsonObject& modifier : usual->objects("modifiers")) try_to_define(modifier);
   }
-  for (const JsonObject& modifier : radiance->objects("modifiers")) define(modifier);
+  for (const JsonObject& modifier : radiance->objects("modifiers")) try_to_define(modifier);
   for (const JsonObject& set : radiance->objects("modifier_sets")) {
     sets_.insert_or_assign(set.string_or("identifier", ""), set);
   }
+}
+
+void HoneybeeModifiers::try_to_define(const JsonObject& modifier) {
+  remarks_.attempt("Modifiers that cannot be read were left out", modifier.place(),
+                   [&] { define(modifier); });
 }
 
 void HoneybeeModifiers::define(const JsonObject& modifier) {
@@ -191,7 +196,7 @@ std::optional<std::string> HoneybeeModifiers::from_set(const std::string& set, H
   if (table->is_object(slot.key)) {
     const JsonObject modifier = *table->object(slot.key);
     const std::string name = modifier.string_or("identifier", "");
-    if (!primitives_.contains(name)) define(modifier);
+    if (!primitives_.contains(name)) try_to_define(modifier);
     return name;
   }
   return table->string_or(slot.key, "");

@@ -43,7 +43,7 @@ enum class HoneybeeKind {
 class HoneybeeModifiers {
  public:
   /// `radiance` is the object properties.radiance of the model, if there is one. Keeps references
-  /// to `file`, `scene` and `remarks`. Throws InputError naming the modifier.
+  /// to `file`, `scene` and `remarks`. Modifiers that cannot be read are left out, with a remark.
   HoneybeeModifiers(const std::filesystem::path& file, const std::optional<JsonObject>& radiance,
                     Scene& scene, Remarks& remarks);
 
@@ -57,6 +57,7 @@ class HoneybeeModifiers {
 
  private:
   void define(const JsonObject& modifier);
+  void try_to_define(const JsonObject& modifier);
   void define_usual(const std::string& name);
   std::string own_modifier(const JsonObject& object, HoneybeeKind kind);
   std::optional<std::string> from_set(const std::string& set, HoneybeeKind kind);

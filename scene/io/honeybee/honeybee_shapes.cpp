@@ -61,18 +61,26 @@ HoneybeeKind free_shade_kind(const JsonObject& shade, bool usually_detached) {
 }  // namespace
 
 void HoneybeeShapes::add(const JsonObject& model) {
-  for (const JsonObject& room : model.objects("rooms")) add_room(room);
-  for (const JsonObject& face : model.objects("orphaned_faces")) add_face(face, "");
-  for (const JsonObject& aperture : model.objects("orphaned_apertures")) {
+  for_each(model, "rooms", [&](const JsonObject& room) { add_room(room); });
+  for_each(model, "orphaned_faces", [&](const JsonObject& face) { add_face(face, ""); });
+  for_each(model, "orphaned_apertures", [&](const JsonObject& aperture) {
     add_opening(aperture, aperture_kind(aperture, HoneybeeKind::wall), "");
-  }
-  for (const JsonObject& door : model.objects("orphaned_doors")) {
+  });
+  for_each(model, "orphaned_doors", [&](const JsonObject& door) {
     add_opening(door, door_kind(door, HoneybeeKind::wall), "");
+  });
+  for_each(model, "orphaned_shades", [&](const JsonObject& shade) {
+    add_polygon(shade, free_shade_kind(shade, false), "", polygon_of(shade));
+  });
+  for_each(model, "shade_meshes", [&](const JsonObject& mesh) { add_shade_mesh(mesh); });
+}
+
+// Uses each object of a list that can be used.
+template <class Use>
+void HoneybeeShapes::for_each(const JsonObject& parent, const char* list, Use use) {
+  for (const JsonObject& each : parent.objects(list)) {
+    remarks_.attempt("Objects that cannot be read were left out", each.place(), [&] { use(each); });
   }
-  for (const JsonObject& shade : model.objects("orphaned_shades")) {
-    add_shade(shade, free_shade_kind(shade, false), "");
-  }
-  for (const JsonObject& mesh : model.objects("shade_meshes")) add_shade_mesh(mesh);
 }
 
 void HoneybeeShapes::add_room(const JsonObject& room) {
@@ -81,7 +89,7 @@ void HoneybeeShapes::add_room(const JsonObject& room) {
   }
   const auto radiance = radiance_properties(room);
   const std::string set = radiance ? radiance->string_or("modifier_set", "") : "";
-  for (const JsonObject& face : room.objects("faces")) add_face(face, set);
+  for_each(room, "faces", [&](const JsonObject& face) { add_face(face, set); });
   add_shades(room, set);
 }
 
@@ -103,10 +111,10 @@ void HoneybeeShapes::add_face(const JsonObject& face, const std::string& set) {
   Polygon polygon = polygon_of(face);
   for (const char* list : {"apertures", "doors"}) {
     const bool is_door = *list == 'd';
-    for (const JsonObject& opening : face.objects(list)) {
+    for_each(face, list, [&](const JsonObject& opening) {
       polygon.holes.push_back(polygon_of(opening).boundary);
       add_opening(opening, is_door ? door_kind(opening, kind) : aperture_kind(opening, kind), set);
-    }
+    });
   }
   if (face.string_or("face_type", "") == "AirBoundary") {
     remarks_.mention("Air boundaries were read as open", name_of(face));
@@ -122,16 +130,11 @@ void HoneybeeShapes::add_opening(const JsonObject& opening, HoneybeeKind kind,
 }
 
 void HoneybeeShapes::add_shades(const JsonObject& parent, const std::string& set) {
-  for (const JsonObject& shade : parent.objects("outdoor_shades")) {
-    add_shade(shade, HoneybeeKind::outdoor_shade, set);
+  for (const bool is_outdoor : {true, false}) {
+    const HoneybeeKind kind = is_outdoor ? HoneybeeKind::outdoor_shade : HoneybeeKind::indoor_shade;
+    for_each(parent, is_outdoor ? "outdoor_shades" : "indoor_shades",
+             [&](const JsonObject& shade) { add_polygon(shade, kind, set, polygon_of(shade)); });
   }
-  for (const JsonObject& shade : parent.objects("indoor_shades")) {
-    add_shade(shade, HoneybeeKind::indoor_shade, set);
-  }
-}
-
-void HoneybeeShapes::add_shade(const JsonObject& shade, HoneybeeKind kind, const std::string& set) {
-  add_polygon(shade, kind, set, polygon_of(shade));
 }
 
 Loop HoneybeeShapes::scaled(Loop loop) const {

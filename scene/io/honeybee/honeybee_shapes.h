@@ -29,16 +29,18 @@ class HoneybeeShapes {
         scene_(scene),
         remarks_(remarks) {}
 
-  /// Adds all objects of a model. Throws InputError naming file, object and fault.
+  /// Adds all objects of a model; those that cannot be read are left out, with a remark. Throws
+  /// InputError for lists of objects that are none.
   void add(const JsonObject& model);
   const Repairs& repairs() const { return repairs_; }
 
  private:
+  template <class Use>
+  void for_each(const JsonObject& parent, const char* list, Use use);
   void add_room(const JsonObject& room);
   void add_face(const JsonObject& face, const std::string& set);
   void add_opening(const JsonObject& opening, HoneybeeKind kind, const std::string& set);
   void add_shades(const JsonObject& parent, const std::string& set);
-  void add_shade(const JsonObject& shade, HoneybeeKind kind, const std::string& set);
   void add_shade_mesh(const JsonObject& mesh);
   void add_polygon(const JsonObject& object, HoneybeeKind kind, const std::string& set,
                    Polygon polygon);

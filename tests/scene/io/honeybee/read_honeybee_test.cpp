@@ -401,21 +401,33 @@ TEST(ReadHoneybee, FaultsAreSentences) {
   json of = model();
   of["units"] = "Cubits";
   EXPECT_NE(error_of(of.dump()).find("'units' is 'Cubits'; write Meters"), std::string::npos);
-  of = model();
-  of["rooms"][0]["faces"][3]["geometry"]["boundary"].erase(0);
-  of["rooms"][0]["faces"][3]["geometry"]["boundary"].erase(0);
-  EXPECT_NE(error_of(of.dump()).find("rooms[0].faces[3].geometry: 'boundary' has 2 points"),
+  of = model(json::array());
+  EXPECT_NE(error_of(of.dump()).find("the model has no surfaces"), std::string::npos);
+}
+
+std::string losses_of(const json& of) {
+  std::string all;
+  for (const std::string& loss : read(of).losses) all += loss + "\n";
+  return all;
+}
+
+TEST(ReadHoneybee, WhatCannotBeReadIsLeftOutByName) {
+  json of = model();
+  json& boundary = of["rooms"][0]["faces"][3]["geometry"]["boundary"];
+  boundary.erase(0);
+  boundary.erase(0);
+  EXPECT_NE(losses_of(of).find("rooms[0].faces[3].geometry: 'boundary' has 2 points"),
             std::string::npos);
+  EXPECT_EQ(read(of).surfaces.size(), 7u);
   of = model();
   of["properties"]["radiance"]["modifiers"] =
       json::array({{{"type", "Velvet"}, {"identifier", "seat"}}});
-  EXPECT_NE(error_of(of.dump()).find("modifier 'seat' is of the type 'Velvet'"), std::string::npos);
-  of = model(json::array());
-  EXPECT_NE(error_of(of.dump()).find("the model has no surfaces"), std::string::npos);
+  EXPECT_NE(losses_of(of).find("modifier 'seat' is of the type 'Velvet'"), std::string::npos);
   of = model();
-  of["shade_meshes"] = {
-      {{"identifier", "hill"}, {"geometry", {{"vertices", {{0, 0, 0}}}, {"faces", {{0, 1, 2}}}}}}};
-  EXPECT_NE(error_of(of.dump()).find("'faces' has the vertex 1; there are 1"), std::string::npos);
+  const json corner = json::array({0, 0, 0}), triangle = json::array({0, 1, 2});
+  const json geometry = {{"vertices", json::array({corner})}, {"faces", json::array({triangle})}};
+  of["shade_meshes"] = json::array({{{"identifier", "hill"}, {"geometry", geometry}}});
+  EXPECT_NE(losses_of(of).find("'faces' has the vertex 1; there are 1"), std::string::npos);
 }
 
 TEST(ReadHoneybee, ModifiersThatAreMissingAreNamed) {
