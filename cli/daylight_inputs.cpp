@@ -94,7 +94,12 @@ DaylightInputs read_daylight_inputs(const DaylightArguments& arguments, Console&
     }
   }
   set_compass(arguments.north_degrees, inputs);
+  require_surfaces(arguments.grids.in_metres(inputs.scene), inputs.scene_apart());
   return inputs;
+}
+
+Scene DaylightInputs::scene_apart() const {
+  return clean_up.names ? clean_up.names->apart(scene) : scene;
 }
 
 std::vector<Probe> DaylightSensors::all() const {
@@ -113,9 +118,9 @@ DaylightSensors daylight_sensors(const DaylightArguments& arguments, const Dayli
                                  const ElementCaster& caster) {
   const Scene& scene = inputs.scene;
   DaylightSensors sensors;
-  for (LuxGrid& planned : requested_grids(
-           arguments.grids.in_metres(scene), read_lighting_design(scene).grids,
-           inputs.clean_up.names ? inputs.clean_up.names->apart(scene) : scene, inputs.up)) {
+  for (LuxGrid& planned :
+       requested_grids(arguments.grids.in_metres(scene), read_lighting_design(scene).grids,
+                       inputs.scene_apart(), caster, inputs.up)) {
     const LuxGrid grid = without_buried_points(caster, std::move(planned));
     add_room({.name = grid.name, .grid = grid, .lines = plan_lines(scene, caster, grid, {})},
              grid.points, sensors);

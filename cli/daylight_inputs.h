@@ -49,6 +49,9 @@ struct DaylightInputs {
   std::vector<Eigen::Vector3d> sun_points{};  ///< m, of exposure to sunlight
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), north = Eigen::Vector3d::UnitY();
   bool has_north = false;  ///< by a sky of the scene
+
+  /// The scene with the surfaces of its file, which the clean-up may have joined.
+  Scene scene_apart() const;
 };
 
 DaylightInputs read_daylight_inputs(const DaylightArguments& arguments, Console& console,

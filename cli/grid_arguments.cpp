@@ -35,7 +35,8 @@ void GridArguments::add_to(CLI::App& command) {
               request.planes.push_back(named_number(text, '@', "--plane", 0.0));
             }
           },
-          "measure on a plane at this height above a surface: floor@0.75; may be repeated")
+          "measure on a plane at this height above a surface, or above all that fit a pattern: "
+          "floor@0.75, '*Floor@0.8'; may be repeated")
       ->type_name("NAME@HEIGHT")
       ->type_size(1)
       ->allow_extra_args(false);

@@ -20,7 +20,7 @@ MeasuredLight::MeasuredLight(const ReportedScene& of, SolvedScene& solved, Light
   const Eigen::Vector3d up = guess_up_axis(scene_.cameras, mesh_bounds(solved.mesh));
   const Scene named = of.names ? of.names->apart(scene_) : scene_;
   // Grids leave out others by their places in the whole list.
-  const std::vector<LuxGrid> all = requested_grids({}, places_.grids, named, up);
+  const std::vector<LuxGrid> all = requested_grids({}, places_.grids, named, caster_, up);
   for (const int grid : places_.limited) {
     grids_.push_back(without_buried_points(caster_, all[static_cast<std::size_t>(grid)]));
   }

@@ -227,7 +227,8 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   const ElementCaster caster(solved.mesh);
   const Scene apart = names ? names->apart(scene) : scene;
   const Eigen::Vector3d up = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
-  std::vector<LuxGrid> grids = requested_grids(plan.request.grids, plan.design.grids, apart, up);
+  std::vector<LuxGrid> grids =
+      requested_grids(plan.request.grids, plan.design.grids, apart, caster, up);
   const std::vector<DesignArea> areas = areas_of(plan, grids);
   require_lamps_alone(areas, light_content(scene, solved));
   std::optional<LuxGrid> floor;

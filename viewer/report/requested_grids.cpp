@@ -2,41 +2,134 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstddef>
+#include <optional>
 #include <utility>
+#include <variant>
 
 #include "scene/errors.h"
+#include "scene/io/matches_glob.h"
 #include "scene/io/nearest_name.h"
+#include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-int find_surface(const Scene& scene, const std::string& name) {
+// Share of the cosine-distributed rays from the middles of facets, in the hemisphere about `axis`,
+// that meet a surface.
+double enclosed_share(const ElementCaster& caster, const PolygonMesh& mesh,
+                      const Eigen::Vector3d& axis, double offset) {
+  constexpr int ray_count = 64;
+  constexpr std::size_t most_facets = 8;
+  const SobolPoints sobol(ray_count);
+  Eigen::Vector3d first, second;
+  tangent_frame(axis, first, second);
+  std::vector<Ray> rays;
+  const std::size_t step = 1 + (mesh.facets.size() - 1) / most_facets;
+  for (std::size_t f = 0; f < mesh.facets.size(); f += step) {
+    Eigen::Vector3d middle = offset * axis;
+    const std::vector<int>& boundary = mesh.facets[f].boundary;
+    for (const int v : boundary) {
+      middle += mesh.vertices[static_cast<std::size_t>(v)] / static_cast<double>(boundary.size());
+    }
+    for (int i = 0; i < ray_count; ++i) {
+      const Eigen::Array4f u = sobol.point(i, f);
+      const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
+      rays.push_back(
+          {.origin = middle, .direction = d.x() * first + d.y() * second + d.z() * axis});
+    }
+  }
+  std::vector<ElementHit> hits(rays.size());
+  caster.closest_hits(rays, hits);
+  const auto met =
+      std::ranges::count_if(hits, [](const ElementHit& hit) { return hit.facet >= 0; });
+  return static_cast<double>(met) / static_cast<double>(rays.size());
+}
+
+// A point that planes above a level surface face, where its front faces down: many files have
+// floors whose fronts face out of the rooms. Empty for other surfaces and for ceilings, below which
+// far more is around than above: their planes lie before their fronts.
+std::optional<Eigen::Vector3d> above(const Scene& scene, const ElementCaster& caster, int surface,
+                                     const Eigen::Vector3d& up) {
+  const Surface& of = scene.surfaces[static_cast<std::size_t>(surface)];
+  const auto* mesh = std::get_if<PolygonMesh>(&of.shape);
+  const Material& material = scene.materials[static_cast<std::size_t>(of.material)];
+  if (!mesh || mesh->facets.empty() || material.one_sided) return std::nullopt;
+  Eigen::Vector3d area = Eigen::Vector3d::Zero();
+  for (const Facet& facet : mesh->facets) {
+    area += facet_area(*mesh, facet) * facet_normal(*mesh, facet);
+  }
+  constexpr double level = 0.9;  // least cosine to the upright
+  if (!(area.dot(up) < -level * area.norm())) return std::nullopt;
+  const Bounds bounds = scene_bounds(scene);
+  // Rays begin far above the rounding of coordinates, and far below the height of furniture.
+  constexpr double share_of_scene = 1e-5, far_more = 0.25;
+  const double offset = share_of_scene * bounds.diagonal();
+  if (enclosed_share(caster, *mesh, -up, offset) >
+      enclosed_share(caster, *mesh, up, offset) + far_more) {
+    return std::nullopt;
+  }
+  return bounds.high + 2.0 * bounds.diagonal() * up;
+}
+
+// The grids over the surfaces of a name. Of those that fit a pattern, surfaces that can have no
+// grid, such as a strip narrower than its margin, are left out.
+void add_grids(const Scene& scene, const ElementCaster& caster, const std::string& name,
+               const Eigen::Vector3d& up, LuxGridOptions options, std::vector<LuxGrid>& grids) {
+  const std::vector<int> surfaces = surfaces_named(scene, name);
+  const std::size_t before = grids.size();
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (options.height > 0.0) options.towards = above(scene, caster, surfaces[i], up);
+    try {
+      grids.push_back(lux_grid(scene, surfaces[i], up, options));
+    } catch (const InputError&) {
+      if (i + 1 == surfaces.size() && grids.size() == before) throw;
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<int> surfaces_named(const Scene& scene, const std::string& name) {
+  std::vector<int> fitting;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    if (scene.surfaces[i].name == name) return static_cast<int>(i);
-    names.push_back(scene.surfaces[i].name);
+    const Surface& surface = scene.surfaces[i];
+    if (surface.name == name) return {static_cast<int>(i)};
+    const std::string& material = scene.materials[static_cast<std::size_t>(surface.material)].name;
+    if (matches_glob(name, surface.name) || matches_glob(name, material)) {
+      fitting.push_back(static_cast<int>(i));
+    }
+    names.push_back(surface.name);
   }
+  if (!fitting.empty()) return fitting;
   throw InputError(
       fmt::format("{}: there is no surface '{}'.{} 'lightwell info {} --surfaces' lists all.",
                   scene.file.string(), name, did_you_mean(name, names), scene.file.string()));
 }
 
-}  // namespace
+void require_surfaces(const GridRequest& asked, const Scene& scene) {
+  for (const std::string& name : asked.surfaces) surfaces_named(scene, name);
+  for (const NamedNumber& plane : asked.planes) surfaces_named(scene, plane.name);
+}
 
 std::vector<LuxGrid> requested_grids(const GridRequest& asked,
                                      std::span<const CalculationGrid> of_file, const Scene& scene,
-                                     const Eigen::Vector3d& up) {
+                                     const ElementCaster& caster, const Eigen::Vector3d& up) {
   std::vector<LuxGrid> grids;
   const double spacing = asked.spacing;
   constexpr double strip = 0.5;  // m
   const double margin = asked.margin.value_or(strip);
   for (const CalculationGrid& grid : of_file) {
     const double usual = grid.height > 0.0 ? margin : 0.0;
-    LuxGrid made = lux_grid(scene, grid.surface, up,
-                            {.height = grid.height,
-                             .margin = grid.margin.value_or(usual),
-                             .spacing = grid.spacing > 0.0 ? grid.spacing : spacing,
-                             .part = grid.part});
+    LuxGrid made = lux_grid(
+        scene, grid.surface, up,
+        {.height = grid.height,
+         .margin = grid.margin.value_or(usual),
+         .spacing = grid.spacing > 0.0 ? grid.spacing : spacing,
+         .part = grid.part,
+         .towards = grid.height > 0.0 ? above(scene, caster, grid.surface, up) : std::nullopt});
     made.name = grid.name;
     for (const int other : grid.leaves_out) {
       made = without_points_over(grids[static_cast<std::size_t>(other)], std::move(made));
@@ -51,13 +144,17 @@ std::vector<LuxGrid> requested_grids(const GridRequest& asked,
     grids.push_back(std::move(made));
   }
   for (const std::string& name : asked.surfaces) {
-    grids.push_back(lux_grid(scene, find_surface(scene, name), up, {.spacing = spacing}));
+    add_grids(scene, caster, name, up, {.spacing = spacing}, grids);
   }
   for (const NamedNumber& plane : asked.planes) {
-    grids.push_back(lux_grid(scene, find_surface(scene, plane.name), up,
-                             {.height = plane.value, .margin = margin, .spacing = spacing}));
-    grids.back().name = fmt::format("{} + {:g} {}", plane.name, plane.value / scene.metres_per_unit,
-                                    scene.unit_name);
+    const std::size_t first = grids.size();
+    add_grids(scene, caster, plane.name, up,
+              {.height = plane.value, .margin = margin, .spacing = spacing}, grids);
+    for (std::size_t g = first; g < grids.size(); ++g) {
+      const Surface& surface = scene.surfaces[static_cast<std::size_t>(grids[g].surface)];
+      grids[g].name = fmt::format("{} + {:g} {}", surface.name, plane.value / scene.metres_per_unit,
+                                  scene.unit_name);
+    }
   }
   return grids;
 }

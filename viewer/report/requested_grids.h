@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/elements/element_caster.h"
 #include "raytrace/readings/lux_grid.h"
 #include "scene/io/lighting_design.h"
 
@@ -16,7 +17,8 @@ struct NamedNumber {
   double value = 0.0;
 };
 
-/// Surfaces, and planes above surfaces, with a grid of points each. Lengths in metres.
+/// Surfaces, and planes above surfaces, with a grid of points each. Names are those of
+/// surfaces_named(). Lengths in metres.
 struct GridRequest {
   std::vector<std::string> surfaces{};
   std::vector<NamedNumber> planes{};  ///< heights above surfaces, >= 0
@@ -28,11 +30,22 @@ struct GridRequest {
   bool is_empty() const { return surfaces.empty() && planes.empty(); }
 };
 
-/// The grids of a scene file, of surfaces and of planes, in this order. `scene` has the surfaces of
-/// the file by their names (see JoinedSurfaces::apart). Throws InputError for a surface that is not
-/// there, and what lux_grid() throws.
+/// Indices into Scene::surfaces: the surface of this name, or else all whose name or material fits
+/// it as a pattern (see matches_glob()). Throws InputError if there is none.
+std::vector<int> surfaces_named(const Scene& scene, const std::string& name);
+
+/// Throws InputError unless a surface of each name is there: before the long work that the grids
+/// wait for.
+void require_surfaces(const GridRequest& asked, const Scene& scene);
+
+/// The grids of a scene file, of surfaces and of planes, in this order. Planes lie before the front
+/// of their surface. They lie above a level surface of two sides whose front faces down, unless far
+/// more of the scene is around its front than around its back, as with a ceiling. `caster` is of
+/// the scene's mesh. `scene` has the surfaces of the file by their names (see
+/// JoinedSurfaces::apart). Throws InputError for a surface that is not there, and what lux_grid()
+/// throws.
 std::vector<LuxGrid> requested_grids(const GridRequest& asked,
                                      std::span<const CalculationGrid> of_file, const Scene& scene,
-                                     const Eigen::Vector3d& up);
+                                     const ElementCaster& caster, const Eigen::Vector3d& up);
 
 }  // namespace lightwell

@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "scene/limits.h"
+#include "scene/errors.h"
 
 namespace lightwell {
 namespace {
@@ -61,8 +61,11 @@ HoneybeeKind free_shade_kind(const JsonObject& shade, bool usually_detached) {
 }  // namespace
 
 void HoneybeeShapes::add(const JsonObject& model) {
+  if (const double tolerance = model.number_or("tolerance", 0.0); tolerance > 0.0) {
+    gap_ = 2.0 * metres_per_unit_ * tolerance;
+  }
   for_each(model, "rooms", [&](const JsonObject& room) { add_room(room); });
-  for_each(model, "orphaned_faces", [&](const JsonObject& face) { add_face(face, ""); });
+  for_each(model, "orphaned_faces", [&](const JsonObject& face) { add_face(face, "", false); });
   for_each(model, "orphaned_apertures", [&](const JsonObject& aperture) {
     add_opening(aperture, aperture_kind(aperture, HoneybeeKind::wall), "");
   });
@@ -89,8 +92,23 @@ void HoneybeeShapes::add_room(const JsonObject& room) {
   }
   const auto radiance = radiance_properties(room);
   const std::string set = radiance ? radiance->string_or("modifier_set", "") : "";
-  for_each(room, "faces", [&](const JsonObject& face) { add_face(face, set); });
+  const bool is_turned = faces_outward(room);
+  for_each(room, "faces", [&](const JsonObject& face) { add_face(face, set, is_turned); });
   add_shades(room, set);
+}
+
+// True if the faces of a room enclose a positive volume: a third of the sum of p . n dA (Gauss).
+bool HoneybeeShapes::faces_outward(const JsonObject& room) const {
+  double volume = 0.0;
+  for (const JsonObject& face : room.objects("faces")) {
+    try {
+      const Loop boundary = polygon_of(face).boundary;
+      volume += boundary.front().dot(area_vector(boundary)) / 3.0;
+    } catch (const InputError&) {
+      continue;  // add_face() names the fault
+    }
+  }
+  return volume > 0.0;
 }
 
 // True if a face or opening lies between two rooms, and the other room had it.
@@ -104,9 +122,8 @@ bool HoneybeeShapes::is_read_already(const JsonObject& object) {
   return false;
 }
 
-void HoneybeeShapes::add_face(const JsonObject& face, const std::string& set) {
+void HoneybeeShapes::add_face(const JsonObject& face, const std::string& set, bool is_turned) {
   add_shades(face, set);
-  if (is_read_already(face)) return;
   const HoneybeeKind kind = face_kind(face);
   Polygon polygon = polygon_of(face);
   for (const char* list : {"apertures", "doors"}) {
@@ -119,6 +136,14 @@ void HoneybeeShapes::add_face(const JsonObject& face, const std::string& set) {
   if (face.string_or("face_type", "") == "AirBoundary") {
     remarks_.mention("Air boundaries were read as open", name_of(face));
     return;
+  }
+  if (is_turned) std::ranges::reverse(polygon.boundary);
+  if (is_read_already(face)) {
+    const Eigen::Vector3d inward = gap_ * area_vector(polygon.boundary).stableNormalized();
+    for (Eigen::Vector3d& point : polygon.boundary) point += inward;
+    for (Loop& hole : polygon.holes) {
+      for (Eigen::Vector3d& point : hole) point += inward;
+    }
   }
   add_polygon(face, kind, set, std::move(polygon));
 }
@@ -151,6 +176,12 @@ Polygon HoneybeeShapes::polygon_of(const JsonObject& object) const {
                                polygon.boundary.size()));
   }
   for (const Loop& hole : geometry->point_lists("holes")) polygon.holes.push_back(scaled(hole));
+  // The order of the points says less than the plane, where that is given.
+  const auto plane = geometry->object("plane");
+  const auto normal = plane ? plane->point("n") : std::nullopt;
+  if (normal && normal->dot(area_vector(polygon.boundary)) < 0.0) {
+    std::ranges::reverse(polygon.boundary);
+  }
   return polygon;
 }
 

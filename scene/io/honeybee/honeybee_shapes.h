@@ -17,14 +17,17 @@
 namespace lightwell {
 
 /// Converts the rooms, faces, openings and shades of a Honeybee model to surfaces, one for each
-/// object, with the identifier of the object as name. Openings are cut out of their face. Faces and
-/// openings that two rooms share are read once, and air boundaries are open.
+/// object, with the identifier of the object as name. Openings are cut out of their face. The
+/// fronts of a room's faces face into the room. Of two faces between two rooms, the second is moved
+/// into its room by twice the model's tolerance, as Honeybee does for RADIANCE, so that each room
+/// sees its own; openings between two rooms are read once. Air boundaries are open.
 class HoneybeeShapes {
  public:
   /// Keeps references. `metres_per_unit` scales all coordinates.
   HoneybeeShapes(double metres_per_unit, HoneybeeModifiers& modifiers, Scene& scene,
                  Remarks& remarks)
       : metres_per_unit_(metres_per_unit),
+        gap_(usual_gap),
         modifiers_(modifiers),
         scene_(scene),
         remarks_(remarks) {}
@@ -38,7 +41,8 @@ class HoneybeeShapes {
   template <class Use>
   void for_each(const JsonObject& parent, const char* list, Use use);
   void add_room(const JsonObject& room);
-  void add_face(const JsonObject& face, const std::string& set);
+  bool faces_outward(const JsonObject& room) const;
+  void add_face(const JsonObject& face, const std::string& set, bool is_turned);
   void add_opening(const JsonObject& opening, HoneybeeKind kind, const std::string& set);
   void add_shades(const JsonObject& parent, const std::string& set);
   void add_shade_mesh(const JsonObject& mesh);
@@ -51,7 +55,10 @@ class HoneybeeShapes {
   void account(const JsonObject& object, std::size_t corners);
   bool is_read_already(const JsonObject& object);
 
+  static constexpr double usual_gap = 0.02;  // m, for the usual tolerance of 1 cm
+
   double metres_per_unit_;
+  double gap_;  // m, between the two faces between two rooms
   HoneybeeModifiers& modifiers_;
   Scene& scene_;
   Remarks& remarks_;

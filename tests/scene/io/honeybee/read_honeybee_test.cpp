@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -110,6 +111,30 @@ TEST(ReadHoneybee, OpeningsAreCutOutOfTheirFaceAlsoAtItsEdge) {
   EXPECT_NEAR(area.at("floor"), 12.0, rounding);
 }
 
+TEST(ReadHoneybee, FrontsOfARoomFaceIntoIt) {
+  const Eigen::Vector3d middle(2.0, 1.5, 1.25);
+  json inside_out = model();
+  for (json& each : inside_out["rooms"][0]["faces"]) {
+    json& boundary = each["geometry"]["boundary"];
+    std::reverse(boundary.begin(), boundary.end());
+  }
+  json by_plane = inside_out;
+  const std::map<std::string, json> outward = {{"south", {0, -1, 0}}, {"north", {0, 1, 0}},
+                                               {"west", {-1, 0, 0}},  {"east", {1, 0, 0}},
+                                               {"floor", {0, 0, -1}}, {"ceiling", {0, 0, 1}}};
+  for (json& each : by_plane["rooms"][0]["faces"]) {
+    each["geometry"]["plane"] = {{"n", outward.at(each["identifier"])}};
+  }
+  for (const json& of : {model(), inside_out, by_plane}) {
+    for (const Surface& surface : read(of).surfaces) {
+      if (surface.name == "window" || surface.name == "door") continue;
+      const auto& mesh = std::get<PolygonMesh>(surface.shape);
+      const Eigen::Vector3d inward = middle - mesh.vertices[0];
+      EXPECT_GT(facet_normal(mesh, mesh.facets[0]).dot(inward), 0.0) << surface.name;
+    }
+  }
+}
+
 TEST(ReadHoneybee, HolesOfAFaceAreOpen) {
   json shade = object("canopy", rectangle({0, 0, 4}, {3, 0, 0}, {0, 3, 0}));
   shade["geometry"]["holes"] =
@@ -215,16 +240,16 @@ polygons = [[[0.5, 0, 1], [2.5, 0, 1], [2.5, 0, 2], [0.5, 0, 2]]]
 [[surfaces]]
 name = "south"
 material = "2_wall"
-polygon = [[0, 0, 0], [4, 0, 0], [4, 0, 2.5], [0, 0, 2.5]]
+polygon = [[0, 0, 2.5], [4, 0, 2.5], [4, 0, 0], [0, 0, 0]]
 holes = [[[0.5, 0, 1], [2.5, 0, 1], [2.5, 0, 2], [0.5, 0, 2]]]
 [[surfaces]]
 name = "floor"
 material = "3_floor"
-polygons = [[[0, 3, 0], [4, 3, 0], [4, 0, 0], [0, 0, 0]]]
+polygons = [[[0, 0, 0], [4, 0, 0], [4, 3, 0], [0, 3, 0]]]
 [[surfaces]]
 name = "ceiling"
 material = "4_ceiling"
-polygons = [[[0, 0, 2.5], [4, 0, 2.5], [4, 3, 2.5], [0, 3, 2.5]]]
+polygons = [[[0, 3, 2.5], [4, 3, 2.5], [4, 0, 2.5], [0, 0, 2.5]]]
 )",
       0.6975761815384331);
   json of = model();
@@ -235,7 +260,7 @@ polygons = [[[0, 0, 2.5], [4, 0, 2.5], [4, 3, 2.5], [0, 3, 2.5]]]
 }
 
 // Two rooms side by side share a wall with a window; their other common face is air.
-TEST(ReadHoneybee, WhatTwoRoomsShareIsReadOnceAndAirIsOpen) {
+TEST(ReadHoneybee, RoomsHaveTheirOwnFacesShareOpeningsAndAirIsOpen) {
   const auto shared = [](const std::string& name, const std::string& other, double x) {
     json wall = face(name, "Wall", rectangle({x, 0, 0}, {0, 3, 0}, {0, 0, 2.5}));
     wall["boundary_condition"] = {{"type", "Surface"},
@@ -254,8 +279,9 @@ TEST(ReadHoneybee, WhatTwoRoomsShareIsReadOnceAndAirIsOpen) {
   second["faces"] = json::array({shared("b", "a", 4.0)});
   const Scene scene = read(model({first, second}));
   const auto area = areas(scene);
-  ASSERT_EQ(area.size(), 2u);
+  ASSERT_EQ(area.size(), 3u);
   EXPECT_NEAR(area.at("a"), 7.5 - 1.0, rounding);
+  EXPECT_NEAR(area.at("b"), 7.5 - 1.0, rounding);
   EXPECT_NEAR(area.at("window of a"), 1.0, rounding);
   // Inner windows have the clearer glass.
   EXPECT_EQ(material_of(scene, "window of a").name, "generic_interior_window_vis_0.88");
