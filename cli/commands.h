@@ -34,6 +34,7 @@ Action add_export(CLI::App& command);
 Action add_report(CLI::App& command);
 Action add_compare(CLI::App& command);
 Action add_design(CLI::App& command);
+Action add_road(CLI::App& command);
 Action add_daylight(CLI::App& command);
 Action add_form_factors(CLI::App& command);
 Action add_radiation(CLI::App& command);

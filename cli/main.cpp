@@ -46,6 +46,8 @@ constexpr const char* recipes =
                                                          lux, uniformity and glare as a page
   lightwell design office.toml --limits limits.toml -o design
                                                          the dimming of least power within limits
+  lightwell road street.toml --max-spacing -o street.html
+                                                         road lighting by EN 13201
   lightwell daylight office.toml --weather city.epw --plane floor@0.8 -o year
                                                          every hour of a year: DA, sDA, EN 17037
   lightwell compare mine.exr reference.exr               how far two pictures are apart
@@ -65,7 +67,7 @@ struct NamedCommand {
   Action (*add)(CLI::App&);
   bool reads_scene = true;
 };
-constexpr std::array<NamedCommand, 19> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 20> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight, false},
@@ -75,6 +77,7 @@ constexpr std::array<NamedCommand, 19> commands = {{{"run", add_run},
                                                     {"export", add_export},
                                                     {"report", add_report},
                                                     {"design", add_design},
+                                                    {"road", add_road, false},
                                                     {"daylight", add_daylight},
                                                     {"compare", add_compare, false},
                                                     {"form-factors", add_form_factors},

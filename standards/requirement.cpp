@@ -1,6 +1,7 @@
 #include "standards/requirement.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,23 +15,28 @@ double share(double part, double whole) {
 }  // namespace
 
 const char* figure_symbol(Figure figure) {
-  switch (figure) {
-    case Figure::mean:
-      return "E_m";
-    case Figure::least:
-      return "E_min";
-    case Figure::uniformity:
-      return "U_0";
-    case Figure::diversity:
-      return "E_max / E_min";
-    case Figure::cylindrical:
-      return "E_m,z";
-    case Figure::modelling:
-      return "E_m,z / E_m";
-    case Figure::glare:
-      break;
-  }
-  return "UGR";
+  constexpr std::array names = {"E_m",
+                                "E_min",
+                                "U_0",
+                                "E_max / E_min",
+                                "E_m,z",
+                                "E_m,z / E_m",
+                                "UGR",
+                                "L_m",
+                                "U_o",
+                                "U_o,wet",
+                                "U_l",
+                                "f_TI",
+                                "R_EI",
+                                "E_v,min",
+                                "E_sc,min",
+                                "E_v,m",
+                                "E_v,min / E_v,m",
+                                "E_v,min / E_v,max",
+                                "gradient",
+                                "R_G",
+                                "R_a"};
+  return names[static_cast<std::size_t>(figure)];
 }
 
 const char* verdict_name(Verdict standing) {

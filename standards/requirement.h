@@ -17,7 +17,24 @@ enum class Figure {
   diversity,    ///< E_max / E_min
   cylindrical,  ///< mean cylindrical illuminance E_m,z, lx
   modelling,    ///< cylindrical over horizontal illuminance of the same points
-  glare         ///< unified glare rating R_UG
+  glare,        ///< unified glare rating R_UG
+  // Roads
+  luminance,                ///< L_m of the road, cd/m^2
+  overall_uniformity,       ///< U_o = L_min / L_m
+  wet_uniformity,           ///< U_o of the wet road
+  longitudinal_uniformity,  ///< U_l = L_min / L_max along the middle of a lane
+  threshold_increment,      ///< f_TI, percent
+  edge_ratio,               ///< R_EI, of illuminance beside the road to that within
+  least_vertical,           ///< E_v,min, lx
+  least_semicylindrical,    ///< E_sc,min, lx
+  // Sports
+  vertical_mean,        ///< E_v,m towards a camera, lx
+  vertical_uniformity,  ///< E_v,min / E_v,m
+  vertical_contrast,    ///< E_v,min / E_v,max
+  gradient,             ///< greatest change of illuminance between neighbouring points, percent
+  glare_rating,         ///< R_G of CIE 112
+  // Colours
+  colour_rendering  ///< R_a
 };
 
 /// Symbol of a figure: "E_m".

@@ -157,11 +157,13 @@ std::string area_text(std::span<const Requirement> of_area) {
   for (const Requirement& requirement : of_area) {
     const Verdict verdict = verdict_of(requirement);
     if (verdict == Verdict::met) continue;
-    text += fmt::format("  {}{}: {} {} of {} ± {:.2g}, {} {}\n",
+    const std::string within =
+        requirement.within == 0.0 ? "" : fmt::format(" ± {:.2g}", requirement.within);
+    text += fmt::format("  {}{}: {} {} of {}{}, {} {}\n",
                         requirement.is_recommended ? "recommended, " : "", verdict_name(verdict),
                         figure_symbol(requirement.figure),
                         figure_text(requirement.figure, *requirement.value), requirement.place,
-                        requirement.within, requirement.is_upper ? "at most" : "at least",
+                        within, requirement.is_upper ? "at most" : "at least",
                         figure_text(requirement.figure, requirement.limit));
   }
   return text;
@@ -207,26 +209,51 @@ nlohmann::ordered_json figures_json(const LightingReport& report) {
                          {"LENI_kWh_per_m2", report.energy->indicator}};
   }
   if (report.requirements.empty()) return figures;
-  Json requirements = Json::array();
-  for (const Requirement& requirement : report.requirements) {
-    requirements.push_back(requirement_json(requirement));
-  }
-  figures["requirements"] = std::move(requirements);
+  figures["requirements"] = requirements_json(report.requirements);
   figures["verdict"] = verdict_name(verdict_of(report.requirements));
   return figures;
+}
+
+nlohmann::ordered_json requirements_json(std::span<const Requirement> requirements) {
+  Json list = Json::array();
+  for (const Requirement& requirement : requirements) {
+    list.push_back(requirement_json(requirement));
+  }
+  return list;
+}
+
+std::string verdicts_text(std::span<const Requirement> requirements) {
+  std::string text;
+  for (const auto& of_area : by_area(requirements)) text += area_text(of_area);
+  return text;
 }
 
 std::string figure_text(Figure figure, double value) {
   switch (figure) {
     case Figure::uniformity:
     case Figure::modelling:
+    case Figure::luminance:
+    case Figure::overall_uniformity:
+    case Figure::wet_uniformity:
+    case Figure::longitudinal_uniformity:
+    case Figure::edge_ratio:
+    case Figure::vertical_uniformity:
+    case Figure::vertical_contrast:
       return fmt::format("{:.2f}", value);
     case Figure::glare:
     case Figure::diversity:
+    case Figure::threshold_increment:
+    case Figure::gradient:
+    case Figure::glare_rating:
       return fmt::format("{:.1f}", value);
+    case Figure::colour_rendering:
+      return fmt::format("{:.0f}", value);
     case Figure::mean:
     case Figure::least:
     case Figure::cylindrical:
+    case Figure::least_vertical:
+    case Figure::least_semicylindrical:
+    case Figure::vertical_mean:
       break;
   }
   return lux_text(value);

@@ -102,7 +102,7 @@ DocumentSection results_section(const LightingReport& report, Language language)
 DocumentSection limits_section(const LightingReport& report, Language language) {
   DocumentSection section{word_in(language, Word::limits_of_standards)};
   section.blocks.emplace_back(DocumentParagraph{word_in(language, Word::limits_mean)});
-  for (DocumentTable& table : requirement_tables(report, language)) {
+  for (DocumentTable& table : requirement_tables(report.requirements, language)) {
     add_table(section, std::move(table));
   }
   return section;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
 #include "viewer/report/figures.h"
@@ -10,24 +11,30 @@
 namespace lightwell {
 namespace {
 
+// In the order of Figure.
 MarkedText marked_symbol(Figure figure) {
-  switch (figure) {
-    case Figure::mean:
-      return "E<sub>m</sub>, lx";
-    case Figure::least:
-      return "E<sub>min</sub>, lx";
-    case Figure::uniformity:
-      return "U<sub>0</sub>";
-    case Figure::diversity:
-      return "E<sub>max</sub>/E<sub>min</sub>";
-    case Figure::cylindrical:
-      return "E<sub>m,z</sub>, lx";
-    case Figure::modelling:
-      return "E<sub>m,z</sub>/E<sub>m</sub>";
-    case Figure::glare:
-      break;
-  }
-  return "R<sub>UG</sub>";
+  constexpr std::array names = {"E<sub>m</sub>, lx",
+                                "E<sub>min</sub>, lx",
+                                "U<sub>0</sub>",
+                                "E<sub>max</sub>/E<sub>min</sub>",
+                                "E<sub>m,z</sub>, lx",
+                                "E<sub>m,z</sub>/E<sub>m</sub>",
+                                "R<sub>UG</sub>",
+                                "L<sub>m</sub>, cd/m²",
+                                "U<sub>o</sub>",
+                                "U<sub>o,wet</sub>",
+                                "U<sub>l</sub>",
+                                "f<sub>TI</sub>, %",
+                                "R<sub>EI</sub>",
+                                "E<sub>v,min</sub>, lx",
+                                "E<sub>sc,min</sub>, lx",
+                                "E<sub>v,m</sub>, lx",
+                                "E<sub>v,min</sub>/E<sub>v,m</sub>",
+                                "E<sub>v,min</sub>/E<sub>v,max</sub>",
+                                "gradient, %",
+                                "R<sub>G</sub>",
+                                "R<sub>a</sub>"};
+  return names[static_cast<std::size_t>(figure)];
 }
 
 const char* verdict_word(Verdict verdict, Language language) {
@@ -66,9 +73,10 @@ TableRow requirement_row(const Requirement& requirement, Language language) {
 
 }  // namespace
 
-std::vector<DocumentTable> requirement_tables(const LightingReport& report, Language language) {
+std::vector<DocumentTable> requirement_tables(std::span<const Requirement> requirements,
+                                              Language language) {
   std::vector<DocumentTable> tables;
-  for (const auto& of_area : by_area(report.requirements)) {
+  for (const auto& of_area : by_area(requirements)) {
     DocumentTable table{.title = fmt::format("{}: {}", marked(of_area.front().area),
                                              verdict_word(verdict_of(of_area), language)),
                         .columns = {{word_in(language, Word::figure), true},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "viewer/document/document.h"
@@ -9,7 +10,8 @@
 namespace lightwell {
 
 /// Limits of standards with figures and verdicts: a table for each area.
-std::vector<DocumentTable> requirement_tables(const LightingReport& report, Language language);
+std::vector<DocumentTable> requirement_tables(std::span<const Requirement> requirements,
+                                              Language language);
 
 /// Light at the eyes of observers; without rows if there are none.
 DocumentTable eye_table(const LightingReport& report, Language language);

@@ -121,7 +121,7 @@ TEST(LightingDocument, LimitsOfStandardsHaveATableForEachArea) {
        .limit = 0.4,
        .value = 0.31,
        .within = 0.02}};
-  const auto tables = requirement_tables(report, Language::german);
+  const auto tables = requirement_tables(report.requirements, Language::german);
   ASSERT_EQ(tables.size(), 2u);
   EXPECT_EQ(tables[0].title, "desk: eingehalten");
   ASSERT_EQ(tables[0].rows.size(), 2u);
