@@ -26,7 +26,7 @@ struct LightingArguments {
   GridArguments grids;
   std::vector<NamedNumber> watts;
   std::optional<double> maintenance_factor;
-  std::string areas, activity, activities;
+  std::string areas, activity, activities, sports;
   int rays = 1024;
   std::optional<LuxRange> range;
   std::string picture;  // camera; empty: the first; no_picture: none
@@ -56,6 +56,7 @@ ReportRequest request_of(const LightingArguments& arguments, const Scene& scene)
                         .areas = arguments.areas,
                         .activity = arguments.activity,
                         .activities = arguments.activities,
+                        .sports = arguments.sports,
                         .rays = arguments.rays,
                         .has_picture = needs_picture(arguments)};
   if (arguments.picture != no_picture) request.camera = arguments.picture;
@@ -131,12 +132,17 @@ Action add_report(CLI::App& command) {
                   "hold all working planes to EN 12464-1 for this activity: writing, corridor, ...")
       ->type_name("KEY");
   command
-      .add_option("--areas", arguments->areas,
-                  "grids and areas of EN 12464-1 and EN 1838, in place of the scene file's")
+      .add_option(
+          "--areas", arguments->areas,
+          "grids and areas of EN 12464-1, EN 1838 and EN 12193, in place of the scene file's")
       ->type_name("FILE.toml");
   command
       .add_option("--activities", arguments->activities,
                   "table of activities in place of the program's")
+      ->type_name("FILE.toml");
+  command
+      .add_option("--sports", arguments->sports,
+                  "table of sports and classes in place of the program's")
       ->type_name("FILE.toml");
   add_watts(command, arguments->watts);
   command

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "scene/colour_matching.h"
 #include "scene/spectrum_samples.h"
@@ -76,6 +77,23 @@ std::optional<EyeLight> eye_light(const SpectralPower& power) {
   light.colour_temperature = nearest.kelvin;
   light.colour_rendering = general_colour_rendering(power, nearest);
   return light;
+}
+
+std::optional<RatedColour> rated_colour(const SpectralPower& power) {
+  const auto light = eye_light(power);
+  if (!light || !light->colour_rendering) return {};
+  SpectralPower wider{.edges_nm = {power.edges_nm.front()}};
+  for (std::size_t k = 0; k < power.watts.size(); k += 2) {
+    const std::size_t end = std::min(k + 2, power.watts.size());
+    wider.edges_nm.push_back(power.edges_nm[end]);
+    wider.watts.push_back(power.watts[k] + (end > k + 1 ? power.watts[k + 1] : 0.0));
+  }
+  const auto coarse = eye_light(wider);
+  const double unknown = std::numeric_limits<double>::quiet_NaN();
+  return RatedColour{.rendering = *light->colour_rendering,
+                     .within = coarse && coarse->colour_rendering
+                                   ? std::abs(*coarse->colour_rendering - *light->colour_rendering)
+                                   : unknown};
 }
 
 }  // namespace lightwell

@@ -55,6 +55,14 @@ std::optional<SpectralPower> spectral_power(const Bands& bands, const Spectrum& 
 /// have values from 380 to 780 nm. Empty without light.
 std::optional<EyeLight> eye_light(const SpectralPower& power);
 
+/// R_a of a light, and a bound of its error by the width of the intervals: the difference that
+/// intervals twice as wide make.
+struct RatedColour {
+  double rendering = 0.0, within = 0.0;
+};
+/// Empty where R_a is not defined (see EyeLight).
+std::optional<RatedColour> rated_colour(const SpectralPower& power);
+
 /// Power of a CIE daylight illuminant of `kelvin`, 4000 to 25 000, in intervals of 1 nm around 380
 /// to 780 nm, of one lux (CIE 15). D65 is that of 6504 K.
 SpectralPower daylight_illuminant(double kelvin);

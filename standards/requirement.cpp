@@ -128,4 +128,16 @@ Requirement diversity_at_most(double limit, const GridField& of) {
   return made;
 }
 
+void add_colour_rendering(double limit, const std::vector<NamedRating>& luminaires,
+                          const std::string& area, std::vector<Requirement>& requirements) {
+  const auto worst = std::ranges::min_element(luminaires, {}, &NamedRating::value);
+  if (!(limit > 0.0) || worst == luminaires.end()) return;
+  requirements.push_back({.area = area,
+                          .place = worst->name,
+                          .figure = Figure::colour_rendering,
+                          .limit = limit,
+                          .value = worst->value,
+                          .within = worst->within});
+}
+
 }  // namespace lightwell

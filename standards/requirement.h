@@ -84,6 +84,18 @@ struct GridField {
 /// found at all, so that nothing is known.
 double known_bound(const LuxField& field, double lux);
 
+/// A rating, or an index, of a name.
+struct NamedRating {
+  std::string name{};
+  double value = 0.0;
+  double within = 0.0;  ///< bound of its error; NaN: unknown
+};
+
+/// Adds the requirement for the colour rendering R_a of luminaires: that of the worst one. Nothing
+/// if no R_a is known, or the limit is 0.
+void add_colour_rendering(double limit, const std::vector<NamedRating>& luminaires,
+                          const std::string& area, std::vector<Requirement>& requirements);
+
 /// Requirement for the mean of a field, and for the uniformity of a field. The bound of U_0 is the
 /// sum of the relative bounds of E_min and E_m.
 Requirement mean_at_least(double limit, const GridField& of);

@@ -93,7 +93,9 @@ std::vector<Requirement> work_place_requirements(const WorkPlace& place, const A
       requirements.add(glare_at_most(activity.glare, observer));
     }
   }
-  return requirements.take();
+  std::vector<Requirement> all = requirements.take();
+  add_colour_rendering(activity.colour_rendering, place.luminaires, place.name, all);
+  return all;
 }
 
 }  // namespace lightwell

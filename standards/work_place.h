@@ -25,6 +25,7 @@ struct WorkPlace {
   GridField cylindrical{};  ///< cylindrical illuminance over the task area
   GridField horizontal{};   ///< planar illuminance at the points of `cylindrical`
   std::vector<NamedGlare> observers{};
+  std::vector<NamedRating> luminaires{};  ///< R_a of those whose spectrum is known
 };
 
 /// Least mean illuminance of the immediate surroundings of a task area, lx, for the one that the
@@ -40,7 +41,8 @@ double surround_mean(double task_mean);
 ///   E_m,z / E_m from 0.30 to 0.60;
 /// - R_UG of each observer. The bound of R_UG is that of the background's luminance: 8 / ln 10
 /// times
-///   the relative bound.
+///   the relative bound;
+/// - R_a of the worst luminaire whose spectrum is known.
 std::vector<Requirement> work_place_requirements(const WorkPlace& place, const Activity& activity,
                                                  bool is_raised);
 

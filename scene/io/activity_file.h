@@ -14,7 +14,7 @@ struct Activity {
   double mean = 0.0;              ///< least E_m of the task area, lx
   double raised_mean = 0.0;       ///< the same where the standard's reasons to raise it apply, lx
   double uniformity = 0.0;        ///< least U_0 of the task area
-  double colour_rendering = 0.0;  ///< least R_a, which is listed and not computed
+  double colour_rendering = 0.0;  ///< least R_a of luminaires
   double glare = 0.0;             ///< greatest R_UG
   double cylindrical = 0.0;       ///< least mean cylindrical illuminance E_m,z, lx
   double walls = 0.0;             ///< least E_m of a wall, lx

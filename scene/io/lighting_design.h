@@ -41,13 +41,32 @@ enum class EmergencyArea {
   high_risk_task_area  ///< where a dangerous process must be brought to an end
 };
 
+/// Limits of illuminance towards cameras; 0: none.
+struct TelevisionLimits {
+  double mean = 0.0;        ///< least E_v,m, lx
+  double uniformity = 0.0;  ///< least E_v,min / E_v,m
+  double contrast = 0.0;    ///< least E_v,min / E_v,max
+  double gradient = 0.0;    ///< greatest change between neighbouring points, percent
+};
+
+/// What an area for sports has beside its grid.
+struct SportUse {
+  std::string sport{};                 ///< key of a sport
+  int number = 1;                      ///< of its class: 1, 2 or 3
+  double reflectance = 0.2;            ///< of the ground, for glare ratings
+  std::vector<std::string> cameras{};  ///< of television
+  double camera_height = 1.0;          ///< m above the grid, of the points for cameras
+  TelevisionLimits television{};
+};
+
 /// An area that is held to the limits of a standard (an [[areas]] table): to those of EN 12464-1
-/// for an activity, or to those of EN 1838 in an emergency.
+/// for an activity, of EN 1838 in an emergency, or of EN 12193 for a sport.
 struct DesignArea {
   std::string name{};
-  std::string activity{};                       ///< key of an activity; empty in an emergency
+  std::string activity{};                       ///< key of an activity; empty for others
   bool is_raised = false;                       ///< held to the activity's raised illuminance
-  std::optional<EmergencyArea> emergency{};     ///< empty for an activity
+  std::optional<EmergencyArea> emergency{};     ///< empty for an activity or a sport
+  std::optional<SportUse> sport{};              ///< empty for an activity, and in an emergency
   double usual_lux = 0.0;                       ///< lx without emergency, of a high-risk task area
   int grid = 0;                                 ///< index into LightingDesign::grids
   std::optional<int> surround{}, background{};  ///< likewise

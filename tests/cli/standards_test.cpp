@@ -99,6 +99,55 @@ TEST_F(ReportCommand, APlaneIsHeldToTheLimitsOfAnActivity) {
   expect_refused({"--plane", "room@0.75", "--activities", "none.toml"}, 3, "mean");
 }
 
+/// The room of 4 m x 3 m as a pitch, whose p = 0.2 * 5^log10(4) = 0.53 m gives 7 x 5 points. The
+/// planes towards the door are upright. A panel above the eye makes a rating.
+TEST_F(ReportCommand, ASportsAreaIsHeldToItsClass) {
+  const std::string pitch = R"(
+[[grids]]
+name = "floor"
+surface = "room"
+part = { min = [0, 0, 0], max = [4, 3, 0] }
+[[areas]]
+name = "pitch"
+sport = "mine"
+class = "II"
+grid = "floor"
+observers = ["door"]
+cameras = ["door"]
+television = { mean = 1e6, gradient = 100 }
+)";
+  folder.write("areas.toml", pitch);
+  folder.write("mine.toml",
+               "[sports.mine]\nI = { mean = 9e9 }\nIII = { mean = 9e9 }\n"
+               "II = { mean = 1, uniformity = 0.01, glare_rating = 100, colour_rendering = 60 }\n");
+  const Json json = run_json({"report", "room.toml", "room.vtp", "--areas", "areas.toml",
+                              "--sports", "mine.toml", "--rays", "64"});
+  std::vector<std::string> figures;
+  for (const Json& one : json["requirements"]) figures.push_back(one["figure"]);
+  // The room has three bands, so R_a is not known.
+  EXPECT_EQ(figures, (Words{"E_m", "U_0", "E_v,m", "gradient", "R_G"}));
+  const Json& rating = json["requirements"][4];
+  EXPECT_EQ(rating["verdict"], "met");
+  EXPECT_GT(rating["value"].get<double>(), 0.0);
+  EXPECT_EQ(json["verdict"], "missed");
+  const Json& surfaces = json["surfaces"];
+  EXPECT_EQ(surfaces[1]["name"], "floor, EN 12193");
+  EXPECT_EQ(surfaces[1]["points"], 35);
+  EXPECT_EQ(surfaces[2]["name"], "floor, towards camera door");
+  EXPECT_EQ(surfaces[2]["quantity"], "vertical");
+  expect_refused({"--areas", "areas.toml"}, 3, "there is no sport 'mine'");
+  const auto refused = [&](const std::string& from, const std::string& to,
+                           const std::string& sentence) {
+    std::string text = pitch;
+    folder.write("areas.toml", text.replace(text.find(from), from.size(), to));
+    expect_refused({"--areas", "areas.toml", "--sports", "mine.toml"}, 3, sentence);
+  };
+  refused("\"II\"", "\"IV\"", "'I', 'II' or 'III'");
+  refused("cameras = [\"door\"]", "cameras = [\"dor\"]", "Did you mean 'door'?");
+  refused("gradient = 100", "gradient = 101", "gradient");
+  refused("sport = \"mine\"", "sport = \"mine\"\nactivity = \"writing\"", "activity");
+}
+
 class EyeLightReport : public CommandTest {};
 
 /// An observer before a panel of CIE illuminant E: its spectrum is even, and so is that of what
@@ -128,6 +177,7 @@ polygon = [[1, 1, 2.4], [1, 2, 2.4], [3, 2, 2.4], [3, 1, 2.4]]
 name = "chair"
 position = [0.5, 1.5, 1.2]
 direction = [1, 0, 0]
+up = [0, 0, 1]
 )");
   const Ended solved = run(Words{"solve", "room.toml", "-o", "room.vtp", "--quiet"} + quick());
   ASSERT_EQ(solved.code, 0) << solved.err;
@@ -140,6 +190,15 @@ direction = [1, 0, 0]
               eye["melanopic_DER"].get<double>() * eye["E_v"].get<double>(),
               1e-4 * eye["E_v"].get<double>());
   EXPECT_NEAR(eye["CCT"].get<double>(), 5455.0, 5.0) << "CIE 15: 5455 K";
+  // The spectrum of the panel is that of E, too, whose R_a CIE 13.3 programs give as 95.
+  const Json judged = run_json({"report", "room.toml", "room.vtp", "--plane", "room@0.75",
+                                "--activity", "corridor", "--rays", "64"});
+  EXPECT_NEAR(judged["luminaires"][0]["R_a"].get<double>(), 95.0, 0.6);
+  const Json& last = judged["requirements"].back();
+  EXPECT_EQ(last["figure"], "R_a");
+  EXPECT_EQ(last["place"], "panel");
+  EXPECT_EQ(last["at_least"], 80.0);
+  EXPECT_EQ(last["verdict"], "met");
 }
 
 }  // namespace

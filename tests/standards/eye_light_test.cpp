@@ -136,5 +136,34 @@ TEST(EyeLight, FarFromBlackBodiesHasNoColourTemperature) {
   EXPECT_GT(green.duv, 0.05);
 }
 
+// Three lines of 10 nm (standard deviation) as a lamp has them, in intervals of `step` nm, each
+// with the mean of its part.
+SpectralPower three_lines(double step) {
+  SpectralPower power{.edges_nm = {first_nm}};
+  for (double low = first_nm; low < 780.0 - 1e-9; low += step) {
+    double sum = 0.0;
+    for (double nm = low + 0.25; nm < low + step; nm += 0.5) {
+      for (const double peak : {450.0, 545.0, 610.0}) {
+        sum += std::exp(-0.5 * std::pow((nm - peak) / 10.0, 2));
+      }
+    }
+    power.edges_nm.push_back(low + step);
+    power.watts.push_back(sum);
+  }
+  return power;
+}
+
+/// The bound of R_a covers the error of wide intervals, against intervals of 1 nm, and shrinks with
+/// them. Daylight has R_a of 100 by definition.
+TEST(EyeLight, BoundsTheErrorOfColourRendering) {
+  const double exact = rated_colour(three_lines(1.0))->rendering;
+  for (const double step : {5.0, 10.0, 20.0}) {
+    const RatedColour rated = *rated_colour(three_lines(step));
+    EXPECT_LE(std::abs(rated.rendering - exact), rated.within) << step;
+  }
+  EXPECT_LT(rated_colour(three_lines(2.0))->within, 0.1);
+  EXPECT_NEAR(rated_colour(daylight_illuminant(6504.0))->rendering, 100.0, 0.1);
+}
+
 }  // namespace
 }  // namespace lightwell::eye_light_test

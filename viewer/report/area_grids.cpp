@@ -8,9 +8,11 @@
 #include <numbers>
 #include <utility>
 
+#include "raytrace/cameras/choose_camera.h"
 #include "scene/errors.h"
 #include "standards/activities.h"
 #include "standards/emergency.h"
+#include "standards/sports.h"
 #include "standards/work_place.h"
 
 namespace lightwell {
@@ -185,6 +187,33 @@ AreaGrids grids_of_emergency(const DesignArea& area, GridList& list) {
   return made;
 }
 
+// The points of EN 12193, and upright planes over them that face each camera.
+AreaGrids grids_of_sport(const DesignArea& area, const std::vector<Sport>& sports, GridList& list) {
+  const SportUse& use = *area.sport;
+  sport_limits(sports, use.sport, use.number, fmt::format("area '{}'", area.name));
+  LuxGrid pitch = sport_grid(list.grids[static_cast<std::size_t>(area.grid)]);
+  const std::string name = pitch.name;
+  pitch.name = name + ", EN 12193";
+  AreaGrids made{.pitch = list.add(pitch)};
+  for (const std::string& camera : use.cameras) {
+    LuxGrid grid = pitch;
+    grid.name = fmt::format("{}, towards camera {}", name, camera);
+    const Eigen::Vector3d lift = use.camera_height * list.up;
+    const Eigen::Vector3d eye = choose_camera(list.scene, camera).position;
+    grid.corner += lift;
+    grid.options.height += use.camera_height;
+    measure_as(GridQuantity::vertical, list.up, eye - middle_of(grid), grid);
+    for (Probe& point : grid.points) {
+      point.position += lift;
+      const Eigen::Vector3d way = eye - point.position;
+      const Eigen::Vector3d level = way - way.dot(list.up) * list.up;
+      if (level.norm() > 0.0) point.normal = level.normalized();
+    }
+    made.cameras.push_back(list.add(std::move(grid)));
+  }
+  return made;
+}
+
 /// Fields of a report by grid.
 class Fields {
  public:
@@ -196,6 +225,9 @@ class Fields {
     const CalculationSurface& surface = report_.surfaces[static_cast<std::size_t>(*grid)];
     const LuxField* const electric = electric_field(report_, surface);
     return {surface.grid.name, electric ? electric : &surface.field};
+  }
+  const LuxGrid& grid(int grid) const {
+    return report_.surfaces[static_cast<std::size_t>(grid)].grid;
   }
   std::vector<GridField> all(const std::vector<int>& grids) const {
     std::vector<GridField> fields;
@@ -224,10 +256,49 @@ std::vector<NamedGlare> observers_of(const DesignArea& area, const LightingRepor
   return observers;
 }
 
+// R_G of new luminaires for the eyes of an area; its bound follows from that of E_h,av.
+std::vector<NamedRating> glare_ratings(const DesignArea& area, const LuxField& pitch,
+                                       const Eigen::Vector3d& up, const LightingReport& report) {
+  constexpr double per_relative = 24.0 * 0.9 / std::numbers::ln10;
+  const double veil =
+      environment_veil(pitch.mean / report.maintenance_factor, area.sport->reflectance);
+  std::vector<NamedRating> ratings;
+  for (const std::string& name : area.observers) {
+    const auto at = std::ranges::find(report.observers, name, &Observer::name);
+    if (at == report.observers.end()) continue;
+    ratings.push_back(
+        {name, greatest_glare_rating(at->arriving, veil, up), per_relative * pitch.mean_within});
+  }
+  return ratings;
+}
+
+// R_a of the luminaires whose spectrum is known.
+std::vector<NamedRating> rated_luminaires(const LightingReport& report) {
+  std::vector<NamedRating> rated;
+  for (const LuminaireRow& row : report.luminaires) {
+    if (row.colour) rated.push_back({row.name, row.colour->rendering, row.colour->within});
+  }
+  return rated;
+}
+
+std::vector<Requirement> judge_sport(const DesignArea& area, const AreaGrids& grids,
+                                     const std::vector<Sport>& sports, const Eigen::Vector3d& up,
+                                     const Fields& fields, const LightingReport& report) {
+  const SportUse& use = *area.sport;
+  SportPlace place{.name = area.name, .pitch = fields[grids.pitch]};
+  for (const int grid : grids.cameras) {
+    place.cameras.push_back({fields[grid], &fields.grid(grid)});
+  }
+  place.observers = glare_ratings(area, *place.pitch.field, up, report);
+  place.luminaires = rated_luminaires(report);
+  return sport_requirements(place, sport_limits(sports, use.sport, use.number, area.name),
+                            use.television);
+}
+
 }  // namespace
 
 std::vector<AreaGrids> add_area_grids(const std::vector<DesignArea>& areas,
-                                      const std::vector<Activity>& activities, const Scene& scene,
+                                      const LimitTables& tables, const Scene& scene,
                                       const ElementCaster& caster, const Eigen::Vector3d& up,
                                       std::vector<LuxGrid>& grids) {
   GridList list{scene, caster, up, grids};
@@ -239,8 +310,12 @@ std::vector<AreaGrids> add_area_grids(const std::vector<DesignArea>& areas,
       made[a] = grids_of_emergency(area, list);
       continue;
     }
+    if (area.sport) {
+      made[a] = grids_of_sport(area, tables.sports, list);
+      continue;
+    }
     made[a] = {.task = area.grid, .surround = area.surround, .background = area.background};
-    const Activity& activity = activity_of(area, activities);
+    const Activity& activity = activity_of(area, tables.activities);
     const bool has_walls = activity.walls > 0.0 && !area.walls.empty();
     const bool has_ceilings = activity.ceiling > 0.0 && !area.ceilings.empty();
     if (!(activity.cylindrical > 0.0 || has_walls || has_ceilings)) continue;
@@ -267,9 +342,8 @@ std::vector<AreaGrids> add_area_grids(const std::vector<DesignArea>& areas,
 }
 
 std::vector<Requirement> judge_areas(const std::vector<DesignArea>& areas,
-                                     const std::vector<Activity>& activities,
-                                     const std::vector<AreaGrids>& of,
-                                     const LightingReport& report) {
+                                     const LimitTables& tables, const std::vector<AreaGrids>& of,
+                                     const Eigen::Vector3d& up, const LightingReport& report) {
   const Fields fields(report);
   std::vector<Requirement> requirements;
   for (std::size_t a = 0; a < areas.size(); ++a) {
@@ -282,6 +356,8 @@ std::vector<Requirement> judge_areas(const std::vector<DesignArea>& areas,
                                      .area = fields[grids.emergency],
                                      .centre_line = fields[grids.centre_line],
                                      .usual_lux = area.usual_lux});
+    } else if (area.sport) {
+      some = judge_sport(area, grids, tables.sports, up, fields, report);
     } else {
       some = work_place_requirements({.name = area.name,
                                       .task = fields[grids.task],
@@ -291,8 +367,9 @@ std::vector<Requirement> judge_areas(const std::vector<DesignArea>& areas,
                                       .ceilings = fields.all(grids.ceilings),
                                       .cylindrical = fields[grids.cylindrical],
                                       .horizontal = fields[grids.horizontal],
-                                      .observers = observers_of(area, report)},
-                                     activity_of(area, activities), area.is_raised);
+                                      .observers = observers_of(area, report),
+                                      .luminaires = rated_luminaires(report)},
+                                     activity_of(area, tables.activities), area.is_raised);
     }
     requirements.insert(requirements.end(), some.begin(), some.end());
   }

@@ -127,6 +127,7 @@ Json observer_json(const Observer& observer) {
 Json luminaire_json(const LuminaireRow& row) {
   Json json = {{"name", row.name}, {"number", row.count}, {"lumens", row.flux}};
   if (row.watts > 0.0) json["watts"] = row.watts;
+  if (row.colour) json["R_a"] = row.colour->rendering;
   if (row.file) {
     json["file"] = row.file->file.filename().string();
     json["luminaire"] = row.file->name;

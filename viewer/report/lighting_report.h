@@ -5,15 +5,24 @@
 #include <vector>
 
 #include "raytrace/readings/glare.h"
+#include "raytrace/readings/glare_rating.h"
 #include "raytrace/readings/lux_grid.h"
+#include "scene/io/activity_file.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/luminaires/luminaire_file.h"
 #include "standards/eye_light.h"
 #include "standards/requirement.h"
+#include "standards/sports.h"
 #include "viewer/export/appearance.h"
 #include "viewer/report/plan_lines.h"
 
 namespace lightwell {
+
+/// Tables of limits by keys.
+struct LimitTables {
+  std::vector<Activity> activities{};
+  std::vector<Sport> sports{};
+};
 
 /// A line of the schedule of luminaires: all emitters of one name.
 struct LuminaireRow {
@@ -21,6 +30,8 @@ struct LuminaireRow {
   int count = 0;       ///< surfaces or lamps
   double flux = 0.0;   ///< lm, of all `count` emitters, with the solution's channel scales
   double watts = 0.0;  ///< installed electric power of all `count` emitters, W; 0: unknown
+  /// R_a of the light of all; empty without wavelengths, and where R_a is not defined.
+  std::optional<RatedColour> colour{};
   /// The photometric file; null: none, or not the same for all lamps of the name.
   SharedLuminaireFile file{};
 };
@@ -52,6 +63,8 @@ struct Observer {
   /// with odds of about 19 to 1; NaN: not known.
   double lux = 0.0, lux_within = 0.0;
   std::optional<EyeLight> light{};  ///< of the same plane; empty without wavelengths or light
+  /// Light of new luminaires at the eye, if a glare rating R_G is asked for.
+  std::vector<ArrivingLight> arriving{};
 };
 
 /// Installed power of all luminaires over the area of a working plane, in the two units of EN

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -39,6 +40,11 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
     return at != rows.end() ? *at : rows.emplace_back(LuminaireRow{.name = name});
   };
   std::set<std::string> partly_known;
+  std::map<std::string, Spectrum> spectra;  // flux in W
+  const auto add_spectrum = [&](const std::string& name, const Spectrum& watts) {
+    Spectrum& sum = spectra[name];
+    sum = sum.size() > 0 ? Spectrum(sum + watts) : watts;
+  };
   std::vector<char> counted(scene.surfaces.size(), 0);
   for (int p = 0; p < mesh.patch_count(); ++p) {
     const auto s = static_cast<std::size_t>(mesh.surface[p]);
@@ -50,6 +56,7 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
     row.count += counted[s] == 0 ? 1 : 0;
     counted[s] = 1;
     row.flux += mesh.area[p] * luminous(scene.bands, mesh.emission.row(p).transpose());
+    add_spectrum(row.name, static_cast<float>(mesh.area[p]) * mesh.emission.row(p).transpose());
   }
   for (const FreeSource& source : direct_light.free_sources()) {
     const auto* light = std::get_if<LampLight>(&source.shape);
@@ -57,6 +64,7 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
     LuminaireRow& row = row_of(light->lamp.name);
     ++row.count;
     row.flux += total_weight(source) * luminous(scene.bands, mean_light(source));
+    add_spectrum(row.name, static_cast<float>(total_weight(source)) * mean_light(source));
     const auto i = static_cast<std::size_t>(source.number);
     const double known = i < design.watts.size() ? design.watts[i] : 0.0;
     row.watts += known;
@@ -67,6 +75,8 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
   }
   for (LuminaireRow& row : rows) {
     if (partly_known.contains(row.name)) row.watts = 0.0;
+    const auto power = spectral_power(scene.bands, spectra[row.name]);
+    if (power && row.flux > 0.0) row.colour = rated_colour(*power);
   }
   return rows;
 }
@@ -194,9 +204,12 @@ ReportPlan plan_report(const Scene& scene, ReportRequest request) {
   }
   ReportPlan plan{.design = read_lighting_design(scene)};
   if (!request.areas.empty()) read_design_tables(request.areas, scene, plan.design);
-  plan.activities =
-      request.activities.empty() ? usual_activities() : read_activities(request.activities);
-  if (!request.activity.empty()) find_activity(plan.activities, request.activity, "--activity");
+  plan.tables = {
+      request.activities.empty() ? usual_activities() : read_activities(request.activities),
+      request.sports.empty() ? usual_sports() : read_sports(request.sports)};
+  if (!request.activity.empty()) {
+    find_activity(plan.tables.activities, request.activity, "--activity");
+  }
   for (const DesignArea& area : plan.design.areas) {
     for (const std::string& name : area.observers) {
       const bool is_known = std::ranges::find(request.observers, name) != request.observers.end();
@@ -234,13 +247,15 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   std::optional<LuxGrid> floor;
   if (plan.design.use) floor = lux_grid(apart, plan.design.use->surface, up);
   const std::vector<AreaGrids> of_areas =
-      add_area_grids(areas, plan.activities, apart, caster, up, grids);
+      add_area_grids(areas, plan.tables, apart, caster, up, grids);
+  what.has_glare_rating =
+      std::ranges::any_of(areas, [](const DesignArea& area) { return area.sport.has_value(); });
   for (LuxGrid& grid : grids) {
     what.grids.push_back(without_buried_points(caster, std::move(grid)));
   }
   measure(scene, solved, what, made);
   if (floor) made.energy = energy_of(plan.design, made, *floor);
-  made.requirements = judge_areas(areas, plan.activities, of_areas, made);
+  made.requirements = judge_areas(areas, plan.tables, of_areas, up, made);
   made.picture = picture_of(plan.request, scene, solved, progress);
   return made;
 }

@@ -26,6 +26,7 @@ struct ReportRequest {
   std::filesystem::path areas{};       ///< file with tables of the design; empty: the scene's
   std::string activity{};              ///< of all working planes without an area; empty: none
   std::filesystem::path activities{};  ///< table of activities; empty: usual_activities()
+  std::filesystem::path sports{};      ///< table of sports; empty: usual_sports()
   int rays = 1024;                     ///< of the gather at each point, a power of two
   bool has_picture = false;
   std::string camera{};  ///< of the picture; empty: the first
@@ -35,7 +36,7 @@ struct ReportRequest {
 struct ReportPlan {
   ReportRequest request{};
   LightingDesign design{};
-  std::vector<Activity> activities{};
+  LimitTables tables{};
   std::vector<Camera> eyes{};  ///< of the observers, those of areas included
 
   /// True if there is nothing to measure.

@@ -78,6 +78,9 @@ std::vector<Observer> observers(const MeasurableScene& lit, const Measurements& 
          .eye = eye,
          .glare = unified_glare_rating(lit.scene, lit.caster, lit.lights, lit.solved.solution, eye,
                                        gathering, what.luminous_heights)});
+    if (what.has_glare_rating) {
+      found.back().arriving = arriving_light(lit.scene, lit.caster, lit.lights, eye.position);
+    }
     if (what.between) what.between();
   }
   return found;

@@ -134,6 +134,38 @@ void read_activity(const TomlTable& table, const Scene& scene,
   }
 }
 
+TelevisionLimits read_television(const TomlValue& value) {
+  const TomlTable table = value.table({"mean", "uniformity", "contrast", "gradient"});
+  const auto share = [&](const char* key) {
+    const auto given = table.find(key);
+    return given ? given->number_within(0.0, 1.0) : 0.0;
+  };
+  constexpr double percent = 100.0;
+  const auto mean = table.find("mean"), gradient = table.find("gradient");
+  return {.mean = mean ? mean->number_at_least(0.0) : 0.0,
+          .uniformity = share("uniformity"),
+          .contrast = share("contrast"),
+          .gradient = gradient ? gradient->number_within(0.0, percent) : 0.0};
+}
+
+// Reads what an area has beside its grid, for a sport.
+void read_sport(const TomlTable& table, const Scene& scene, DesignArea& area) {
+  SportUse use{.sport = table.require("sport").name()};
+  const std::string number = table.require("class").one_of({"I", "II", "III"});
+  use.number = static_cast<int>(number.size());
+  if (const auto rho = table.find("reflectance")) {
+    constexpr double darkest = 0.01;
+    use.reflectance = rho->number_within(darkest, 1.0);
+  }
+  if (const auto names = table.find("observers")) area.observers = read_observers(*names, scene);
+  if (const auto names = table.find("cameras")) use.cameras = read_observers(*names, scene);
+  if (const auto height = table.find("camera_height")) {
+    use.camera_height = scene.metres_per_unit * height->number_at_least(0.0);
+  }
+  if (const auto limits = table.find("television")) use.television = read_television(*limits);
+  area.sport = std::move(use);
+}
+
 DesignArea read_area(const TomlValue& value, const Scene& scene,
                      const std::vector<CalculationGrid>& grids,
                      const std::vector<DesignArea>& earlier) {
@@ -142,6 +174,13 @@ DesignArea read_area(const TomlValue& value, const Scene& scene,
   const TomlValue named = value.renamed(fmt::format("area '{}'", area.name));
   if (std::ranges::find(earlier, area.name, &DesignArea::name) != earlier.end()) {
     named.fail("has the name of another area; give each its own");
+  }
+  if (named.member("sport")) {
+    const TomlTable table = named.table({"name", "sport", "class", "grid", "observers",
+                                         "reflectance", "cameras", "camera_height", "television"});
+    area.grid = find_grid(table.require("grid"), grids);
+    read_sport(table, scene, area);
+    return area;
   }
   if (!named.member("emergency")) {
     const TomlTable table =

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "mesh/elements/element_caster.h"
+#include "radiosity/direct_light/direct_light.h"
+#include "scene/scene.h"
+
+namespace lightwell {
+
+/// Light that comes straight from a luminaire, or from a part of one.
+struct ArrivingLight {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, towards the luminaire
+  double lux = 0.0;                                      ///< across the direction, lx
+};
+
+/// The light of all luminaires that a point sees: lamps, each from the middle of its opening, and
+/// elements of surfaces that emit. Sky and sun are no luminaires; light through glass and by
+/// mirrors is left out.
+std::vector<ArrivingLight> arriving_light(const Scene& scene, const ElementCaster& caster,
+                                          const DirectLight& direct_light,
+                                          const Eigen::Vector3d& point);
+
+/// Equivalent veiling luminance for an eye that looks along the unit vector `look`, cd/m^2 (CIE
+/// 112-1994):
+///
+///     L_v = 10 sum E_eye / theta^2        E_eye across the line of sight, 1.5 < theta < 60 degrees
+double veiling_luminance(const std::vector<ArrivingLight>& arriving, const Eigen::Vector3d& look);
+
+/// Veiling luminance of an area of reflectance `rho` and mean horizontal illuminance `lux`, cd/m^2:
+/// L_ve = 0.035 E_h,av rho / pi.
+double environment_veil(double lux, double rho);
+
+/// Glare rating R_G = 27 + 24 log10(L_vl / L_ve^0.9) of CIE 112-1994, at least 0.
+double glare_rating(double luminaires_veil, double environment_veil);
+
+/// The greatest rating of an eye that looks 2 degrees below the horizon all around, in steps of 5
+/// degrees. `up` is unit.
+double greatest_glare_rating(const std::vector<ArrivingLight>& arriving, double environment_veil,
+                             const Eigen::Vector3d& up);
+
+}  // namespace lightwell
