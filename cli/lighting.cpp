@@ -26,7 +26,7 @@ struct LightingArguments {
   GridArguments grids;
   std::vector<NamedNumber> watts;
   std::optional<double> maintenance_factor;
-  std::string areas, activity, activities, sports;
+  std::string areas, activity, activities, sports, colours;
   int rays = 1024;
   std::optional<LuxRange> range;
   std::string picture;  // camera; empty: the first; no_picture: none
@@ -57,6 +57,7 @@ ReportRequest request_of(const LightingArguments& arguments, const Scene& scene)
                         .activity = arguments.activity,
                         .activities = arguments.activities,
                         .sports = arguments.sports,
+                        .colours = arguments.colours,
                         .rays = arguments.rays,
                         .has_picture = needs_picture(arguments)};
   if (arguments.picture != no_picture) request.camera = arguments.picture;
@@ -144,6 +145,10 @@ Action add_report(CLI::App& command) {
       .add_option("--sports", arguments->sports,
                   "table of sports and classes in place of the program's")
       ->type_name("FILE.toml");
+  command
+      .add_option("--colour-samples", arguments->colours,
+                  "the 99 samples of TM-30, for R_f and R_g of observers (docs/standards.md)")
+      ->type_name("FILE.csv");
   add_watts(command, arguments->watts);
   command
       .add_option("--rays", arguments->rays, "gather rays per point, a power of two (default 1024)")

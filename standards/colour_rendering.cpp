@@ -31,13 +31,6 @@ SpectralPower sampled(const At& at) {
   return power;
 }
 
-SpectralPower black_body(double kelvin) {
-  constexpr double at_nm = 560.0;
-  return sampled([&](double nm) {
-    return black_body_radiance(nm, kelvin) / black_body_radiance(at_nm, kelvin);
-  });
-}
-
 Eigen::Vector2d uv_of(const Eigen::Vector3d& xyz) {
   const double sum = xyz.sum();
   return lightwell::uv_of(xyz[0] / sum, xyz[1] / sum);
@@ -60,7 +53,7 @@ const Eigen::Matrix<double, Eigen::Dynamic, 3>& sampled_matching() {
 }
 
 Eigen::Vector2d uv_of_black_body(double kelvin) {
-  const SpectralPower power = black_body(kelvin);
+  const SpectralPower power = black_body_power(kelvin);
   const Eigen::Map<const Eigen::VectorXd> watts(power.watts.data(),
                                                 static_cast<Eigen::Index>(power.watts.size()));
   return uv_of(sampled_matching().transpose() * watts);
@@ -78,6 +71,13 @@ Eigen::Vector3d uniform(double Y, const Eigen::Vector2d& uv, const Eigen::Vector
 }
 
 }  // namespace
+
+SpectralPower black_body_power(double kelvin) {
+  constexpr double at_nm = 560.0;
+  return sampled([&](double nm) {
+    return black_body_radiance(nm, kelvin) / black_body_radiance(at_nm, kelvin);
+  });
+}
 
 Eigen::Vector3d tristimulus(const SpectralPower& power, const SpectrumSamples* reflectance) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -147,7 +147,7 @@ std::optional<double> general_colour_rendering(const SpectralPower& power,
   constexpr double farthest = 5.4e-3, coolest_daylight = 5000.0, hottest_daylight = 25000.0;
   if (std::abs(nearest.duv) > farthest || nearest.kelvin > hottest_daylight) return {};
   const SpectralPower reference = nearest.kelvin < coolest_daylight
-                                      ? black_body(nearest.kelvin)
+                                      ? black_body_power(nearest.kelvin)
                                       : daylight_illuminant(nearest.kelvin);
   const Eigen::Vector3d white = tristimulus(power);
   const Eigen::Vector3d reference_white = tristimulus(reference);

@@ -19,6 +19,9 @@ Eigen::Vector3d tristimulus(const SpectralPower& power,
 /// CIE 1960 u, v of a CIE 1931 chromaticity.
 Eigen::Vector2d uv_of(double x, double y);
 
+/// Power of a black body of `kelvin`, in intervals of 1 nm around 380 to 780 nm, 1 at 560 nm.
+SpectralPower black_body_power(double kelvin);
+
 /// The black body next to a light.
 struct NearestBlackBody {
   double kelvin = 0.0;

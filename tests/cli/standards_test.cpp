@@ -190,6 +190,18 @@ up = [0, 0, 1]
               eye["melanopic_DER"].get<double>() * eye["E_v"].get<double>(),
               1e-4 * eye["E_v"].get<double>());
   EXPECT_NEAR(eye["CCT"].get<double>(), 5455.0, 5.0) << "CIE 15: 5455 K";
+  // Samples of one grey each have no colour in any light: nothing differs, and no gamut has an
+  // area.
+  std::string samples;
+  for (const char* nm : {"380", "580", "780"}) {
+    samples += nm;
+    for (int i = 0; i < 99; ++i) samples += ",0.3";
+    samples += "\n";
+  }
+  folder.write("ces.csv", samples);
+  const Json rated = run_json({"report", "room.toml", "room.vtp", "--observer", "chair", "--rays",
+                               "64", "--colour-samples", "ces.csv"})["observers"][0];
+  EXPECT_NEAR(rated["R_f"].get<double>(), 100.0, 1e-2);
   // The spectrum of the panel is that of E, too, whose R_a CIE 13.3 programs give as 95.
   const Json judged = run_json({"report", "room.toml", "room.vtp", "--plane", "room@0.75",
                                 "--activity", "corridor", "--rays", "64"});

@@ -99,6 +99,10 @@ std::string eye_text(const Observer& observer) {
     if (light.colour_temperature) text += fmt::format(", {:.0f} K", *light.colour_temperature);
     if (light.colour_rendering) text += fmt::format(", R_a {:.0f}", *light.colour_rendering);
   }
+  if (observer.fidelity) {
+    text += fmt::format(", R_f {:.0f}, R_g {:.0f}", observer.fidelity->fidelity,
+                        observer.fidelity->gamut);
+  }
   return text + "\n";
 }
 
@@ -121,6 +125,10 @@ Json observer_json(const Observer& observer) {
                {"E_v_within", nullptr}};
   if (std::isfinite(observer.lux_within)) json["E_v_within"] = observer.lux_within;
   if (observer.light) json.update(eye_json(*observer.light));
+  if (observer.fidelity) {
+    json["R_f"] = observer.fidelity->fidelity;
+    json["R_g"] = observer.fidelity->gamut;
+  }
   return json;
 }
 

@@ -10,6 +10,7 @@
 #include "scene/io/activity_file.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/luminaires/luminaire_file.h"
+#include "standards/colour_fidelity.h"
 #include "standards/eye_light.h"
 #include "standards/requirement.h"
 #include "standards/sports.h"
@@ -63,6 +64,7 @@ struct Observer {
   /// with odds of about 19 to 1; NaN: not known.
   double lux = 0.0, lux_within = 0.0;
   std::optional<EyeLight> light{};  ///< of the same plane; empty without wavelengths or light
+  std::optional<ColourFidelity> fidelity{};  ///< R_f and R_g, if samples of colours are given
   /// Light of new luminaires at the eye, if a glare rating R_G is asked for.
   std::vector<ArrivingLight> arriving{};
 };

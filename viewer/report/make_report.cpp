@@ -207,6 +207,14 @@ ReportPlan plan_report(const Scene& scene, ReportRequest request) {
   plan.tables = {
       request.activities.empty() ? usual_activities() : read_activities(request.activities),
       request.sports.empty() ? usual_sports() : read_sports(request.sports)};
+  if (!request.colours.empty()) {
+    plan.colours = read_colour_samples(request.colours);
+    if (scene.bands.wavelengths_nm.empty()) {
+      throw InputError(fmt::format(
+          "{}: R_f and R_g need a scene of wavelengths; give it '[bands]' of kind \"spectral\"",
+          scene.file.string()));
+    }
+  }
   if (!request.activity.empty()) {
     find_activity(plan.tables.activities, request.activity, "--activity");
   }
@@ -248,6 +256,7 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   if (plan.design.use) floor = lux_grid(apart, plan.design.use->surface, up);
   const std::vector<AreaGrids> of_areas =
       add_area_grids(areas, plan.tables, apart, caster, up, grids);
+  if (!plan.colours.empty()) what.colours = &plan.colours;
   what.has_glare_rating =
       std::ranges::any_of(areas, [](const DesignArea& area) { return area.sport.has_value(); });
   for (LuxGrid& grid : grids) {

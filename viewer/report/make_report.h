@@ -27,6 +27,7 @@ struct ReportRequest {
   std::string activity{};              ///< of all working planes without an area; empty: none
   std::filesystem::path activities{};  ///< table of activities; empty: usual_activities()
   std::filesystem::path sports{};      ///< table of sports; empty: usual_sports()
+  std::filesystem::path colours{};     ///< colour evaluation samples of TM-30; empty: none
   int rays = 1024;                     ///< of the gather at each point, a power of two
   bool has_picture = false;
   std::string camera{};  ///< of the picture; empty: the first
@@ -37,6 +38,7 @@ struct ReportPlan {
   ReportRequest request{};
   LightingDesign design{};
   LimitTables tables{};
+  ColourSamples colours{};     ///< empty: none
   std::vector<Camera> eyes{};  ///< of the observers, those of areas included
 
   /// True if there is nothing to measure.

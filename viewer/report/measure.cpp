@@ -112,13 +112,14 @@ std::vector<EyeReading> eye_readings(const MeasurableScene& lit, const Measureme
 }
 
 void set_eye_light(const Bands& bands, const std::vector<EyeReading>& readings,
-                   LightingReport& report) {
+                   const ColourSamples* colours, LightingReport& report) {
   for (std::size_t i = 0; i < readings.size(); ++i) {
     Observer& observer = report.observers[i];
     observer.lux = luminous(bands, readings[i].irradiance);
     observer.lux_within = readings[i].lux_within;
     if (const auto power = spectral_power(bands, readings[i].irradiance)) {
       observer.light = eye_light(*power);
+      if (colours) observer.fidelity = colour_fidelity(*power, *colours);
     }
   }
 }
@@ -158,7 +159,8 @@ void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
     for (std::size_t i = 0; i < found.size(); ++i) report.surfaces[i].field = std::move(found[i]);
     report.observers = observers(all, what);
     set_eye_light(scene.bands,
-                  eye_readings(all, what, is_maintained ? what.maintenance_factor : 1.0), report);
+                  eye_readings(all, what, is_maintained ? what.maintenance_factor : 1.0),
+                  what.colours, report);
     return;
   }
   const std::vector<Spectrum> scales = effective_scales(solved.solution);
@@ -188,7 +190,7 @@ void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
     seen[i].lux_within = bound(seen[i]) + bound(by_lamps[i]);
     seen[i].irradiance += by_lamps[i].irradiance;
   }
-  set_eye_light(scene.bands, seen, report);
+  set_eye_light(scene.bands, seen, what.colours, report);
   relight(solved, scales);
   for (std::size_t i = 0; i < day.size(); ++i) {
     CalculationSurface& surface = report.surfaces[i];

@@ -20,6 +20,7 @@ struct Measurements {
   double maintenance_factor = 1.0;
   GatherOptions gathering{};
   std::vector<double> luminous_heights{};  ///< see unified_glare_rating()
+  const ColourSamples* colours = nullptr;  ///< for R_f and R_g of observers; null: none
   bool has_glare_rating = false;           ///< observers get ArrivingLight
   std::function<void()> between{};         ///< called between grids, to stop early by an exception
 };

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -99,6 +100,11 @@ DocumentTable eye_table(const LightingReport& report, Language language) {
                                   {"DER"},
                                   {"CCT, K"},
                                   {"R<sub>a</sub>"}}};
+  const bool has_fidelity = std::ranges::any_of(
+      report.observers, [](const Observer& observer) { return observer.fidelity.has_value(); });
+  if (has_fidelity) {
+    table.columns.insert(table.columns.end(), {{"R<sub>f</sub>"}, {"R<sub>g</sub>"}});
+  }
   const auto number = [&](const char* form, double value) {
     return TableCell{number_in(language, fmt::format(fmt::runtime(form), value))};
   };
@@ -114,6 +120,10 @@ DocumentTable eye_table(const LightingReport& report, Language language) {
       row.cells[3] = number("{:.2f}", light.melanopic_ratio());
       if (light.colour_temperature) row.cells[4] = number("{:.0f}", *light.colour_temperature);
       if (light.colour_rendering) row.cells[5] = number("{:.0f}", *light.colour_rendering);
+    }
+    if (observer.fidelity) {
+      row.cells[6] = number("{:.0f}", observer.fidelity->fidelity);
+      row.cells[7] = number("{:.0f}", observer.fidelity->gamut);
     }
     table.rows.push_back(std::move(row));
   }
