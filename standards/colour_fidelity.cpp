@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/degree.h"
+#include "scene/cie_daylight.h"
 #include "scene/io/comma_fields.h"
 #include "scene/io/text_file.h"
 #include "standards/colour_rendering.h"
@@ -211,7 +211,6 @@ ColourSamples read_colour_samples(const std::filesystem::path& path) {
 
 std::optional<ColourFidelity> colour_fidelity(const SpectralPower& power,
                                               const ColourSamples& samples) {
-  constexpr double hottest_daylight = 25000.0;
   const auto light = eye_light(power);
   if (!light || !light->colour_temperature || *light->colour_temperature > hottest_daylight) {
     return {};

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scene/black_body.h"
+#include "scene/cie_daylight.h"
 #include "scene/colour_matching.h"
 
 namespace lightwell {
@@ -16,9 +17,6 @@ const std::vector<SpectrumSamples>& rendering_tables() {
   static const auto tables = spectra_of_table(standards_data::rendering_tables);
   return tables;
 }
-
-// Functions of daylight S_0, S_1 and S_2 follow the 14 test colours.
-constexpr std::size_t daylight_functions = 14;
 
 // Intervals of 1 nm around 380 to 780 nm with the power that `at` gives at their middles.
 template <class At>
@@ -123,19 +121,11 @@ NearestBlackBody nearest_black_body(const Eigen::Vector2d& uv) {
 }
 
 SpectralPower daylight_illuminant(double kelvin) {
-  const double t = 1000.0 / kelvin;
-  const double x = kelvin <= 7000.0 ? 0.244063 + 0.09911 * t + 2.9678 * t * t - 4.6070 * t * t * t
-                                    : 0.237040 + 0.24748 * t + 1.9018 * t * t - 2.0064 * t * t * t;
-  const double y = -3.000 * x * x + 2.870 * x - 0.275;
-  const double scale = 0.0241 + 0.2562 * x - 0.7341 * y;
-  const double m1 = (-1.3515 - 1.7703 * x + 5.9114 * y) / scale;
-  const double m2 = (0.0300 - 31.4424 * x + 30.0717 * y) / scale;
-  const auto& tables = rendering_tables();
+  const SpectrumSamples daylight = daylight_spectrum(kelvin);
+  constexpr double narrow = 1e-3;  // nm, of the interval that stands for a wavelength
   SpectralPower power = sampled([&](double nm) {
-    const double low = std::max(first_receptor_nm, nm - 1e-3),
-                 high = std::min(last_receptor_nm, nm + 1e-3);
-    const auto at = [&](std::size_t i) { return mean(tables[daylight_functions + i], low, high); };
-    return at(0) + m1 * at(1) + m2 * at(2);
+    return mean(daylight, std::max(first_receptor_nm, nm - narrow),
+                std::min(last_receptor_nm, nm + narrow));
   });
   const double lux = greatest_luminous_efficacy * tristimulus(power)[1];
   for (double& watts : power.watts) watts /= lux;
@@ -144,9 +134,9 @@ SpectralPower daylight_illuminant(double kelvin) {
 
 std::optional<double> general_colour_rendering(const SpectralPower& power,
                                                const NearestBlackBody& nearest) {
-  constexpr double farthest = 5.4e-3, coolest_daylight = 5000.0, hottest_daylight = 25000.0;
+  constexpr double farthest = 5.4e-3, first_daylight = 5000.0;
   if (std::abs(nearest.duv) > farthest || nearest.kelvin > hottest_daylight) return {};
-  const SpectralPower reference = nearest.kelvin < coolest_daylight
+  const SpectralPower reference = nearest.kelvin < first_daylight
                                       ? black_body_power(nearest.kelvin)
                                       : daylight_illuminant(nearest.kelvin);
   const Eigen::Vector3d white = tristimulus(power);

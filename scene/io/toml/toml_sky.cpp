@@ -42,9 +42,12 @@ Spectrum photometric(double luminous_value, const Spectrum& colour, const TomlVa
   return colour * static_cast<float>(luminous_value / unit);
 }
 
-Spectrum colour_of(const TomlTable& table, const TomlBands& bands) {
-  const auto given = table.find("color");
-  return given ? read_toml_emission(*given, bands) : constant_spectrum(bands.bands, 1.0f);
+// Refuses a hue beside a key that states each band.
+void refuse_hue_beside(const TomlTable& table, const std::string& how) {
+  for (const std::string& key : table.present({"cct", "spectrum"})) {
+    table.require(key).fail(fmt::format(
+        "has no meaning beside '{}', which states each band; give the brightness in lux", how));
+  }
 }
 
 // Returns the key of `keys` that the table has, or an empty string; throws if there are several.
@@ -120,6 +123,7 @@ bool read_brightness(const TomlTable& table, const TomlBands& bands, SunTable& r
   if (how.empty()) return false;
   const TomlValue amount = table.require(how);
   if (how == "irradiance") {
+    refuse_hue_beside(table, how);
     result.sun.irradiance = read_toml_emission(amount, bands);
     const bool is_rgb = bands.bands.wavelengths_nm.empty();
     if (is_rgb) {
@@ -130,16 +134,17 @@ bool read_brightness(const TomlTable& table, const TomlBands& bands, SunTable& r
     const bool is_lux = how == "illuminance";
     const double lux = is_lux ? given : daylight_efficacy * given;
     result.direct_normal = is_lux ? lux / daylight_efficacy : given;
-    result.sun.irradiance = photometric(lux, colour_of(table, bands), amount, bands);
+    result.sun.irradiance =
+        photometric(lux, read_toml_daylight_colour(table, bands), amount, bands);
   }
   return true;
 }
 
 SunTable read_sun(const TomlValue& value, const Sky& sky, const TomlBands& bands,
                   bool needs_brightness) {
-  const TomlTable table =
-      value.table({"direction", "azimuth", "altitude", "date", "time", "time_zone", "latitude",
-                   "longitude", "illuminance", "irradiance", "direct_normal", "color", "angle"});
+  const TomlTable table = value.table(
+      {"direction", "azimuth", "altitude", "date", "time", "time_zone", "latitude", "longitude",
+       "illuminance", "irradiance", "direct_normal", "color", "cct", "spectrum", "angle"});
   SunTable result{.sun = {.direction = read_sun_direction(table, sky),
                           .irradiance = constant_spectrum(bands.bands, 0.0f)}};
   if (table.has("date")) {
@@ -241,7 +246,7 @@ void read_scale(const TomlTable& table, const TomlBands& bands, Sky& sky) {
   if (is_map && how != "illuminance") {
     amount.fail("has no meaning for a map; give 'illuminance', 'scale' or nothing");
   }
-  sky.scale = is_map ? one : colour_of(table, bands);
+  sky.scale = is_map ? one : read_toml_daylight_colour(table, bands);
   if (how == "illuminance" || how == "diffuse_horizontal") {
     const double lux =
         amount.number_at_least(0.0) * (how == "illuminance" ? 1.0 : daylight_efficacy);
@@ -252,6 +257,7 @@ void read_scale(const TomlTable& table, const TomlBands& bands, Sky& sky) {
   }
   const Spectrum zenith = sky_radiance(sky, sky.up);
   if (how == "radiance") {
+    refuse_hue_beside(table, how);
     // The radiance is the zenith's, for any phi and f there (Sky).
     const float factor = zenith.maxCoeff() / sky.scale.maxCoeff();
     sky.scale = read_toml_emission(amount, bands) / factor;
@@ -340,8 +346,9 @@ void check_keys(const TomlTable& table, const std::string& kind) {
   only_for({"type"}, {"cie"});
   only_for({"file", "rotation", "scale"}, {"map"});
   only_for({"turbidity"}, {"turbidity"});
-  not_for({"ground_reflectance", "ground_radiance", "color"}, "map");
-  not_for({"color", "zenith_luminance", "radiance", "diffuse_horizontal"}, "turbidity");
+  not_for({"ground_reflectance", "ground_radiance", "color", "cct", "spectrum"}, "map");
+  not_for({"color", "cct", "spectrum", "zenith_luminance", "radiance", "diffuse_horizontal"},
+          "turbidity");
   not_for({"illuminance", "zenith_luminance", "radiance", "diffuse_horizontal"}, "none");
 }
 
@@ -350,8 +357,8 @@ void check_keys(const TomlTable& table, const std::string& kind) {
 Sky read_toml_sky(const TomlValue& value, const TomlBands& bands) {
   const TomlTable table =
       value.table({"kind", "type", "up", "north", "illuminance", "zenith_luminance", "radiance",
-                   "diffuse_horizontal", "color", "ground_reflectance", "ground_radiance", "file",
-                   "rotation", "scale", "turbidity", "sun"});
+                   "diffuse_horizontal", "color", "cct", "spectrum", "ground_reflectance",
+                   "ground_radiance", "file", "rotation", "scale", "turbidity", "sun"});
   Sky sky;
   read_axes(table, sky);
   sky.scale = sky.ground = constant_spectrum(bands.bands, 0.0f);

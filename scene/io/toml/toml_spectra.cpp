@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
 
+#include "scene/cie_daylight.h"
 #include "scene/errors.h"
 #include "scene/io/text_file.h"
 
@@ -33,6 +37,14 @@ Spectrum per_band(const TomlValue& value, const TomlBands& bands, Quantity quant
   return result;
 }
 
+void require_covered(const TomlValue& value, const SpectrumSamples& samples, double low,
+                     double high, const std::string& band) {
+  if (covers(samples, low, high)) return;
+  value.fail(fmt::format(
+      "covers {}-{} nm, but band {} is {}-{} nm; extend the spectrum or narrow the bands",
+      samples.wavelengths_nm.front(), samples.wavelengths_nm.back(), band, low, high));
+}
+
 SpectrumSamples inline_samples(const TomlTable& table) {
   SpectrumSamples samples;
   for (const auto& nm : table.require("wavelengths").elements("wavelength")) {
@@ -52,6 +64,16 @@ SpectrumSamples inline_samples(const TomlTable& table) {
   return samples;
 }
 
+SpectrumSamples read_spectrum_file(const TomlValue& file, const std::string& column) {
+  const auto path = (file.file().parent_path() / file.name()).lexically_normal();
+  try {
+    if (lower_extension(path) != ".spdx") return read_spectrum_csv(path, column);
+    return read_tm27(path);
+  } catch (const InputError& error) {
+    file.fail(fmt::format("cannot be used: {}", error.what()));
+  }
+}
+
 SpectrumSamples read_samples(const TomlTable& table) {
   if (!table.has("file")) return inline_samples(table);
   if (table.has("wavelengths") || table.has("values")) {
@@ -59,14 +81,53 @@ SpectrumSamples read_samples(const TomlTable& table) {
   }
   const std::string column = table.has("column") ? table.require("column").name() : "";
   const TomlValue file = table.require("file");
-  const auto path = (file.file().parent_path() / file.name()).lexically_normal();
-  try {
-    if (lower_extension(path) != ".spdx") return read_spectrum_csv(path, column);
-    if (!column.empty()) table.fail("has a 'column', and TM-27 files have one spectrum; remove it");
-    return read_tm27(path);
-  } catch (const InputError& error) {
-    file.fail(fmt::format("cannot be used: {}", error.what()));
+  if (!column.empty() && lower_extension(file.name()) == ".spdx") {
+    table.fail("has a 'column', and TM-27 files have one spectrum; remove it");
   }
+  return read_spectrum_file(file, column);
+}
+
+// A spectrum that is called by its name, or a file.
+SpectrumSamples named_spectrum(const TomlValue& value) {
+  const std::string name = value.name();
+  // The temperatures of the names were revised with the second radiation constant.
+  constexpr double revision = 1.4388 / 1.4380;
+  constexpr std::array<std::pair<const char*, double>, 4> illuminants = {
+      {{"D50", 5000.0}, {"D55", 5500.0}, {"D65", 6500.0}, {"D75", 7500.0}}};
+  for (const auto& [known, kelvin] : illuminants) {
+    if (name == known) return daylight_spectrum(revision * kelvin);
+  }
+  const std::string kind = lower_extension(name);
+  if (kind == ".csv" || kind == ".spdx") return read_spectrum_file(value, "");
+  value.fail(fmt::format(
+      "is '{}'; write \"D50\", \"D55\", \"D65\", \"D75\", or a file ending in .csv or .spdx",
+      name));
+}
+
+// The bands' powers of a spectrum; for RGB linear sRGB of its chromaticity.
+Spectrum band_powers(const TomlValue& value, const SpectrumSamples& samples,
+                     const TomlBands& bands) {
+  constexpr double seen_from = 400.0, seen_to = 700.0, first = 360.0, last = 830.0;
+  Spectrum powers(bands.bands.count());
+  if (!bands.bands.wavelengths_nm.empty()) {
+    for (int k = 0; k < powers.size(); ++k) {
+      const auto [low, high] = bands.edges[static_cast<std::size_t>(k)];
+      require_covered(value, samples, low, high, bands.bands.names[static_cast<std::size_t>(k)]);
+      powers[k] = static_cast<float>(mean(samples, low, high) * (high - low));
+    }
+    return powers;
+  }
+  require_covered(value, samples, seen_from, seen_to, "of visible light");
+  const double low = std::max(first, samples.wavelengths_nm.front());
+  const double high = std::min(last, samples.wavelengths_nm.back());
+  const int count = max_bands;
+  const Bands fine = spectral_bands(low, high, count);
+  Spectrum of_fine(count);
+  const double width = (high - low) / count;
+  for (int k = 0; k < count; ++k) {
+    of_fine[k] = static_cast<float>(mean(samples, low + k * width, low + (k + 1) * width) * width);
+  }
+  return linear_rgb(fine, of_fine).max(0.0f);
 }
 
 Spectrum sampled(const TomlValue& value, const TomlBands& bands, Quantity quantity) {
@@ -80,13 +141,7 @@ Spectrum sampled(const TomlValue& value, const TomlBands& bands, Quantity quanti
   Spectrum result(bands.bands.count());
   for (int k = 0; k < result.size(); ++k) {
     const auto [low, high] = bands.edges[static_cast<std::size_t>(k)];
-    if (!covers(samples, low, high)) {
-      value.fail(
-          fmt::format("covers {}-{} nm, but band {} is {}-{} nm; extend the spectrum or "
-                      "narrow the bands",
-                      samples.wavelengths_nm.front(), samples.wavelengths_nm.back(),
-                      bands.bands.names[static_cast<std::size_t>(k)], low, high));
-    }
+    require_covered(value, samples, low, high, bands.bands.names[static_cast<std::size_t>(k)]);
     const double x = mean(samples, low, high) * scale * (per_nm ? high - low : 1.0);
     if (!(x >= 0.0) || (!emits && !(x <= 1.0))) {
       value.fail(fmt::format("is {} in band {}; it must {}", x,
@@ -167,6 +222,25 @@ TomlBands read_toml_bands(const TomlValue& value) {
 
 Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands) {
   return spectral(value, bands, Quantity::emission);
+}
+
+Spectrum read_toml_daylight_colour(const TomlTable& table, const TomlBands& bands) {
+  const auto given = table.present({"color", "cct", "spectrum"});
+  if (given.size() > 1) {
+    table.require(given[1]).fail(fmt::format("is a second statement of what '{}' says", given[0]));
+  }
+  if (given.empty()) return constant_spectrum(bands.bands, 1.0f);
+  const TomlValue value = table.require(given[0]);
+  if (given[0] == "color") return read_toml_emission(value, bands);
+  const SpectrumSamples samples =
+      given[0] == "spectrum"
+          ? named_spectrum(value)
+          : daylight_spectrum(value.number_within(coolest_daylight, hottest_daylight));
+  const Spectrum powers = band_powers(value, samples, bands);
+  if (!(powers >= 0.0f).all() || !(powers.maxCoeff() > 0.0f)) {
+    value.fail("has no light in the scene's bands, or less than none in one of them");
+  }
+  return powers / powers.maxCoeff();
 }
 
 Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands) {

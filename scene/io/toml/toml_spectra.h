@@ -20,6 +20,11 @@ Spectrum read_toml_emission(const TomlValue& value, const TomlBands& bands);
 /// Reads the key `colour`, whose ratios between bands count alone, of light that is given in
 /// lumens; without the key the same in every band.
 Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands);
+/// Reads the hue of daylight, which the table states by at most one of these keys, grey by default:
+/// `color`, an emission; `cct`, of CIE daylight, 4000 to 25 000 K; `spectrum`, the name of a CIE
+/// illuminant, "D50", "D55", "D65" or "D75", or a file of a spectrum (.csv or .spdx). RGB bands get
+/// the chromaticity of a spectrum (CIE 1931), without what lies outside their gamut.
+Spectrum read_toml_daylight_colour(const TomlTable& table, const TomlBands& bands);
 /// Reads a share in [0,1]: a number, a number for each band, or a spectrum.
 Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands);
 /// The same at `key` of a table; without the key `otherwise` in every band.

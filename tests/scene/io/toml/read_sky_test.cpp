@@ -9,6 +9,7 @@
 #include <numbers>
 #include <string>
 
+#include "scene/cie_daylight.h"
 #include "scene/clear_sky.h"
 #include "scene/errors.h"
 #include "scene/io/pictures/environment_file.h"
@@ -62,6 +63,72 @@ TEST_F(NativeSky, OvercastSkyComesToItsIlluminance) {
   EXPECT_TRUE(gives_light(scene));
   EXPECT_EQ(free_source_count(scene), 1);
   EXPECT_EQ(free_source_name(scene, 0), "sky");
+}
+
+const std::string wavelengths = "[bands]\nkind = 'spectral'\nfrom = 380\nto = 780\nstep = 5\n";
+
+Eigen::Array3d xyz_of(const Bands& bands, const Spectrum& values) {
+  return (bands.xyz.matrix() * values.matrix()).array().cast<double>();
+}
+
+/// Dome and sun have the chromaticities of their temperatures, and the lux that the table states.
+/// The table of daylight and colour matching over bands of 5 nm leave 2e-4; floats 1e-6.
+TEST_F(NativeSky, DaylightHasTheHueOfItsTemperature) {
+  const Scene scene = read(wavelengths +
+                           "[sky]\nkind = 'cie-clear'\nilluminance = 10000\ncct = 12000\n"
+                           "[sky.sun]\naltitude = 40\nazimuth = 90\nilluminance = 50000\n"
+                           "spectrum = 'D55'\n");
+  EXPECT_NEAR(lux(scene), 10000.0, 2e-6 * 10000.0);
+  EXPECT_NEAR(luminous(scene.bands, scene.sky->sun->irradiance), 50000.0, 2e-6 * 50000.0);
+  const auto expect_hue = [&](const Spectrum& values, double kelvin) {
+    const Eigen::Array3d xyz = xyz_of(scene.bands, values);
+    const Eigen::Vector2d xy = daylight_chromaticity(kelvin);
+    EXPECT_NEAR(xyz[0] / xyz.sum(), xy.x(), 2e-4) << kelvin;
+    EXPECT_NEAR(xyz[1] / xyz.sum(), xy.y(), 2e-4) << kelvin;
+  };
+  expect_hue(scene.sky->scale, 12000.0);
+  expect_hue(scene.sky->sun->irradiance, 5503.0);
+}
+
+/// The white of RGB bands is D65, (0.3127, 0.3290), four digits: half a unit makes up to 5e-4 of
+/// red, green and blue, and the table of daylight 4e-4. Cooler daylight is redder.
+TEST_F(NativeSky, DaylightOfRedGreenAndBlueHasTheSpectrumsChromaticity) {
+  const auto scale = [&](const std::string& hue) {
+    const Scene scene = read("[sky]\nkind = 'uniform'\nilluminance = 1000\n" + hue);
+    EXPECT_NEAR(lux(scene), 1000.0, 2e-6 * 1000.0);
+    return Spectrum(scene.sky->scale / scene.sky->scale[1]);
+  };
+  const Spectrum white = scale("spectrum = 'D65'\n");
+  EXPECT_LT((white - 1.0f).abs().maxCoeff(), 2e-3f);
+  const Spectrum warm = scale("cct = 4500\n"), cold = scale("cct = 20000\n");
+  EXPECT_GT(warm[0], 1.1f);
+  EXPECT_LT(warm[2], 0.9f);
+  EXPECT_LT(cold[0], 0.9f);
+  EXPECT_GT(cold[2], 1.1f);
+}
+
+/// A file of two samples with the same power everywhere is the equal-energy spectrum: every band
+/// of a scene of wavelengths gets the same.
+TEST_F(NativeSky, DaylightTakesMeasuredSpectra) {
+  folder_.write("even.csv", "wavelength_nm,power\n300,2\n900,2\n");
+  const Scene scene =
+      read(wavelengths + "[sky]\nkind = 'uniform'\nilluminance = 1000\nspectrum = 'even.csv'\n");
+  EXPECT_LT(scene.sky->scale.maxCoeff() / scene.sky->scale.minCoeff(), 1.000001f);
+  folder_.write("short.csv", "wavelength_nm,power\n450,2\n600,2\n");
+  const auto refused = [&](const std::string& bands, const std::string& hue) {
+    return refusal(bands + "[sky]\nkind = 'uniform'\nilluminance = 1000\n" + hue);
+  };
+  EXPECT_TRUE(says(refused(wavelengths, "spectrum = 'short.csv'\n"), "covers 450-600 nm"));
+  EXPECT_TRUE(says(refused("", "spectrum = 'short.csv'\n"), "of visible light"));
+  EXPECT_TRUE(says(refused("", "spectrum = 'D64'\n"), "\"D65\""));
+  EXPECT_TRUE(says(refused("", "spectrum = 'none.csv'\n"), "none.csv"));
+  EXPECT_TRUE(says(refused("", "cct = 3000\n"), "4000"));
+  EXPECT_TRUE(says(refused("", "cct = 5000\ncolor = 1\n"), "second statement of what 'color'"));
+  EXPECT_TRUE(says(refusal("[sky]\nkind = 'uniform'\nradiance = 1\ncct = 5000\n"),
+                   "no meaning beside 'radiance'"));
+  EXPECT_TRUE(says(refusal("[sky]\nkind = 'turbidity'\nturbidity = 3\ncct = 5000\n"
+                           "[sky.sun]\naltitude = 30\nazimuth = 0\n"),
+                   "no meaning for a sky of the kind 'turbidity'"));
 }
 
 TEST_F(NativeSky, BrightnessOfTheZenithAndRadianceAreTaken) {
