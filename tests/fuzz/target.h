@@ -46,6 +46,10 @@ void read_hdr_picture(std::string_view bytes);
 void read_spectrum(std::string_view bytes);
 void read_points(std::string_view bytes);
 void read_cue_list(std::string_view bytes);
+void read_road_file(std::string_view bytes);
+void read_road_surface(std::string_view bytes);
+void read_sport_table(std::string_view bytes);
+void read_colours(std::string_view bytes);
 void read_solved(std::string_view bytes);
 void read_checkpoint(std::string_view bytes);
 
