@@ -95,6 +95,31 @@ int report_lighting(const LightingArguments& arguments, Console& console) {
   return exit_done;
 }
 
+// Options of what standards ask for, and of their tables.
+void add_standards(CLI::App& command, LightingArguments& arguments) {
+  command
+      .add_option("--activity", arguments.activity,
+                  "hold all working planes to EN 12464-1 for this activity: writing, corridor, ...")
+      ->type_name("KEY");
+  command
+      .add_option(
+          "--areas", arguments.areas,
+          "grids and areas of EN 12464-1, EN 1838 and EN 12193, in place of the scene file's")
+      ->type_name("FILE.toml");
+  command
+      .add_option("--activities", arguments.activities,
+                  "table of activities in place of the program's")
+      ->type_name("FILE.toml");
+  command
+      .add_option("--sports", arguments.sports,
+                  "table of sports and classes in place of the program's")
+      ->type_name("FILE.toml");
+  command
+      .add_option("--colour-samples", arguments.colours,
+                  "the 99 samples of TM-30, for R_f and R_g of observers (docs/standards.md)")
+      ->type_name("FILE.csv");
+}
+
 }  // namespace
 
 Action add_report(CLI::App& command) {
@@ -128,27 +153,7 @@ Action add_report(CLI::App& command) {
       ->type_name("CAMERA")
       ->type_size(1)
       ->allow_extra_args(false);
-  command
-      .add_option("--activity", arguments->activity,
-                  "hold all working planes to EN 12464-1 for this activity: writing, corridor, ...")
-      ->type_name("KEY");
-  command
-      .add_option(
-          "--areas", arguments->areas,
-          "grids and areas of EN 12464-1, EN 1838 and EN 12193, in place of the scene file's")
-      ->type_name("FILE.toml");
-  command
-      .add_option("--activities", arguments->activities,
-                  "table of activities in place of the program's")
-      ->type_name("FILE.toml");
-  command
-      .add_option("--sports", arguments->sports,
-                  "table of sports and classes in place of the program's")
-      ->type_name("FILE.toml");
-  command
-      .add_option("--colour-samples", arguments->colours,
-                  "the 99 samples of TM-30, for R_f and R_g of observers (docs/standards.md)")
-      ->type_name("FILE.csv");
+  add_standards(command, *arguments);
   add_watts(command, arguments->watts);
   command
       .add_option("--rays", arguments->rays, "gather rays per point, a power of two (default 1024)")

@@ -155,8 +155,7 @@ DocumentSection road_plans(const RoadReport& report) {
   const RoadObserver& worst = report.figures.observers[report.figures.worst];
   return {.title = "Plans",
           .blocks = {
-              DocumentDrawing{"Cross-section, as the drivers of the right lanes see it.",
-                              road_section_svg(report.road)},
+              DocumentDrawing{"Cross-section, looking along x.", road_section_svg(report.road)},
               DocumentDrawing{fmt::format("Maintained luminance of the carriageway in cd/m² "
                                           "for the driver of lane {}, who sees the least.",
                                           worst.lane),
