@@ -178,7 +178,13 @@ Action add_daylight(CLI::App& command) {
   add_people(command, arguments);
   command.add_flag("--hourly", arguments->hourly,
                    "also write illuminance.npy and sunlight.npy: hours of hours.csv x sensors, lx");
+  command
+      .add_option("--walk", arguments->walk,
+                  "also write a page to walk through all days and hours of the year: a "
+                  "self-contained .html")
+      ->type_name("FILE.html");
   command.get_option("--at")
+      ->excludes(command.get_option("--walk"))
       ->excludes(command.get_option("--hourly"))
       ->excludes(command.get_option("--occupied"));
   command.footer(

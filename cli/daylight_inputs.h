@@ -25,7 +25,7 @@ namespace lightwell {
 
 /// Arguments of 'lightwell daylight'.
 struct DaylightArguments {
-  std::string scene, weather, points, windows, sun_points, output;
+  std::string scene, weather, points, windows, sun_points, output, walk;
   std::vector<std::string> observers{};
   GridArguments grids{};
   MeshArguments mesh{};

@@ -299,6 +299,7 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   YearReport made = daylight_report(arguments, inputs, weather_notes(weather, hours, console));
   const OutputFolder folder(arguments.output);
   for (const std::string& file : files_of(arguments)) require_writable(folder / file);
+  if (!arguments.walk.empty()) require_writable(arguments.walk);
 
   Stopwatch watch;
   DaylightModel model(inputs.scene, inputs.up, inputs.north,
@@ -337,6 +338,10 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
     for (const std::filesystem::path& file : honeybee_metric_files(grids)) {
       report.add_file(folder / metrics_folder / file);
     }
+  }
+  if (!arguments.walk.empty()) {
+    write_walk(arguments, inputs, model, hours, console, report);
+    report.add_phase("walk", watch.lap());
   }
   report.add("patches", model.mesh().patch_count());
   report.add("sensors", sensors.probes.size());

@@ -16,17 +16,6 @@ namespace {
 // Owners of random keys.
 constexpr std::uint64_t of_patch = 0, of_sensor = 1;
 
-// The scene without light of its own: daylight is that of sun and sky alone.
-Scene without_light(Scene scene) {
-  scene.lamps.clear();
-  scene.sky.reset();
-  for (Material& material : scene.materials) {
-    material.emission = Spectrum::Zero(scene.bands.count());
-    material.emission_texture.reset();
-  }
-  return scene;
-}
-
 // Share of each band in the illuminance of white light.
 Eigen::ArrayXf luminous_weights(const Bands& bands) {
   Eigen::ArrayXf weights(bands.count());
@@ -57,6 +46,16 @@ void for_each_index(int count, const char* phase, const Progress& progress, Body
 }
 
 }  // namespace
+
+Scene without_light(Scene scene) {
+  scene.lamps.clear();
+  scene.sky.reset();
+  for (Material& material : scene.materials) {
+    material.emission = Spectrum::Zero(scene.bands.count());
+    material.emission_texture.reset();
+  }
+  return scene;
+}
 
 DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen::Vector3d& north,
                              const DaylightOptions& options)
@@ -120,10 +119,22 @@ void DaylightModel::set_sensors(std::span<const GatherPoint> sensors) {
   sensors_.assign(sensors.begin(), sensors.end());
   sensor_views_.resize(sensors_.size());
   for_each_index(sensor_count(), "sky at sensors", options_.progress, [&](int i) {
-    const SurfacePoint point = surface_point(sensors_[static_cast<std::size_t>(i)]);
-    sensor_views_[static_cast<std::size_t>(i)] =
-        view_of_dome(around(), sky_, {&point, 1}, options_.points, sensor_key(i));
+    const auto sensor = static_cast<std::size_t>(i);
+    sensor_views_[sensor] = view_of(sky_, sensors_[sensor], options_.points, i);
   });
+}
+
+DomeView DaylightModel::view_of(const SkyPatches& sky, const GatherPoint& point,
+                                const DomeEffort& effort, int number) const {
+  const SurfacePoint at = surface_point(point);
+  return view_of_dome(around(), sky, {&at, 1}, effort, sensor_key(number));
+}
+
+BandArray DaylightModel::gather(const BandArray& of_patches, const GatherPoints& points) const {
+  const LitScene lit{scene_, *caster_, *direct_light_};
+  GatherOptions gather{.rays = options_.gather_rays, .replica = options_.replica};
+  gather.run.progress = options_.progress;
+  return gather_indirect(lit, to_vertices(mesh_, of_patches), points, gather).indirect;
 }
 
 // The light that surfaces reflect to the sensors, sensors x sources, for E0 of patches x columns.
@@ -133,10 +144,7 @@ Eigen::ArrayXXf DaylightModel::reflected(const BandArray& arriving) const {
   if (sensors_.empty()) return lux;
   const BandArray B =
       solve_columns(mesh_, *form_factors_, arriving, options_.tolerance, options_.progress);
-  const LitScene lit{scene_, *caster_, *direct_light_};
-  GatherOptions gather{.rays = options_.gather_rays, .replica = options_.replica};
-  gather.run.progress = options_.progress;
-  const BandArray E = gather_indirect(lit, to_vertices(mesh_, B), sensors_, gather).indirect;
+  const BandArray E = gather(B, sensors_);
   for (Eigen::Index s = 0; s < sources; ++s) {
     lux.col(s) = (E.middleCols(s * bands, bands).matrix() * weights_.matrix()).array();
   }
@@ -188,6 +196,42 @@ SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const
   });
   light.reflected = reflected(arriving);
   return light;
+}
+
+BandArray DaylightModel::hourly_radiosity(std::span<const SkyHour> hours,
+                                          double ground_reflectance) const {
+  const Eigen::Index bands = scene_.bands.count(), count = static_cast<Eigen::Index>(hours.size());
+  const BandArray luminance = hour_luminances(sky_, hours, ground_reflectance);
+  std::vector<SunDisc> suns;
+  std::vector<Eigen::Index> hour_of_sun;
+  for (Eigen::Index h = 0; h < count; ++h) {
+    const SkyHour& hour = hours[static_cast<std::size_t>(h)];
+    if (!(hour.sun_lux > 0.0)) continue;
+    suns.push_back({.direction = hour.sun});
+    hour_of_sun.push_back(h);
+  }
+  BandArray arriving(mesh_.patch_count(), count * bands);
+  for_each_index(mesh_.patch_count(), "hours at patches", options_.progress, [&](int p) {
+    const DomeView& view = patch_views_[static_cast<std::size_t>(p)];
+    // Bands x hours: as the columns of a row of `arriving`.
+    Eigen::ArrayXXf E0 = Eigen::ArrayXXf::Zero(bands, count);
+    for (Eigen::Index c = 0; c < luminance.rows(); ++c) {
+      if (!(view.coefficient.row(c) > 0.0f).any()) continue;
+      for (Eigen::Index b = 0; b < bands; ++b) {
+        E0.row(b) += view.coefficient(c, b) * luminance.row(c);
+      }
+    }
+    const Eigen::ArrayXXf sun =
+        sunlight(around(), sky_, points_of_patch(p), view, suns, 1, patch_key(p));
+    for (Eigen::Index s = 0; s < sun.rows(); ++s) {
+      const Eigen::Index h = hour_of_sun[static_cast<std::size_t>(s)];
+      const auto lux = static_cast<float>(hours[static_cast<std::size_t>(h)].sun_lux);
+      E0.col(h) += lux * sun.row(s).transpose();
+    }
+    arriving.row(p) =
+        Eigen::Map<const Eigen::Array<float, 1, Eigen::Dynamic>>(E0.data(), E0.size());
+  });
+  return solve_columns(mesh_, *form_factors_, arriving, options_.tolerance, options_.progress);
 }
 
 }  // namespace lightwell

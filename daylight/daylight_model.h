@@ -8,12 +8,17 @@
 #include <vector>
 
 #include "daylight/dome_view.h"
+#include "daylight/sky_year.h"
 #include "mesh/build_patches.h"
 #include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/gather/final_gather.h"
 
 namespace lightwell {
+
+/// The scene without light of its own, for daylight is that of sun and sky alone: lamps, emission
+/// and sky are left out.
+Scene without_light(Scene scene);
 
 /// Effort of a DaylightModel.
 struct DaylightOptions {
@@ -70,6 +75,8 @@ class DaylightModel {
   const ElementCaster& caster() const { return *caster_; }
   const SkyPatches& sky() const { return sky_; }
   const DaylightOptions& options() const { return options_; }
+  /// Share of each band in the illuminance of white light; their sum is 1.
+  const Eigen::ArrayXf& band_weights() const { return weights_; }
 
   /// Sets the sensors; keeps a copy.
   void set_sensors(std::span<const GatherPoint> sensors);
@@ -82,6 +89,16 @@ class DaylightModel {
   Eigen::ArrayXXf direct_sun(std::span<const SunDisc> suns) const;
   /// Illuminance of the sensors by each sun.
   SensorLight sun_coefficients(std::span<const SunDisc> suns) const;
+
+  /// Radiosity of the patches under the whole sky of each hour, dome, ground and sun, lm/m^2:
+  /// patches x (hours x bands), the bands of an hour side by side. A band's radiosity is that of
+  /// white light times the band's reflectances.
+  BandArray hourly_radiosity(std::span<const SkyHour> hours, double ground_reflectance) const;
+  /// Irradiance of points by such radiosities of patches: points x columns of `of_patches`.
+  BandArray gather(const BandArray& of_patches, const GatherPoints& points) const;
+  /// View of `sky` from a point, which has the random numbers of the sensor `number`.
+  DomeView view_of(const SkyPatches& sky, const GatherPoint& point, const DomeEffort& effort,
+                   int number) const;
 
  private:
   Surroundings around() const;

@@ -7,14 +7,13 @@
 #include <numbers>
 
 #include "scene/errors.h"
+#include "scene/parallel.h"
 #include "scene/perez_sky.h"
 
 namespace lightwell {
 namespace {
 
 using std::numbers::pi;
-
-constexpr int usual_year = 2017, leap_year = 2016;
 
 // Luminance of a sky's dome, up to a factor, as the mean over a patch, by the midpoint rule.
 Eigen::ArrayXd means_of_patches(const SkyPatches& patches, const Sky& sky) {
@@ -76,13 +75,17 @@ std::optional<SkyHour> sky_at(const Weather& weather, int number, const ClockTim
 
 }  // namespace
 
+int year_of_dates(bool is_leap_year) {
+  return is_leap_year ? 2016 : 2017;
+}
+
 std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up,
                                const Eigen::Vector3d& north) {
   const Sky frame{.up = up, .north = north};
   std::vector<SkyHour> hours;
   for (int n = 0; n < static_cast<int>(weather.hours.size()); ++n) {
     const auto [month, day, hour] = hour_of_year(n, weather.is_leap_year);
-    const ClockTime middle{.year = weather.is_leap_year ? leap_year : usual_year,
+    const ClockTime middle{.year = year_of_dates(weather.is_leap_year),
                            .month = month,
                            .day = day,
                            .hour = hour + 0.5,
@@ -134,6 +137,19 @@ Eigen::ArrayXf column_luminances(const SkyPatches& patches, const SkyHour& hour,
   sky.bright = hour.sun;
   return scaled(patches, means_of_patches(patches, sky), hour.dome_lux,
                 hour.horizontal_lux(patches.up()), ground_reflectance);
+}
+
+BandArray hour_luminances(const SkyPatches& sky, std::span<const SkyHour> hours,
+                          double ground_reflectance) {
+  BandArray luminance(sky.column_count(), static_cast<Eigen::Index>(hours.size()));
+  constexpr int grain = 8;
+  parallel_for(static_cast<int>(hours.size()), grain, [&](int begin, int end) {
+    for (int h = begin; h < end; ++h) {
+      luminance.col(h) =
+          column_luminances(sky, hours[static_cast<std::size_t>(h)], ground_reflectance);
+    }
+  });
+  return luminance;
 }
 
 Eigen::ArrayXf overcast_luminances(const SkyPatches& patches, double ground_reflectance) {

@@ -2,10 +2,12 @@
 
 #include <Eigen/Core>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "daylight/sky_patches.h"
+#include "scene/bands.h"
 #include "scene/io/weather/weather_file.h"
 #include "scene/sky.h"
 #include "scene/sun_position.h"
@@ -25,12 +27,15 @@ struct SkyHour {
   double horizontal_lux(const Eigen::Vector3d& up) const;
 };
 
+/// The year whose dates the hours of a typical year have, which is put together from months of
+/// several years: 2017, or the leap year 2016.
+int year_of_dates(bool is_leap_year);
+
 /// The hours of a year in which there is light, in order.
 ///
 /// - The sun stands where it is in the middle of the hour. Hours with the middle of the sun below
 ///   the horizon then, or without light of the dome, are dark.
-/// - Positions are those of the year 2017, or of the leap year 2016: a typical year is put together
-///   from months of several years.
+/// - Positions are those of the dates of year_of_dates().
 /// - The dome is Perez' all-weather sky (perez_sky()) of the hour's irradiances, its state within
 ///   the model's data.
 /// - Lux follow from watts by the efficacies of the same model, with the water in the air by the
@@ -53,7 +58,12 @@ std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour
 Eigen::ArrayXf column_luminances(const SkyPatches& sky, const SkyHour& hour,
                                  double ground_reflectance);
 
-/// The same for CIE's standard overcast sky (Moon & Spencer 1942) of 1 lx on open level ground.
+/// The same for each of `hours`: columns x hours.
+BandArray hour_luminances(const SkyPatches& sky, std::span<const SkyHour> hours,
+                          double ground_reflectance);
+
+/// column_luminances() of CIE's standard overcast sky (Moon & Spencer 1942) of 1 lx on open level
+/// ground.
 Eigen::ArrayXf overcast_luminances(const SkyPatches& sky, double ground_reflectance);
 
 }  // namespace lightwell

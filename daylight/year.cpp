@@ -3,27 +3,11 @@
 #include <algorithm>
 #include <vector>
 
-#include "scene/parallel.h"
-
 namespace lightwell {
 namespace {
 
 // Hours whose suns are solved together.
 constexpr std::size_t block_hours = 512;
-
-// The light of the dome and the ground, sensors x hours.
-Eigen::ArrayXXf dome_light(const DaylightModel& model, const SkyCoefficients& sky,
-                           std::span<const SkyHour> hours, double ground_reflectance) {
-  Eigen::ArrayXXf luminance(model.sky().column_count(), static_cast<Eigen::Index>(hours.size()));
-  constexpr int grain = 8;
-  parallel_for(static_cast<int>(hours.size()), grain, [&](int begin, int end) {
-    for (int h = begin; h < end; ++h) {
-      luminance.col(h) =
-          column_luminances(model.sky(), hours[static_cast<std::size_t>(h)], ground_reflectance);
-    }
-  });
-  return (sky.matrix() * luminance.matrix()).array();
-}
 
 }  // namespace
 
@@ -32,7 +16,9 @@ void simulate_year(const DaylightModel& model, const SkyCoefficients& sky,
                    const std::function<void(const HourBlock&)>& visit) {
   for (std::size_t first = 0; first < hours.size(); first += block_hours) {
     HourBlock block{.hours = hours.subspan(first, std::min(block_hours, hours.size() - first))};
-    block.total = dome_light(model, sky, block.hours, ground_reflectance);
+    block.total =
+        (sky.matrix() * hour_luminances(model.sky(), block.hours, ground_reflectance).matrix())
+            .array();
     block.sunlight = Eigen::ArrayXXf::Zero(block.total.rows(), block.total.cols());
     std::vector<SunDisc> suns;
     std::vector<Eigen::Index> hour_of_sun;

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 
 namespace lightwell {
 
+struct BakedYear;
 class JoinedSurfaces;
 
 /// One row of linear Rec. 709 RGB per vertex.
@@ -130,6 +132,8 @@ struct BakedModel {
   std::vector<std::uint8_t> black_behind{};  ///< 1: the face's other side was left out
 
   std::optional<BakedSky> sky{};
+  /// For pages; see bake_year(). The light above is then the mean of the year's hours with light.
+  std::shared_ptr<const BakedYear> year{};
   std::vector<BakedCamera> cameras{};  ///< the scene's, or one of find_start; never empty
   bool cameras_are_given = false;      ///< `cameras` are the scene's
   /// Scale of linear colours, which files clip at 1: that of the first camera, or as little as an

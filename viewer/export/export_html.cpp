@@ -54,10 +54,10 @@ class Page {
 std::string program() {
   std::string text;
   for (const std::string_view script :
-       {web::texts_js, web::spheres_js, web::model_js, web::white_js, web::picture_js, web::sky_js,
-        web::probe_js, web::walk_js, web::lights_js, web::cues_js, web::isolux_js, web::legend_js,
-        web::plan_js, web::measure_js, web::gestures_js, web::stick_js, web::panels_js,
-        web::page_js}) {
+       {web::texts_js,    web::spheres_js, web::model_js,  web::white_js, web::sunlight_js,
+        web::picture_js,  web::sky_js,     web::probe_js,  web::walk_js,  web::lights_js,
+        web::cues_js,     web::isolux_js,  web::legend_js, web::plan_js,  web::measure_js,
+        web::gestures_js, web::stick_js,   web::panels_js, web::year_js,  web::page_js}) {
     text += script;
     text += '\n';
   }

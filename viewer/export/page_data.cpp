@@ -11,7 +11,8 @@
 #include "raytrace/pictures/encode_png.h"
 #include "viewer/export/baked_channels.h"
 #include "viewer/export/fan.h"
-#include "viewer/export/write_whole.h"
+#include "viewer/export/page_arrays.h"
+#include "viewer/export/page_year.h"
 
 namespace lightwell {
 namespace {
@@ -21,10 +22,6 @@ using Json = nlohmann::ordered_json;
 /// Largest coordinate in 21 bits; three coordinates take 8 bytes. Half a step is 2.4 micrometres in
 /// a room of 10 m.
 constexpr double largest_place = (1 << 21) - 1;
-
-Json vector(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
 
 struct Box {
   Eigen::Vector3d low, high;
@@ -62,24 +59,6 @@ void append_faces(const BakedModel& model, PageData& page) {
   page.about["black_behind"] = {{"offset", page.bytes.size()}};
   page.bytes.append(model.black_behind.begin(), model.black_behind.end());
   page.bytes.resize((page.bytes.size() + 3) / 4 * 4);
-}
-
-/// Appends values as half floats, divided by a scale that maps the largest to 32768. Values down to
-/// 2e-9 of the largest keep 11 bits. Returns offset and scale.
-template <class Values>
-Json append_halves(const Values& values, std::string& bytes) {
-  float largest = 0.0f;
-  for (const float value : values) largest = std::max(largest, std::abs(value));
-  const float scale = largest > 0.0f ? largest / 32768.0f : 1.0f;
-  const Json place = {{"offset", bytes.size()}, {"scale", scale}};
-  for (const float value : values) append_bytes(bytes, Eigen::half(value / scale).x);
-  bytes.resize((bytes.size() + 3) / 4 * 4);
-  return place;
-}
-
-template <class Array>
-std::span<const float> numbers(const Array& array) {
-  return {array.data(), static_cast<std::size_t>(array.size())};
 }
 
 Json append_channel(const BakedChannel& channel, std::string& bytes) {
@@ -151,14 +130,15 @@ void append_sky(const BakedModel& model, PageData& page) {
   if (!model.sky) return;
   const BakedSky& sky = *model.sky;
   const Eigen::Matrix3d axes = model.to_y_up * sky.axes;
-  Json about = {{"columns", sky.columns},
-                {"rows_above", sky.rows_above},
-                {"rows_below", sky.rows_below},
-                {"axes", {vector(axes.col(0)), vector(axes.col(1)), vector(axes.col(2))}},
-                {"basis", sky.channel}};
+  Json about = {
+      {"columns", sky.columns},
+      {"rows_above", sky.rows_above},
+      {"rows_below", sky.rows_below},
+      {"axes", {vector_json(axes.col(0)), vector_json(axes.col(1)), vector_json(axes.col(2))}},
+      {"basis", sky.channel}};
   about["radiance"] = append_halves(numbers(sky.radiance), page.bytes);
   if (sky.sun) {
-    about["sun"] = {{"direction", vector(model.to_y_up * *sky.sun)},
+    about["sun"] = {{"direction", vector_json(model.to_y_up * *sky.sun)},
                     {"cosine_of_edge", sky.cosine_of_edge},
                     {"radiance", numbers(sky.sun_radiance)},
                     {"basis", sky.sun_channel}};
@@ -210,7 +190,7 @@ Json parts(const BakedModel& model, const Eigen::Vector3d& low) {
                       {"first_face", part.first_face},
                       {"face_count", part.face_count}});
     if (!part.sphere) continue;
-    result.back()["sphere"] = {{"center", vector(model.to_y_up * part.sphere->center - low)},
+    result.back()["sphere"] = {{"center", vector_json(model.to_y_up * part.sphere->center - low)},
                                {"radius", part.sphere->radius}};
   }
   return result;
@@ -230,9 +210,9 @@ Json cameras(const BakedModel& model, const Eigen::Vector3d& low) {
   for (const BakedCamera& baked : model.cameras) {
     const Camera& camera = baked.camera;
     result.push_back({{"name", camera.name},
-                      {"position", vector(model.to_y_up * camera.position - low)},
-                      {"direction", vector(model.to_y_up * camera.direction)},
-                      {"up", vector(model.to_y_up * camera.up)},
+                      {"position", vector_json(model.to_y_up * camera.position - low)},
+                      {"direction", vector_json(model.to_y_up * camera.direction)},
+                      {"up", vector_json(model.to_y_up * camera.up)},
                       {"fov_degrees", camera.fov_degrees},
                       {"near", camera.near_distance},
                       {"aspect", static_cast<double>(camera.width) / camera.height},
@@ -293,10 +273,10 @@ PageData page_data(const BakedModel& model, const LuxRange& range, const WhitePo
                 {"lumens_per_watt", model.bands.lumens_per_watt},
                 {"is_spectral", !model.bands.wavelengths_nm.empty()}};
   Json to_scene = Json::array();  // p_scene = to_scene (p_page + origin)
-  for (int c = 0; c < 3; ++c) to_scene.push_back(vector(model.to_y_up.col(c)));
+  for (int c = 0; c < 3; ++c) to_scene.push_back(vector_json(model.to_y_up.col(c)));
   page.about["to_scene"] = std::move(to_scene);
-  page.about["origin"] = vector(box.low);
-  page.about["size"] = vector(box.high - box.low);
+  page.about["origin"] = vector_json(box.low);
+  page.about["size"] = vector_json(box.high - box.low);
   page.about["vertex_count"] = model.vertex_count();
   page.about["face_count"] = model.face_count();
   append_positions(model, box, page);
@@ -314,6 +294,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range, const WhitePo
   page.about["cameras"] = cameras(model, box.low);
   page.about["false_colors"] = false_colors_of(model, range);
   page.about["white"] = white_of(white);
+  if (model.year) page.about["year"] = page_year(model, page.bytes);
   return page;
 }
 

@@ -53,6 +53,13 @@ class Model {
     }
     // Bound of the error of illuminance per face, lx, for the light as it was solved.
     this.within = about.lux_within && this.unpack_halves(about.lux_within, about.face_count, halves);
+    if (about.year) {
+      const {light, reflectance, bands, terms, panes} = about.year;
+      this.terms_of_light = this.unpack_halves(light, bands * terms * n, halves);
+      this.reflectance = this.unpack_halves(reflectance, 3 * n, halves);
+      this.pane = new Uint8Array(bytes.buffer, panes.of_face, about.face_count);
+    }
+    this.moment = null;  // of the year: {year, light, sun_on}
     about.element_count = about.face_count;
     this.lamps = about.lamps && this.unpack_lamps(about.lamps);
     split_spheres(this);
@@ -171,6 +178,19 @@ class Model {
         this.triangles.set([this.corners[4 * f], this.corners[4 * f + c], this.corners[4 * f + c + 1]], 3 * t);
       }
     }
+  }
+
+  /** Light at a vertex, without that of the sun's own rays: lx of red, green and blue, and radiance as shown. */
+  light_of_vertex(v) {
+    if (!this.moment) return {E: this.illuminance.subarray(3 * v, 3 * v + 3), L: this.radiance.subarray(3 * v, 3 * v + 3)};
+    const {year, light} = this.moment;
+    return this.shown_light(year.light_of(v, light), this.reflectance.subarray(3 * v, 3 * v + 3));
+  }
+
+  /** White light of `lux` of red, green and blue, and what of it a surface shows. */
+  shown_light(lux, reflectance) {
+    const {lumens_per_watt} = this.about;
+    return {E: lux.map((x, k) => luminance_weights[k] * x), L: lux.map((x, k) => reflectance[k] * x / (Math.PI * lumens_per_watt))};
   }
 
   corner_count(face) { return this.corners[4 * face + 3] === 0xffffffff ? 3 : 4; }

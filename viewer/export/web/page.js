@@ -39,6 +39,7 @@ class Page {
     this.ranges = {};
     for (const measure of Object.keys(measures)) this.reset_range(measure);
     this.lights = new Lights(model, () => { this.light_due = true; });
+    if (about.year) this.set_up_year();
     this.cues = new Cues(model, this.lights);
     set_up_panels();
     set_up_stick(this.walker);
@@ -50,6 +51,7 @@ class Page {
     this.set_mode('walk');
     this.resize();
     this.go_to(0);
+    this.meter_moment(0);
     this.set_false_colors(null);
     this.say_all();
     new ResizeObserver(() => this.resize()).observe(this.canvas);
@@ -69,8 +71,36 @@ class Page {
     fill_help(element('finger-help'), finger_help);
     fill_help(element('key-help'), key_help);
     this.measure.show();
+    this.year_panel?.say();
+    if (about.year) {
+      const {place, hours: {count}, terms, error} = about.year;
+      element('origin').textContent += ` ${text('light_of_year', {place, hours: count, terms, error: digits(100 * error)})}`;
+    }
     this.apply_exposure();
     this.show_range();
+  }
+
+  /** A year of daylight, of which the page shows an instant at a time. */
+  set_up_year() {
+    document.body.classList.add('with-year');
+    const year = new Year(this.model);
+    this.year_panel = new YearPanel(year, (light) => {
+      this.model.moment = {year, light, sun_on: (face, point) => this.picture.sunlight.at(this.tree, face, point)};
+      this.picture.set_moment(year, light);
+      this.due = this.probe_due = this.meter_due = true;
+    });
+  }
+
+  /** Exposes for the instant, more slowly while days pass. */
+  meter_moment(now) {
+    if (!this.year_panel?.is_automatic || now - this.metered_at < metering_pause) return;
+    this.meter_due = false;
+    this.metered_at = now;
+    this.picture.camera.updateMatrixWorld();
+    const light = this.picture.meter();
+    if (!light) return;
+    this.metered *= (light.exposure / this.metered) ** (this.year_panel.plays ? 0.5 : 1);
+    this.apply_exposure();
   }
 
   set_up_choices() {
@@ -113,7 +143,7 @@ class Page {
     click('look-through', () => this.look_through(!this.picture.looks_through));
     click('lock', () => this.lock());
     // Keys walk again after the mouse has moved a slider.
-    for (const panel of ['lights', 'adjust']) {
+    for (const panel of ['lights', 'adjust', 'year']) {
       element(panel).addEventListener('pointerup', ({target}) => {
         if (target.type === 'range' || target.type === 'checkbox') this.canvas.focus();
       });
@@ -268,6 +298,7 @@ class Page {
     this.camera.position.set(...bookmark.position);
     this.bookmark = bookmark;
     this.metered = bookmark.exposure;
+    this.meter_due = true;
     element('cameras').value = number;
     element('exposure').value = 0;
     this.walker.place();
@@ -481,6 +512,8 @@ class Page {
     const passed = Math.max(0, (now - this.time) / 1000), seconds = Math.min(0.1, passed);
     this.time = now;
     this.cues.advance(passed);
+    this.year_panel?.advance(seconds);
+    if (this.meter_due) this.meter_moment(now);
     if (this.mode === 'walk' && this.walker.advance(seconds)) this.due = true;
     this.mix_light();
     if (this.due || this.probe_due) {

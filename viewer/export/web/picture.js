@@ -10,7 +10,19 @@ vec3 srgb_encode(vec3 x) {
   return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
 }`;
 
+/** Y of the linear primaries. */
+const luminance_weights = [0.2126729, 0.7151522, 0.0721750];
+
 const vertex_program = `
+#ifdef OF_YEAR
+in vec3 reflectance;
+uniform sampler2D terms;   // of the light, four a texel, the texels of a vertex side by side
+uniform vec4 weights[OF_YEAR];
+uniform float lumens_per_watt;
+out vec3 rho;
+out vec3 outwards;
+out vec3 in_page;
+#endif
 in vec3 radiance;
 in vec3 illuminance;
 out vec3 L;
@@ -22,17 +34,29 @@ out vec2 at;
 out vec3 gain;
 #endif
 void main() {
+#ifdef OF_YEAR
+  // lx of red, green and blue, or of all alike.
+  vec3 lux = vec3(0.0);
+  int texel = gl_VertexID * OF_YEAR * BANDS, across = textureSize(terms, 0).x;
+  for (int band = 0; band < BANDS; ++band) {
+    for (int k = 0; k < OF_YEAR; ++k, ++texel) lux[band] += dot(weights[k], texelFetch(terms, ivec2(texel % across, texel / across), 0));
+  }
+  lux = max(BANDS == 1 ? lux.rrr : lux, 0.0);
+  rho = reflectance;
+  outwards = normal;
+  in_page = position;
+  L = rho * lux / (3.14159265 * lumens_per_watt);
+  E_rgb = lux * vec3(${luminance_weights});
+#else
   L = radiance;
   E_rgb = illuminance;
+#endif
 #ifdef WITH_PICTURE
   at = place;
   gain = picture_gain;
 #endif
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
 }`;
-
-/** Y of the linear primaries. */
-const luminance_weights = [0.2126729, 0.7151522, 0.0721750];
 
 const fragment_program = `
 precision highp float;
@@ -58,6 +82,12 @@ uniform bool is_there;     // it has been decoded
 #endif
 
 ${display_functions}
+#ifdef OF_YEAR
+in vec3 rho;
+in vec3 outwards;
+in vec3 in_page;
+${sunlight_functions}
+#endif
 
 // Distance to the nearest isolux line, in pixels. There is none where the illuminance is even, nor where it is so steep
 // that lines would run together, as on elements of a few pixels.
@@ -68,8 +98,13 @@ float pixels_to_line(float E, float slope) {
 }
 
 void main() {
-  vec3 shown = L;
-  float E = E_rgb.r + E_rgb.g + E_rgb.b;
+  vec3 shown = L, lux = E_rgb;
+#ifdef OF_YEAR
+  vec3 straight = sunlight(in_page, normalize(outwards));
+  shown += rho * straight / (3.14159265 * lumens_per_watt);
+  lux += straight * vec3(${luminance_weights});
+#endif
+  float E = lux.r + lux.g + lux.b;
   float slope = length(vec2(dFdx(E), dFdy(E)));
 #ifdef WITH_PICTURE
   // Texels of holes have no colour; dividing by alpha restores what blending with holes took.
@@ -80,7 +115,7 @@ void main() {
   if (!gl_FrontFacing) {
     pixel = vec4(0.0, 0.0, 0.0, 1.0);
   } else if (shows == 3) {
-    pixel = vec4(E_rgb, 1.0);
+    pixel = vec4(lux, 1.0);
   } else if (shows != 0) {
     float value = shows == 1 ? E : lumens_per_watt * dot(shown, vec3(${luminance_weights}));
     float place = !logarithmic ? (value - range.x) / (range.y - range.x)
@@ -186,6 +221,7 @@ class Picture {
       this.geometry.setAttribute('place', new Library.BufferAttribute(model.places, 2));
       this.geometry.setAttribute('picture_gain', new Library.BufferAttribute(model.picture_gain, 3));
     }
+    if (model.about.year) this.set_up_year();
     model.groups.forEach(({first, count}, g) => this.geometry.addGroup(3 * first, 3 * count, g));
     this.materials = [1, 1, 1, 1, glass_opacity].map((opacity) => this.make_material(opacity));
     const [, backed, dark, dark_backed, glass] = this.materials;  // the groups of Model.split_faces
@@ -209,11 +245,35 @@ class Picture {
     mesh.frustumCulled = false;
     this.scene.add(mesh);
     if (model.lamps) this.scene.add(this.lamps = this.make_lamps());
-    if (model.about.sky) {
+    this.sunlight?.add_casters(this.geometry.attributes.position, this.geometry.attributes.place,
+      (picture) => this.with_pictures[2 * picture].uniforms);
+    if (model.about.sky || model.about.year) {
       this.sky = new SkyPicture(model, this.uniforms);
       this.scene.add(this.sky.mesh);
     }
     this.look_through(false);
+  }
+
+  /** The terms of the year's light as a texture, and what the sun's rays meet. */
+  set_up_year() {
+    const {model, geometry} = this, {terms, bands} = model.about.year, across = 4096;
+    const rows = Math.ceil(model.about.vertex_count * bands * terms / 4 / across), texels = new Float32Array(4 * across * rows);
+    texels.set(model.terms_of_light);
+    const texture = new Library.DataTexture(texels, across, rows, rgba, Library.FloatType);
+    texture.needsUpdate = true;
+    this.sunlight = new Sunlight(model, this.renderer);
+    Object.assign(this.uniforms, this.sunlight.uniforms, {terms: {value: texture}, weights: {value: new Array(terms).fill(0)}});
+    geometry.setAttribute('reflectance', new Library.BufferAttribute(model.reflectance, 3));
+    // Vertices are shared only where surfaces are smooth.
+    geometry.computeVertexNormals();
+  }
+
+  /** An instant of the year. */
+  set_moment(year, light) {
+    const {white} = year.about;
+    this.uniforms.weights.value = Array.from(light.weights);
+    this.sunlight.shine(light.direction, white.map((x) => x * light.sun_lux));
+    this.sky.set_moment(year, light);
   }
 
   /** Luminaires have radiance, but no illuminance. */
@@ -252,7 +312,8 @@ class Picture {
   }
 
   make_material(opacity, {uniforms = {}, defines = {}} = {}) {
-    const is_glass = opacity < 1;
+    const is_glass = opacity < 1, {year} = this.model.about;
+    if (year) defines = {...defines, OF_YEAR: year.terms / 4, BANDS: year.bands};
     return new Library.ShaderMaterial({
       glslVersion: Library.GLSL3, vertexShader: vertex_program, fragmentShader: fragment_program,
       uniforms: {...this.uniforms, ...uniforms, opacity: {value: opacity}}, defines,
@@ -315,7 +376,7 @@ class Picture {
       }
     }
     const geometry = new Library.BufferGeometry();
-    this.geometry.computeVertexNormals();
+    if (!this.geometry.attributes.normal) this.geometry.computeVertexNormals();
     geometry.setAttribute('position', this.geometry.attributes.position);
     geometry.setAttribute('normal', this.geometry.attributes.normal);
     geometry.setIndex(new Library.BufferAttribute(lines.subarray(0, count), 1));
@@ -332,6 +393,7 @@ class Picture {
   }
 
   draw() {
+    this.sunlight?.draw();
     if (this.camera === this.own_camera) this.fit_depth();
     this.renderer.setRenderTarget(null);
     this.renderer.render(this.scene, this.camera);
@@ -354,6 +416,7 @@ class Picture {
     const target = new Library.WebGLRenderTarget(width, height, {type: Library.FloatType});
     const pixels = new Float32Array(4 * width * height), shown = this.uniforms.shows.value;
     const outlined = this.outlines?.visible;
+    this.sunlight?.draw();
     this.show_lamps(false);
     this.uniforms.shows.value = 3;
     this.glass.visible = false;  // a veil is not to be measured

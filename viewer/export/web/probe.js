@@ -34,23 +34,33 @@ function weights_at(model, face, point) {
  */
 function light_at(model, face, point) {
   const weights = weights_at(model, face, point), radiance = [0, 0, 0], place = [0, 0], gain = [0, 0, 0];
+  const reflectance = [0, 0, 0];
   let illuminance = 0;
   const texel_at = model.kept_pictures?.[model.about.parts[model.part_of_face[face]].picture];
   weights.forEach((w, c) => {
     const v = model.corners[4 * face + c];
+    const {E, L} = model.light_of_vertex(v);
     for (let k = 0; k < 3; ++k) {
-      illuminance += w * model.illuminance[3 * v + k];
-      radiance[k] += w * model.radiance[3 * v + k];
+      illuminance += w * E[k];
+      radiance[k] += w * L[k];
+      if (model.moment) reflectance[k] += w * model.reflectance[3 * v + k];
     }
     if (!texel_at) return;
     for (let k = 0; k < 2; ++k) place[k] += w * model.places[2 * v + k];
     for (let k = 0; k < 3; ++k) gain[k] += w * model.picture_gain[3 * v + k];
   });
+  let sunlight = 0;
+  if (model.moment) {
+    const {E, L} = model.shown_light(model.moment.sun_on(face, point), reflectance);
+    sunlight = E[0] + E[1] + E[2];
+    illuminance += sunlight;
+    L.forEach((x, k) => { radiance[k] += x; });
+  }
   // A patch has the mean of its picture; here it is what is seen.
   if (texel_at) texel_at(...place).forEach((rho, k) => { radiance[k] *= gain[k] * rho; });
   const Y = luminance_weights.reduce((sum, weight, k) => sum + weight * radiance[k], 0);
   const within = model.within && model.is_as_solved() ? model.within[face] : null;
-  return {illuminance, within, luminance: model.about.lumens_per_watt * Y, radiosity: radiance.map((L) => Math.PI * L)};
+  return {illuminance, sunlight, within, luminance: model.about.lumens_per_watt * Y, radiosity: radiance.map((L) => Math.PI * L)};
 }
 
 /** What a ray meets first of what is drawn; glass is looked through. Null: nothing. */
@@ -95,6 +105,7 @@ function show_reading(model, hit, element) {
   const light = light_at(model, hit.face, hit.point), relative = about.relative_units;
   Object.assign(element.dataset, {illuminance: light.illuminance, luminance: light.luminance,
     radiosity: light.radiosity.join(' ')});
+  if (model.moment) element.dataset.sunlight = light.sunlight;
   const lux = document.createElement('b');
   const within = light.within === null ? '' : ` ± ${number_text(light.within, {maximumSignificantDigits: 2})}`;
   if (light.within !== null) element.dataset.within = light.within;

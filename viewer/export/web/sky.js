@@ -33,30 +33,44 @@ void main() {
   float column = (azimuth < 0.0 ? azimuth + 1.0 : azimuth) * (across - 1.0);
   vec3 L = dome_weight * texture(dome, vec2((column + 0.5) / across, (row + 0.5) / rows.z)).rgb;
   if (dot(normalize(way), sun.xyz) >= sun.w) L += sun_radiance;
-  pixel = shows == 1 ? vec4(0.0, 0.0, 0.0, 1.0)  // no light falls on it
+  pixel = shows == 1 || shows == 3 ? vec4(0.0, 0.0, 0.0, 1.0)  // no light falls on it
         : vec4(shows == 2 ? L : srgb_encode(shoulder(scale * L)), 1.0);
 }`;
 
 /** three.js' numbers for texels. */
 const rgba = 1023, half_float = 1016;
 
+/** The half float below a number that is not negative. */
+function half_of(x) {
+  const bits = new Uint32Array(Float32Array.of(x).buffer)[0], exponent = (bits >>> 23) - 112;
+  return exponent <= 0 ? 0 : exponent >= 31 ? 0x7bff : exponent << 10 | bits >>> 13 & 0x3ff;
+}
+
+/** The dome of a year, whose texels are painted for each instant. */
+function dome_of_year({axes}) {
+  return {columns: 73, rows_above: 19, rows_below: 2, axes};
+}
+
 /** Goes into the picture's scene, behind all else. */
 class SkyPicture {
   constructor(model, shared) {
     this.model = model;
-    this.about = model.about.sky;
+    const {year} = model.about;
+    this.about = year ? dome_of_year(year) : model.about.sky;
     const {columns, rows_above, rows_below, axes, sun} = this.about, rows = rows_above + rows_below;
-    const {offset, scale} = this.about.radiance, halves = new Uint16Array(model.bytes.buffer, offset, 3 * columns * rows);
-    const texels = new Uint16Array(4 * columns * rows);
-    for (let i = 0; i < columns * rows; ++i) texels.set(halves.subarray(3 * i, 3 * i + 3), 4 * i);
-    const dome = new Library.DataTexture(texels, columns, rows, rgba, half_float);
+    const texels = this.texels = new Uint16Array(4 * columns * rows);
+    if (!year) {
+      const halves = new Uint16Array(model.bytes.buffer, this.about.radiance.offset, 3 * columns * rows);
+      for (let i = 0; i < columns * rows; ++i) texels.set(halves.subarray(3 * i, 3 * i + 3), 4 * i);
+    }
+    const dome = this.dome = new Library.DataTexture(texels, columns, rows, rgba, half_float);
     dome.minFilter = dome.magFilter = Library.LinearFilter;
     dome.needsUpdate = true;
     this.uniforms = {
       shows: shared.shows, scale: shared.scale, dome: {value: dome},
       rows: {value: [rows_above, rows_below, rows]},
       axes: {value: [0, 1, 2].flatMap((c) => axes.map((row) => row[c]))},  // by columns
-      dome_weight: {value: [scale, scale, scale]},
+      dome_weight: {value: [0, 0, 0]},
       sun: {value: sun ? [...sun.direction, sun.cosine_of_edge] : [0, 0, 0, 2]},
       sun_radiance: {value: [0, 0, 0]},
     };
@@ -70,8 +84,24 @@ class SkyPicture {
     this.light_changed();
   }
 
+  /** Sun and dome of an instant of the year. */
+  set_moment(year, light) {
+    const {about, texels, uniforms, model: {about: {lumens_per_watt}}} = this, luminances = new Float32Array(texels.length);
+    const most = 32768, {white} = year.about;
+    paint_dome(year, light, luminances, about);
+    const largest = luminances.reduce((a, b) => Math.max(a, b), 1e-9), scale = largest / most;
+    luminances.forEach((L, i) => { texels[i] = half_of(L / scale); });
+    this.dome.needsUpdate = true;
+    uniforms.dome_weight.value = white.map((x) => x * scale / lumens_per_watt);
+    const {x, y, z} = light.direction;
+    uniforms.sun.value = light.sun_lux > 0 ? [x, y, z, Math.cos(sun_half_angle)] : [0, 0, 0, 2];
+    const solid_angle = 2 * Math.PI * (1 - Math.cos(sun_half_angle));
+    uniforms.sun_radiance.value = white.map((w) => w * light.sun_lux / solid_angle / lumens_per_watt);
+  }
+
   /** As bright as its channels are now. */
   light_changed() {
+    if (this.model.about.year) return;
     const {basis, radiance, sun} = this.about, weight = (b) => (b >= 0 ? this.model.bases[b].weight : [1, 1, 1]);
     this.uniforms.dome_weight.value = weight(basis).map((w) => w * radiance.scale);
     if (sun) this.uniforms.sun_radiance.value = weight(sun.basis).map((w, c) => w * sun.radiance[c]);

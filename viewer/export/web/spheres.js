@@ -67,7 +67,7 @@ function split_spheres(model) {
   model.arcs = [];
   model.is_split = null;
   if (pieces.size === 0) return;
-  const positions = [], sources = [], corners = [], black_behind = [], is_split = [], within = [];
+  const positions = [], sources = [], corners = [], black_behind = [], is_split = [], within = [], pane = [];
   const none = 0xffffffff, first_new = about.vertex_count;
   for (const part of about.parts) {
     const {first_face, face_count} = part, n = pieces.get(part) ?? 1;
@@ -78,6 +78,7 @@ function split_spheres(model) {
         corners.push(...own);
         black_behind.push(model.black_behind[f]);
         within.push(model.within?.[f]);
+        pane.push(model.pane?.[f]);
         is_split.push(0);
         continue;
       }
@@ -94,6 +95,7 @@ function split_spheres(model) {
         corners.push(...face.map((p) => first + p), ...(face.length === 3 ? [none] : []));
         black_behind.push(model.black_behind[f]);
         within.push(model.within?.[f]);
+        pane.push(model.pane?.[f]);
         is_split.push(1);
       }
       for (const [from, to] of arcs) model.arcs.push(first + from, first + to);
@@ -105,6 +107,7 @@ function split_spheres(model) {
   model.corners = Uint32Array.from(corners);
   model.black_behind = Uint8Array.from(black_behind);
   model.is_split = Uint8Array.from(is_split);
+  if (model.pane) model.pane = Uint8Array.from(pane);
   if (model.within) model.within = Float32Array.from(within);
   const longer = (values, more) => {
     const all = new Float32Array(values.length + more.length);
@@ -119,6 +122,10 @@ function split_spheres(model) {
   for (const basis of model.bases) {
     basis.radiance = blend(basis.radiance, 3);
     basis.illuminance = blend(basis.illuminance, 3);
+  }
+  if (about.year) {
+    model.terms_of_light = blend(model.terms_of_light, about.year.bands * about.year.terms);
+    model.reflectance = blend(model.reflectance, 3);
   }
   if (model.places) {
     model.places = blend(model.places, 2);
