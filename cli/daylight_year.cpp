@@ -340,7 +340,13 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
     }
   }
   if (!arguments.walk.empty()) {
-    write_walk(arguments, inputs, model, hours, console, report);
+    const auto count = made.rooms.empty() ? 0 : made.rooms.front().count;
+    write_walk(arguments, inputs,
+               {.model = model,
+                .hours = hours,
+                .sensors = std::span(sensors.probes).first(static_cast<std::size_t>(count)),
+                .daylight_factor = made.daylight_factor.head(count)},
+               console, report);
     report.add_phase("walk", watch.lap());
   }
   report.add("patches", model.mesh().patch_count());

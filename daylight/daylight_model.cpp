@@ -130,9 +130,10 @@ DomeView DaylightModel::view_of(const SkyPatches& sky, const GatherPoint& point,
   return view_of_dome(around(), sky, {&at, 1}, effort, sensor_key(number));
 }
 
-BandArray DaylightModel::gather(const BandArray& of_patches, const GatherPoints& points) const {
+BandArray DaylightModel::gather(const BandArray& of_patches, const GatherPoints& points,
+                                int rays) const {
   const LitScene lit{scene_, *caster_, *direct_light_};
-  GatherOptions gather{.rays = options_.gather_rays, .replica = options_.replica};
+  GatherOptions gather{.rays = rays, .replica = options_.replica};
   gather.run.progress = options_.progress;
   return gather_indirect(lit, to_vertices(mesh_, of_patches), points, gather).indirect;
 }
@@ -144,7 +145,7 @@ Eigen::ArrayXXf DaylightModel::reflected(const BandArray& arriving) const {
   if (sensors_.empty()) return lux;
   const BandArray B =
       solve_columns(mesh_, *form_factors_, arriving, options_.tolerance, options_.progress);
-  const BandArray E = gather(B, sensors_);
+  const BandArray E = gather(B, sensors_, options_.gather_rays);
   for (Eigen::Index s = 0; s < sources; ++s) {
     lux.col(s) = (E.middleCols(s * bands, bands).matrix() * weights_.matrix()).array();
   }

@@ -94,8 +94,9 @@ class DaylightModel {
   /// patches x (hours x bands), the bands of an hour side by side. A band's radiosity is that of
   /// white light times the band's reflectances.
   BandArray hourly_radiosity(std::span<const SkyHour> hours, double ground_reflectance) const;
-  /// Irradiance of points by such radiosities of patches: points x columns of `of_patches`.
-  BandArray gather(const BandArray& of_patches, const GatherPoints& points) const;
+  /// Irradiance of points by such radiosities of patches, by `rays` each: points x columns of
+  /// `of_patches`.
+  BandArray gather(const BandArray& of_patches, const GatherPoints& points, int rays) const;
   /// View of `sky` from a point, which has the random numbers of the sensor `number`.
   DomeView view_of(const SkyPatches& sky, const GatherPoint& point, const DomeEffort& effort,
                    int number) const;

@@ -115,7 +115,7 @@ SampledYear light_of_year(const DaylightModel& model, const DomeOfVertices& seen
         hours.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(n)),
         ground_reflectance);
     year.patches.middleCols(first * bands, n * bands) = B;
-    const BandArray E = model.gather(B, samples.points());
+    const BandArray E = model.gather(B, samples.points(), model.options().gather_rays);
     for (Eigen::Index i = 0; i < samples.size(); ++i) {
       for (Eigen::Index b = 0; b < bands; ++b) {
         for (Eigen::Index h = 0; h < n; ++h) {
@@ -274,7 +274,7 @@ YearBasis find_year_basis(const DaylightModel& model, std::span<const SkyHour> h
     for (int v = first; v < std::min(first + block, mesh.vertex_count()); ++v) numbers.push_back(v);
     const VertexList vertices(mesh, std::move(numbers));
     basis.light.middleRows(first, vertices.size()) =
-        model.gather(B, vertices.points()) + dome_at(model, seen, vertices, luminance);
+        model.gather(B, vertices.points(), options.rays) + dome_at(model, seen, vertices, luminance);
   }
   return basis;
 }

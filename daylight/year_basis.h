@@ -17,6 +17,7 @@ struct YearBasisOptions {
   int checks = 256;         ///< other vertices, at which its error is measured
   int sky_subdivision = 1;  ///< of the dome as seen from vertices: Tregenza's 145 patches
   DomeEffort view{.search = 2, .rays = 1024};  ///< of a vertex towards the dome
+  int rays = 4096;  ///< of a vertex, for light that surfaces reflect; sample vertices have fewer
   int most_vertices = 400'000;
   double most_bytes = 48e6;  ///< of the light in 16 bits; there are fewer terms rather than more
 };

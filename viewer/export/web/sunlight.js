@@ -1,6 +1,7 @@
 // Light straight from the sun: a map of what its rays meet first, and of what panes let pass, drawn from the sun.
 
-const sun_map_size = 2048;
+/** Texels along the map's sides: 1 cm each in a room of 20 m. Larger models get more. */
+const usual_map_size = 2048, large_map_size = 4096, large_model = 25;  // m
 const sun_half_angle = 0.2665 * Math.PI / 180;
 
 /** Sunlight of a fragment, lx of red, green and blue. */
@@ -32,13 +33,17 @@ float reached(vec3 p, vec2 slope) {
       if (depth <= first_met(ivec2(low) + ivec2(i, j), size - 1) + sun_slack) sum += weight.x * weight.y;
     }
   }
-  return sum / 9.0;
+  // Half of the edge is left out, so that no light leaks where a wall stands on the floor.
+  return max(0.0, 2.0 * sum / 9.0 - 1.0);
 }
 
 vec3 sunlight(vec3 at, vec3 outwards) {
   float cosine = dot(outwards, sun.xyz);
   if (sun.w == 0.0 || cosine <= 0.0) return vec3(0.0);
-  vec3 p = (to_sun * vec4(at, 1.0)).xyz, n = normalize(outwards * from_sun);
+  // The plane of the face itself, where that is a piece of something round.
+  vec3 plane = normalize(cross(dFdx(at), dFdy(at)));
+  if (dot(plane, outwards) > 0.9999) plane = outwards;
+  vec3 p = (to_sun * vec4(at, 1.0)).xyz, n = normalize(plane * from_sun);
   vec2 slope = -n.xy / (n.z < 0.0 ? min(n.z, -1e-3) : max(n.z, 1e-3));
   return sun_lux * cosine * reached(p, slope) * texture(sun_passed, p.xy).rgb;
 }`;
@@ -106,7 +111,8 @@ class Sunlight {
     this.renderer = renderer;
     this.about = model.about.year.panes;
     this.camera = camera_with_span(1);
-    const target = () => new Library.WebGLRenderTarget(sun_map_size, sun_map_size);
+    this.map_size = Math.hypot(...model.about.size) > large_model ? large_map_size : usual_map_size;
+    const target = () => new Library.WebGLRenderTarget(this.map_size, this.map_size);
     this.near = target();
     this.passed = target();
     this.near.texture.minFilter = this.near.texture.magFilter = nearest;
@@ -206,8 +212,8 @@ class Sunlight {
     camera.far = max.z - min.z + 2 * margin;
     camera.updateProjectionMatrix();
     camera.updateMatrixWorld();
-    const texel = Math.max(camera.span, camera.span * camera.aspect) / sun_map_size;
-    uniforms.sun_slack.value = (0.5 * texel + 1e-5 * camera.far) / camera.far;
+    const texel = Math.max(camera.span, camera.span * camera.aspect) / this.map_size;
+    uniforms.sun_slack.value = (0.02 * texel + 2e-6 * camera.far) / camera.far;
     const half = new Library.Matrix4().set(0.5, 0, 0, 0.5, 0, 0.5, 0, 0.5, 0, 0, 0.5, 0.5, 0, 0, 0, 1);
     uniforms.to_sun.value.copy(half).multiply(camera.projectionMatrix).multiply(camera.matrixWorld.clone().invert());
     const {elements} = uniforms.to_sun.value.clone().invert();
