@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <memory>
 #include <sstream>
 #include <tuple>
@@ -64,6 +65,14 @@ ClockTime parse_instant(const std::string& text) {
   }
   when.hour = hour + minute / 60.0;
   return when;
+}
+
+std::string parse_page(const std::string& text) {
+  if (std::filesystem::path(text).extension() != ".html") {
+    throw CLI::ValidationError(
+        "--walk", fmt::format("'{}' is no name of a page; write one such as walk.html", text));
+  }
+  return text;
 }
 
 int daylight(const DaylightArguments& arguments, Console& console) {
@@ -179,9 +188,9 @@ Action add_daylight(CLI::App& command) {
   command.add_flag("--hourly", arguments->hourly,
                    "also write illuminance.npy and sunlight.npy: hours of hours.csv x sensors, lx");
   command
-      .add_option("--walk", arguments->walk,
-                  "also write a page to walk through all days and hours of the year: a "
-                  "self-contained .html")
+      .add_option_function<std::string>(
+          "--walk", [arguments](const std::string& text) { arguments->walk = parse_page(text); },
+          "also write a page to walk in, at all hours of the year")
       ->type_name("FILE.html");
   command.get_option("--at")
       ->excludes(command.get_option("--walk"))

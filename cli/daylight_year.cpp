@@ -11,6 +11,7 @@
 #include "daylight/glare_of_year.h"
 #include "daylight/honeybee_metrics.h"
 #include "daylight/operated_year.h"
+#include "daylight/year_basis.h"
 #include "daylight/year_files.h"
 #include "raytrace/readings/probe_surface.h"
 #include "viewer/export/write_whole.h"
@@ -299,11 +300,17 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   YearReport made = daylight_report(arguments, inputs, weather_notes(weather, hours, console));
   const OutputFolder folder(arguments.output);
   for (const std::string& file : files_of(arguments)) require_writable(folder / file);
-  if (!arguments.walk.empty()) require_writable(arguments.walk);
+  if (!arguments.walk.empty()) {
+    for (const std::string& file : files_of(arguments)) {
+      require_different({arguments.walk, folder / file});
+    }
+    require_writable(arguments.walk);
+  }
 
   Stopwatch watch;
   DaylightModel model(inputs.scene, inputs.up, inputs.north,
                       daylight_options(arguments, inputs.scene, console));
+  if (!arguments.walk.empty()) check_year_basis(model.mesh(), hours);
   DaylightSensors sensors = daylight_sensors(arguments, inputs, model.caster());
   model.set_sensors(probe_points(model.caster(), sensors.all()));
   report.add_phase("sky", watch.lap());

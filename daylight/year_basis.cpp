@@ -227,21 +227,25 @@ int most_terms(const PatchMesh& mesh, Eigen::Index bands, const YearBasisOptions
   return std::max(4, std::min(options.most, afforded) / 4 * 4);
 }
 
-void check_vertex_count(const PatchMesh& mesh, const YearBasisOptions& options) {
-  if (mesh.vertex_count() <= options.most_vertices) return;
-  throw InputError(fmt::format(
-      "the surfaces have {} vertices, and a page of a year takes {} at most; give a larger "
-      "'--max-patch-size'",
-      mesh.vertex_count(), options.most_vertices));
-}
-
 }  // namespace
+
+void check_year_basis(const PatchMesh& mesh, std::span<const SkyHour> hours,
+                      const YearBasisOptions& options) {
+  if (mesh.vertex_count() > options.most_vertices) {
+    throw InputError(fmt::format(
+        "the surfaces have {} vertices, and a page of a year takes {} at most; give a larger "
+        "'--max-patch-size'",
+        mesh.vertex_count(), options.most_vertices));
+  }
+  if (hours.empty()) {
+    throw InputError("the weather has no hour with daylight, so that a page would be black");
+  }
+}
 
 YearBasis find_year_basis(const DaylightModel& model, std::span<const SkyHour> hours,
                           double ground_reflectance, const YearBasisOptions& options) {
   const PatchMesh& mesh = model.mesh();
-  check_vertex_count(mesh, options);
-  if (hours.empty()) throw InputError("the weather has no hour with daylight");
+  check_year_basis(mesh, hours, options);
   const DomeOfVertices seen{
       .sky = SkyPatches(options.sky_subdivision, model.sky().up(), model.sky().north()),
       .effort = options.view};
@@ -274,7 +278,8 @@ YearBasis find_year_basis(const DaylightModel& model, std::span<const SkyHour> h
     for (int v = first; v < std::min(first + block, mesh.vertex_count()); ++v) numbers.push_back(v);
     const VertexList vertices(mesh, std::move(numbers));
     basis.light.middleRows(first, vertices.size()) =
-        model.gather(B, vertices.points(), options.rays) + dome_at(model, seen, vertices, luminance);
+        model.gather(B, vertices.points(), options.rays) +
+        dome_at(model, seen, vertices, luminance);
   }
   return basis;
 }

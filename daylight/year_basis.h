@@ -43,14 +43,19 @@ struct YearBasis {
   int term_count() const { return static_cast<int>(weight.cols()); }
 };
 
+/// Throws InputError for a mesh of more than `most_vertices`, and where no hour has daylight:
+/// before the long work of find_year_basis().
+void check_year_basis(const PatchMesh& mesh, std::span<const SkyHour> hours,
+                      const YearBasisOptions& options = {});
+
 /// Finds the terms by a truncated singular value decomposition of the light of sample vertices in
 /// all hours, by a randomised range finder (Halko, Martinsson & Tropp 2011), and gathers the light
 /// of the terms at all vertices. Vertices are gathered in blocks, so that memory holds patches x
 /// hours and vertices x terms. The number of terms is the least multiple of 4 that reaches the
 /// error, or the most that `most` and `most_bytes` allow.
 ///
-/// Throws InputError for a mesh of more than `most_vertices`, and where no daylight reaches any
-/// vertex in any hour; Interrupted when the model's progress says stop.
+/// Throws what check_year_basis() throws, InputError where no daylight reaches any vertex in any
+/// hour, Interrupted when the model's progress says stop.
 YearBasis find_year_basis(const DaylightModel& model, std::span<const SkyHour> hours,
                           double ground_reflectance, const YearBasisOptions& options = {});
 

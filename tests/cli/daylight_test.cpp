@@ -140,6 +140,23 @@ TEST_F(DaylightCommand, WritesSensorsHoursAndAPage) {
 }
 
 // Level ground 5 m above the court has the sun and the dome of the hour.
+// A page of three hours has a term for each, and a fourth that is nothing.
+TEST_F(DaylightCommand, WritesAPageToWalkIn) {
+  const Json json = run_json(command({"--plane", "floor@0.8", "--walk", "walk.html"}));
+  EXPECT_EQ(json["walk"]["terms"], 4);
+  EXPECT_LT(json["walk"]["relative_error"], 1e-3);
+  std::ifstream in(folder / "walk.html", std::ios::binary);
+  const std::string page{std::istreambuf_iterator<char>(in), {}};
+  EXPECT_EQ(json["walk"]["bytes"], page.size());
+  EXPECT_NE(page.find("\"place\":\"Testville\""), std::string::npos);
+  // The view begins among the sensors, 1.6 m over the floor.
+  const std::size_t camera = page.find("\"cameras\":[{\"name\":\"room\"");
+  ASSERT_NE(camera, std::string::npos);
+  const std::size_t begin = page.find('[', page.find("\"position\"", camera));
+  const Json eye = Json::parse(page.substr(begin, page.find(']', begin) + 1 - begin));
+  EXPECT_NEAR(eye[1].get<double>(), 1.6, 1e-6);
+}
+
 TEST_F(DaylightCommand, HoursAreThoseOfTheWeather) {
   folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,5,0,0,1\n");
   ASSERT_EQ(run(command({"--points", "p.csv", "--hourly"})).code, 0);
@@ -324,6 +341,10 @@ TEST_F(DaylightCommand, WrongInputIsASentence) {
   const Words at_noon = with_points + Words{"--at", "2017-06-21 12:30"};
   expect(at_noon + Words{"--hourly"}, 2, "--hourly");
   expect(at_noon + Words{"--occupied", "8-12"}, 2, "--occupied");
+  expect(at_noon + Words{"--walk", "walk.html"}, 2, "--walk");
+  expect({"--plane", "floor@0.8", "--walk", "walk.pdf"}, 2, "'walk.pdf' is no name of a page");
+  expect({"--plane", "floor@0.8", "--walk", "year/year.html"}, 1, "year.html");
+  expect({"--plane", "floor@0.8", "--walk", "nowhere/walk.html"}, 1, "nowhere/walk.html");
   expect({"--plane", "floor@0.8", "--sky", "9"}, 2, "--sky");
   folder.write("year.wea", "nonsense");
   expect({"--plane", "floor@0.8"}, 3, "year.wea:1: ");
@@ -345,6 +366,10 @@ TEST_F(DaylightCommand, AYearWithoutLightHasNoMeasures) {
   EXPECT_EQ(json["rooms"][0]["mean_lux"]["value"], 0.0);
   EXPECT_EQ(json["windows"][0]["states"][0]["hours_with_light"], 0);
   EXPECT_EQ(json["states"].size(), 1u);
+  const Ended ended = run(command({"--walk", "walk.html"}));
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_NE(ended.err.find("the weather has no hour with daylight"), std::string::npos)
+      << ended.err;
 }
 
 TEST_F(DaylightCommand, SaysThatAClosedRoomGetsNoDaylight) {

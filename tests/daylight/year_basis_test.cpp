@@ -64,7 +64,8 @@ Scene red_room() {
 TEST_F(YearBasisOf, AllTermsAreTheLightOfSensorsInTheSamePlaces) {
   DaylightModel model(red_room(), Vector3d::UnitZ(), Vector3d::UnitY(), coarse());
   ASSERT_LE(hours.size(), 36u);
-  const YearBasis basis = find_year_basis(model, hours, ground, {.most = 36, .error = 0.0, .rays = 256});
+  const YearBasis basis =
+      find_year_basis(model, hours, ground, {.most = 36, .error = 0.0, .rays = 256});
   const Eigen::ArrayXXf sensors = light_of_sensors(model, hours);
   EXPECT_LT(basis.error, 1e-4);
   for (std::size_t h = 0; h < hours.size(); ++h) {
@@ -96,8 +97,7 @@ TEST_F(YearBasisOf, ErrorIsThatOfAllVertices) {
   std::ranges::sort(sorted);
   const Eigen::ArrayXf lit = sensors.rowwise().mean().max(0.25f * sorted[sorted.size() / 2]);
   Eigen::ArrayXXf relative = sensors.colwise() / lit;
-  const Eigen::Array<float, 1, Eigen::Dynamic> of_hours =
-      relative.square().colwise().mean().sqrt();
+  const Eigen::Array<float, 1, Eigen::Dynamic> of_hours = relative.square().colwise().mean().sqrt();
   relative.rowwise() /= of_hours;
   const Eigen::ArrayXXf errors = (left_out.colwise() / lit).rowwise() / of_hours;
   const double found = std::sqrt(double{errors.square().mean() / relative.square().mean()});
@@ -120,7 +120,8 @@ TEST_F(YearBasisOf, RefusesWhatAPageCannotShow) {
             "the surfaces have " + std::to_string(model.mesh().vertex_count()) +
                 " vertices, and a page of a year takes 10 at most; give a larger "
                 "'--max-patch-size'");
-  EXPECT_EQ(sentence(model, {}, {}), "the weather has no hour with daylight");
+  EXPECT_EQ(sentence(model, {}, {}),
+            "the weather has no hour with daylight, so that a page would be black");
   Scene closed;
   const int rho = test::add_material(closed, test::diffuse(closed.bands, 0.5f));
   test::add_box(closed, {0.0, 0.0, 0.0}, {4.0, 3.0, 2.5}, {rho, rho, rho, rho, rho, rho}, true);
@@ -135,8 +136,8 @@ TEST_F(YearBasisOf, FewBytesAreFewTerms) {
   const DaylightModel model(test::room_with_window(test::diffuse(Bands(rgb_bands()), 0.5f)),
                             Vector3d::UnitZ(), Vector3d::UnitY(), coarse());
   const double of_term = 2.0 * model.mesh().vertex_count();
-  const YearBasis basis =
-      find_year_basis(model, hours, ground, {.error = 0.0, .rays = 256, .most_bytes = 11.0 * of_term});
+  const YearBasis basis = find_year_basis(
+      model, hours, ground, {.error = 0.0, .rays = 256, .most_bytes = 11.0 * of_term});
   EXPECT_EQ(basis.term_count(), 8);
   EXPECT_EQ(basis.light.cols(), 8);
 }

@@ -60,8 +60,9 @@ class ComputedRoom {
     RadiositySolution solution;
     solution.bands = scene.bands;
     const double lux_of_watt = luminous(scene.bands, constant_spectrum(scene.bands, 1.0f));
-    solution.indirect_irradiance = light_of_hour(basis, hour, model.scene().bands.count()).max(0.0f) /
-                                   static_cast<float>(lux_of_watt);
+    solution.indirect_irradiance =
+        light_of_hour(basis, hour, model.scene().bands.count()).max(0.0f) /
+        static_cast<float>(lux_of_watt);
     solution.direct_irradiance = BandArray::Zero(solution.indirect_irradiance.rows(), 3);
     return solution;
   }

@@ -38,8 +38,8 @@ class PageOfAYear : public testing::Test {
 TEST_F(PageOfAYear, WeightsTimesTermsAreTheLightOfEachHour) {
   ASSERT_EQ(year["bands"], 3);
   const std::vector<float> light = halves(page, year["light"], 3 * terms * count),
-                           weights = halves(page, year["hours"]["weights"],
-                                            terms * room.hours.size());
+                           weights =
+                               halves(page, year["hours"]["weights"], terms * room.hours.size());
   for (std::size_t h = 0; h < room.hours.size(); h += 5) {
     const BandArray wanted = light_of_hour(room.basis, static_cast<int>(h), 3);
     for (std::size_t i = 0; i < count; i += 7) {
@@ -61,7 +61,8 @@ TEST_F(PageOfAYear, WeightsTimesTermsAreTheLightOfEachHour) {
 TEST_F(PageOfAYear, HoursHaveTheirSkies) {
   const Json& hours = year["hours"];
   ASSERT_EQ(hours["count"], room.hours.size());
-  const auto numbers = values_at<std::uint32_t>(page, {{"offset", hours["numbers"]}}, room.hours.size());
+  const auto numbers =
+      values_at<std::uint32_t>(page, {{"offset", hours["numbers"]}}, room.hours.size());
   const auto skies = values_at<float>(page, {{"offset", hours["skies"]}}, 7 * room.hours.size());
   for (std::size_t h = 0; h < room.hours.size(); ++h) {
     EXPECT_EQ(numbers[h], static_cast<std::uint32_t>(room.hours[h].number));
@@ -81,10 +82,14 @@ TEST_F(PageOfAYear, PanesCountOnceAndPassLightByItsAngle) {
   double area = 0.0;
   for (std::size_t f = 0; f < of_face.size(); ++f) {
     const bool is_glass =
-        model.materials[static_cast<std::size_t>(
-                            std::ranges::find_if(model.parts, [&](const BakedPart& part) {
-                              return static_cast<int>(f) < part.first_face + part.face_count;
-                            })->material)]
+        model
+            .materials[static_cast<std::size_t>(std::ranges::find_if(model.parts,
+                                                                     [&](const BakedPart& part) {
+                                                                       return static_cast<int>(f) <
+                                                                              part.first_face +
+                                                                                  part.face_count;
+                                                                     })
+                                                    ->material)]
             .is_glass;
     EXPECT_EQ(of_face[f] != 0, is_glass);
     if (of_face[f] == 1) area += room.model.mesh().element_area[model.element[f]];

@@ -22,6 +22,7 @@ uniform float lumens_per_watt;
 out vec3 rho;
 out vec3 outwards;
 out vec3 in_page;
+centroid out vec3 on_face;  // on the face, where the middle of a pixel at its edge is not
 #endif
 in vec3 radiance;
 in vec3 illuminance;
@@ -44,7 +45,7 @@ void main() {
   lux = max(BANDS == 1 ? lux.rrr : lux, 0.0);
   rho = reflectance;
   outwards = normal;
-  in_page = position;
+  in_page = on_face = position;
   L = rho * lux / (3.14159265 * lumens_per_watt);
   E_rgb = lux * vec3(${luminance_weights});
 #else
@@ -86,6 +87,7 @@ ${display_functions}
 in vec3 rho;
 in vec3 outwards;
 in vec3 in_page;
+centroid in vec3 on_face;
 ${sunlight_functions}
 #endif
 
@@ -100,7 +102,7 @@ float pixels_to_line(float E, float slope) {
 void main() {
   vec3 shown = L, lux = E_rgb;
 #ifdef OF_YEAR
-  vec3 straight = sunlight(in_page, normalize(outwards));
+  vec3 straight = sunlight(on_face, plane_of(in_page, normalize(outwards)), normalize(outwards));
   shown += rho * straight / (3.14159265 * lumens_per_watt);
   lux += straight * vec3(${luminance_weights});
 #endif

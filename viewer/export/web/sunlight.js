@@ -23,26 +23,30 @@ float first_met(ivec2 at, ivec2 last) {
 float reached(vec3 p, vec2 slope) {
   ivec2 size = textureSize(sun_near, 0);
   vec2 texel = p.xy * vec2(size) - 0.5, low = floor(texel), part = texel - low;
-  float sum = 0.0;
+  // Corners of triangles are drawn to a sixteenth of a texel or better.
+  float sum = 0.0, slack = sun_slack + dot(abs(slope), 0.1 / vec2(size));
   for (int j = -1; j <= 2; ++j) {
     for (int i = -1; i <= 2; ++i) {
       vec2 away = vec2(i, j) - part;
       // The plane's own depth at the texel, so that it does not shade itself.
       float depth = p.z + dot(slope, away / vec2(size));
       vec2 weight = 1.0 - clamp(abs(away) - 1.0, 0.0, 1.0);
-      if (depth <= first_met(ivec2(low) + ivec2(i, j), size - 1) + sun_slack) sum += weight.x * weight.y;
+      if (depth <= first_met(ivec2(low) + ivec2(i, j), size - 1) + slack) sum += weight.x * weight.y;
     }
   }
   // Half of the edge is left out, so that no light leaks where a wall stands on the floor.
   return max(0.0, 2.0 * sum / 9.0 - 1.0);
 }
 
-vec3 sunlight(vec3 at, vec3 outwards) {
+// Normal of the plane of a face, which is a piece of something round where its normals differ.
+vec3 plane_of(vec3 at, vec3 outwards) {
+  vec3 plane = normalize(cross(dFdx(at), dFdy(at)));
+  return dot(plane, outwards) > 0.9999 ? outwards : plane;
+}
+
+vec3 sunlight(vec3 at, vec3 plane, vec3 outwards) {
   float cosine = dot(outwards, sun.xyz);
   if (sun.w == 0.0 || cosine <= 0.0) return vec3(0.0);
-  // The plane of the face itself, where that is a piece of something round.
-  vec3 plane = normalize(cross(dFdx(at), dFdy(at)));
-  if (dot(plane, outwards) > 0.9999) plane = outwards;
   vec3 p = (to_sun * vec4(at, 1.0)).xyz, n = normalize(plane * from_sun);
   vec2 slope = -n.xy / (n.z < 0.0 ? min(n.z, -1e-3) : max(n.z, 1e-3));
   return sun_lux * cosine * reached(p, slope) * texture(sun_passed, p.xy).rgb;
