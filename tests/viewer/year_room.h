@@ -84,4 +84,10 @@ class ComputedRoom {
   YearBasis basis;
 };
 
+/// The year of glazed_room(), computed once for all tests; which sensors its model has is open.
+inline ComputedRoom& glazed_year() {
+  static ComputedRoom room(glazed_room());
+  return room;
+}
+
 }  // namespace lightwell::test

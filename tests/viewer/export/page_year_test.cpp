@@ -23,7 +23,7 @@ std::vector<float> halves(const PageData& page, const Json& place, std::size_t c
 
 class PageOfAYear : public testing::Test {
  protected:
-  const test::ComputedRoom room{test::glazed_room()};
+  const test::ComputedRoom& room = test::glazed_year();
   const BakedModel model = room.page();
   const PageData page = page_data(model, {.low = 0.0, .high = 1000.0});
   const Json& year = page.about["year"];

@@ -70,7 +70,7 @@ driver.run(async (page, found) => {
 }  // namespace
 
 TEST_P(InBrowser, ThePageShowsEveryMomentOfAYear) {
-  test::ComputedRoom room(test::glazed_room());
+  test::ComputedRoom& room = test::glazed_year();
   const Json found = run(room.page(), drive);
   ASSERT_FALSE(found.is_null());
   ASSERT_FALSE(found.contains("failed")) << found["failed"];
@@ -161,8 +161,7 @@ driver.run(async (page, found) => {
   for (const id of ['bar', 'year', 'hour', 'date', 'play', 'adapt', 'stick']) found[id] = box(id);
 });
 </script>)";
-  const test::ComputedRoom room(test::glazed_room());
-  const Json found = run(room.page(), look, {.width = 390, .height = 780});
+  const Json found = run(test::glazed_year().page(), look, {.width = 390, .height = 780});
   ASSERT_FALSE(found.is_null());
   ASSERT_FALSE(found.contains("failed")) << found["failed"];
   EXPECT_EQ(found["errors"], Json::array());
