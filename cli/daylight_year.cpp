@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 
 #include "cli/commands.h"
 #include "cli/interrupt.h"
@@ -268,11 +269,33 @@ std::vector<MetricGrid> metric_grids(const DaylightInputs& inputs, const YearRep
   for (const YearRoom& room : made.rooms) {
     while (next < inputs.grids.size() && inputs.grids[next].positions.empty()) ++next;
     if (room.grid || next == inputs.grids.size() || room.name != inputs.grids[next].name) continue;
-    grids.push_back({.name = room.name, .first = room.first, .count = room.count});
+    grids.push_back({.name = room.name,
+                     .group = inputs.grids[next].group,
+                     .first = room.first,
+                     .count = room.count});
     ++next;
   }
   return grids;
 }
+
+// The folders of the files of metric_grids(), which are checked before the work.
+class MetricFolders {
+ public:
+  MetricFolders(const std::filesystem::path& folder, std::span<const SensorGrid> grids) {
+    std::vector<MetricGrid> planned;
+    for (const SensorGrid& grid : grids) {
+      if (!grid.positions.empty()) planned.push_back({.name = grid.name, .group = grid.group});
+    }
+    if (planned.empty()) return;
+    for (const std::filesystem::path& file : honeybee_metric_files(planned)) {
+      folders_.push_back(std::make_unique<OutputFolder>((folder / file).parent_path()));
+      require_writable(folder / file);
+    }
+  }
+
+ private:
+  std::vector<std::unique_ptr<OutputFolder>> folders_{};
+};
 
 void write_files(const WrittenYear& written, const YearReport& made, const OperatedYear& year) {
   const OutputFolder& folder = written.folder;
@@ -300,6 +323,7 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   YearReport made = daylight_report(arguments, inputs, weather_notes(weather, hours, console));
   const OutputFolder folder(arguments.output);
   for (const std::string& file : files_of(arguments)) require_writable(folder / file);
+  const MetricFolders metric_folders(folder / metrics_folder, inputs.grids);
   if (!arguments.walk.empty()) {
     for (const std::string& file : files_of(arguments)) {
       require_different({arguments.walk, folder / file});

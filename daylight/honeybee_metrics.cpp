@@ -29,18 +29,25 @@ std::array<Eigen::ArrayXd, 5> values_of(const SensorMetrics& metrics) {
           metrics.from_100_to_300 + metrics.from_300_to_3000, metrics.above_3000};
 }
 
-// Names of the grids' files without extension. Honeybee's identifiers are letters, digits, dots,
-// dashes and underscores; other characters could lead out of the folder.
+// Honeybee's identifiers are letters, digits, dots, dashes and underscores; other characters, and
+// names of dots alone, could lead out of the folder.
+std::string plain(std::string name) {
+  for (char& c : name) {
+    const bool is_plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
+                          (c >= 'a' && c <= 'z') || c == '-' || c == '_' || c == '.';
+    if (!is_plain) c = '_';
+  }
+  if (name.find_first_not_of('.') == std::string::npos) name = "_" + name;
+  return name;
+}
+
+// Names of the grids' files without extension, with the folder of the group: "group/name".
 std::vector<std::string> file_names(std::span<const MetricGrid> grids) {
   std::vector<std::string> names;
   std::set<std::string> given;
   for (const MetricGrid& grid : grids) {
-    std::string name = grid.name;
-    for (char& c : name) {
-      const bool is_plain = (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') ||
-                            (c >= 'a' && c <= 'z') || c == '-' || c == '_' || c == '.';
-      if (!is_plain) c = '_';
-    }
+    const std::string folder = grid.group.empty() ? "" : plain(grid.group) + "/";
+    const std::string name = folder + plain(grid.name);
     std::string unique = name;
     for (int number = 2; !given.insert(unique).second; ++number) {
       unique = fmt::format("{}_{}", name, number);
@@ -75,21 +82,23 @@ void write_honeybee_metrics(const std::filesystem::path& folder, std::span<const
     info.push_back({{"name", grids[g].name},
                     {"identifier", grids[g].name},
                     {"count", grids[g].count},
-                    {"group", ""},
+                    {"group", grids[g].group},
                     {"full_id", names[g]}});
   }
   const auto values = values_of(metrics);
   for (std::size_t m = 0; m < values.size(); ++m) {
     const Metric& metric = metrics_of_recipe[m];
     const std::filesystem::path of_metric = folder / metric.folder;
-    std::filesystem::create_directories(of_metric);
     for (std::size_t g = 0; g < grids.size(); ++g) {
-      AtomicStream file(of_metric / with_extension(names[g], metric));
+      const std::filesystem::path of_grid = of_metric / with_extension(names[g], metric);
+      std::filesystem::create_directories(of_grid.parent_path());
+      AtomicStream file(of_grid);
       for (const double value : values[m].segment(grids[g].first, grids[g].count)) {
         fmt::print(file.stream(), "{:.2f}\n", value);
       }
       file.commit();
     }
+    std::filesystem::create_directories(of_metric);
     AtomicStream file(of_metric / grids_info);
     file.stream() << info.dump() << '\n';
     file.commit();

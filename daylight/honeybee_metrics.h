@@ -12,7 +12,7 @@ namespace lightwell {
 
 /// A sensor grid of a Honeybee model within all sensors of a year.
 struct MetricGrid {
-  std::string name{};
+  std::string name{}, group{};  ///< group: a folder for the grid's files; empty: none
   Eigen::Index first = 0, count = 0;
 };
 

@@ -12,6 +12,7 @@ namespace lightwell {
 /// Points of a scene file at which illuminance is asked for, one by one.
 struct SensorGrid {
   std::string name{};
+  std::string group{};                        ///< empty: none
   std::vector<Eigen::Vector3d> positions{};   ///< m
   std::vector<Eigen::Vector3d> directions{};  ///< unit vectors that the sensors face
 };

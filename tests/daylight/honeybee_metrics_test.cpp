@@ -22,18 +22,20 @@ SensorMetrics metrics_of_three_sensors() {
 
 TEST(HoneybeeMetrics, EachGridHasAFileOfEachMeasure) {
   const TemporaryFolder folder;
-  const std::vector<MetricGrid> grids = {{.name = "hall", .first = 0, .count = 2},
-                                         {.name = "desk", .first = 2, .count = 1}};
+  const std::vector<MetricGrid> grids = {
+      {.name = "hall", .first = 0, .count = 2},
+      {.name = "desk", .group = "level 1", .first = 2, .count = 1}};
   write_honeybee_metrics(folder.path(), grids, metrics_of_three_sensors());
   EXPECT_EQ(content_of(folder / "da/hall.da"), "10.00\n20.50\n");
-  EXPECT_EQ(content_of(folder / "da/desk.da"), "33.33\n");
+  EXPECT_EQ(content_of(folder / "da/level_1/desk.da"), "33.33\n");
   EXPECT_EQ(content_of(folder / "cda/hall.cda"), "40.00\n50.00\n");
   EXPECT_EQ(content_of(folder / "udi_lower/hall.udi"), "5.00\n6.00\n");
   EXPECT_EQ(content_of(folder / "udi/hall.udi"), "90.00\n90.00\n");
-  EXPECT_EQ(content_of(folder / "udi_upper/desk.udi"), "3.00\n");
+  EXPECT_EQ(content_of(folder / "udi_upper/level_1/desk.udi"), "3.00\n");
   const auto info = nlohmann::json::parse(content_of(folder / "udi/grids_info.json"));
   ASSERT_EQ(info.size(), 2u);
-  EXPECT_EQ(info[1]["full_id"], "desk");
+  EXPECT_EQ(info[1]["full_id"], "level_1/desk");
+  EXPECT_EQ(info[1]["group"], "level 1");
   EXPECT_EQ(info[0]["count"], 2);
   for (const auto& file : honeybee_metric_files(grids)) {
     EXPECT_TRUE(std::filesystem::is_regular_file(folder.path() / file)) << file;
@@ -41,12 +43,14 @@ TEST(HoneybeeMetrics, EachGridHasAFileOfEachMeasure) {
 }
 
 TEST(HoneybeeMetrics, NamesNeitherLeaveTheFolderNorMeet) {
-  const std::vector<MetricGrid> grids = {{.name = "a/b"}, {.name = "a b"}, {.name = "../c"}};
+  const std::vector<MetricGrid> grids = {
+      {.name = "a/b"}, {.name = "a b"}, {.name = "../c"}, {.name = "c", .group = ".."}};
   const auto files = honeybee_metric_files(grids);
-  ASSERT_GE(files.size(), 3u);
+  ASSERT_GE(files.size(), 4u);
   EXPECT_EQ(files[0], "da/a_b.da");
   EXPECT_EQ(files[1], "da/a_b_2.da");
   EXPECT_EQ(files[2], "da/.._c.da");
+  EXPECT_EQ(files[3], "da/_../c.da");
 }
 
 }  // namespace

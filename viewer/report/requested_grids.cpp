@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
@@ -11,47 +12,58 @@
 #include "scene/errors.h"
 #include "scene/io/matches_glob.h"
 #include "scene/io/nearest_name.h"
+#include "scene/io/polygon.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
 
-// Share of the cosine-distributed rays from the middles of facets, in the hemisphere about `axis`,
-// that meet a surface.
+// The middle of a facet's first ear, a point that lies on the facet also if that is an L.
+Eigen::Vector3d point_on(const PolygonMesh& mesh, const Facet& facet) {
+  Loop loop;
+  for (const int v : facet.boundary) loop.push_back(mesh.vertices[static_cast<std::size_t>(v)]);
+  const auto triangles = split_into_triangles(loop);
+  const std::array<int, 3> corners = triangles.empty() ? std::array<int, 3>{0, 1, 2} : triangles[0];
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const int corner : corners) middle += loop[static_cast<std::size_t>(corner)] / 3.0;
+  return middle;
+}
+
+// Share of the cosine-distributed rays from a level surface, in the hemisphere about `axis`, that
+// meet a surface, but none before they have risen by `height`.
 double enclosed_share(const ElementCaster& caster, const PolygonMesh& mesh,
-                      const Eigen::Vector3d& axis, double offset) {
+                      const Eigen::Vector3d& axis, double height, double offset) {
+  // Shares that differ by a quarter are told apart by a standard error of 1/16 at most.
   constexpr int ray_count = 64;
-  constexpr std::size_t most_facets = 8;
+  constexpr std::size_t most_facets = 8;  // of a floor of many tiles
   const SobolPoints sobol(ray_count);
   Eigen::Vector3d first, second;
   tangent_frame(axis, first, second);
   std::vector<Ray> rays;
   const std::size_t step = 1 + (mesh.facets.size() - 1) / most_facets;
   for (std::size_t f = 0; f < mesh.facets.size(); f += step) {
-    Eigen::Vector3d middle = offset * axis;
-    const std::vector<int>& boundary = mesh.facets[f].boundary;
-    for (const int v : boundary) {
-      middle += mesh.vertices[static_cast<std::size_t>(v)] / static_cast<double>(boundary.size());
-    }
+    const Eigen::Vector3d from = point_on(mesh, mesh.facets[f]) + offset * axis;
     for (int i = 0; i < ray_count; ++i) {
       const Eigen::Array4f u = sobol.point(i, f);
       const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
-      rays.push_back(
-          {.origin = middle, .direction = d.x() * first + d.y() * second + d.z() * axis});
+      rays.push_back({.origin = from, .direction = d.x() * first + d.y() * second + d.z() * axis});
     }
   }
   std::vector<ElementHit> hits(rays.size());
   caster.closest_hits(rays, hits);
-  const auto met =
-      std::ranges::count_if(hits, [](const ElementHit& hit) { return hit.facet >= 0; });
+  std::size_t met = 0;
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (hits[i].facet >= 0 && hits[i].t * rays[i].direction.dot(axis) > height) ++met;
+  }
   return static_cast<double>(met) / static_cast<double>(rays.size());
 }
 
-// A point that planes above a level surface face, where its front faces down: many files have
-// floors whose fronts face out of the rooms. Empty for other surfaces and for ceilings, below which
-// far more is around than above: their planes lie before their fronts.
+// A point that grids of a level surface face, where its front faces down: many files have floors
+// whose fronts face out of the rooms. Empty for other surfaces, and for ceilings, below which far
+// more is around than above: their grids lie before their fronts. What is nearer than the grid is
+// high, as a slab under the paving of a court, makes no ceiling.
 std::optional<Eigen::Vector3d> above(const Scene& scene, const ElementCaster& caster, int surface,
-                                     const Eigen::Vector3d& up) {
+                                     double height, const Eigen::Vector3d& up) {
   const Surface& of = scene.surfaces[static_cast<std::size_t>(surface)];
   const auto* mesh = std::get_if<PolygonMesh>(&of.shape);
   const Material& material = scene.materials[static_cast<std::size_t>(of.material)];
@@ -60,32 +72,27 @@ std::optional<Eigen::Vector3d> above(const Scene& scene, const ElementCaster& ca
   for (const Facet& facet : mesh->facets) {
     area += facet_area(*mesh, facet) * facet_normal(*mesh, facet);
   }
-  constexpr double level = 0.9;  // least cosine to the upright
+  constexpr double level = 0.9;  // cosine of the steepest ramp that counts as level, 26 degrees
   if (!(area.dot(up) < -level * area.norm())) return std::nullopt;
   const Bounds bounds = scene_bounds(scene);
   // Rays begin far above the rounding of coordinates, and far below the height of furniture.
-  constexpr double share_of_scene = 1e-5, far_more = 0.25;
+  // Windows and rooflights take less than a quarter of what is around a room's floor.
+  constexpr double share_of_scene = 1e-5, far_more = 0.25, least_height = 0.1;  // m
   const double offset = share_of_scene * bounds.diagonal();
-  if (enclosed_share(caster, *mesh, -up, offset) >
-      enclosed_share(caster, *mesh, up, offset) + far_more) {
+  const double clear = std::max(height, least_height);
+  if (enclosed_share(caster, *mesh, -up, clear, offset) >
+      enclosed_share(caster, *mesh, up, clear, offset) + far_more) {
     return std::nullopt;
   }
   return bounds.high + 2.0 * bounds.diagonal() * up;
 }
 
-// The grids over the surfaces of a name. Of those that fit a pattern, surfaces that can have no
-// grid, such as a strip narrower than its margin, are left out.
+// The grids over the surfaces of a name.
 void add_grids(const Scene& scene, const ElementCaster& caster, const std::string& name,
                const Eigen::Vector3d& up, LuxGridOptions options, std::vector<LuxGrid>& grids) {
-  const std::vector<int> surfaces = surfaces_named(scene, name);
-  const std::size_t before = grids.size();
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    if (options.height > 0.0) options.towards = above(scene, caster, surfaces[i], up);
-    try {
-      grids.push_back(lux_grid(scene, surfaces[i], up, options));
-    } catch (const InputError&) {
-      if (i + 1 == surfaces.size() && grids.size() == before) throw;
-    }
+  for (const int surface : surfaces_named(scene, name)) {
+    options.towards = above(scene, caster, surface, options.height, up);
+    grids.push_back(lux_grid(scene, surface, up, options));
   }
 }
 

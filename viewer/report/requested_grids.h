@@ -38,12 +38,12 @@ std::vector<int> surfaces_named(const Scene& scene, const std::string& name);
 /// wait for.
 void require_surfaces(const GridRequest& asked, const Scene& scene);
 
-/// The grids of a scene file, of surfaces and of planes, in this order. Planes lie before the front
-/// of their surface. They lie above a level surface of two sides whose front faces down, unless far
-/// more of the scene is around its front than around its back, as with a ceiling. `caster` is of
-/// the scene's mesh. `scene` has the surfaces of the file by their names (see
-/// JoinedSurfaces::apart). Throws InputError for a surface that is not there, and what lux_grid()
-/// throws.
+/// The grids of a scene file, of surfaces and of planes, in this order. They lie before the front
+/// of their surface; above a level surface of two sides whose front faces down, unless far more of
+/// the scene is around its front than around its back, as with a ceiling. `scene` has the surfaces
+/// of the file by their names (see JoinedSurfaces::apart), and `caster` is of its mesh. Throws
+/// InputError for a surface that is not there, and what lux_grid() throws, also for one of the
+/// surfaces that fit a pattern.
 std::vector<LuxGrid> requested_grids(const GridRequest& asked,
                                      std::span<const CalculationGrid> of_file, const Scene& scene,
                                      const ElementCaster& caster, const Eigen::Vector3d& up);

@@ -12,8 +12,8 @@ namespace lightwell {
 ///
 /// Transmittance and reflectance are hemispherical for light from all directions, by the matrices
 /// of the visible band of the file of the program WINDOW in `bsdf_data` (145 or fewer patches of
-/// Klems 1994). Diffuse shares that the modifier states itself come first. Adds a remark on what is
-/// lost. Throws InputError for data of another kind.
+/// Klems 1994), and the diffuse shares that the modifier adds. Adds a remark on the loss. Data that
+/// cannot be read become a clear sheet, with a remark.
 std::vector<double> trans_of_bsdf(const JsonObject& modifier, Remarks& remarks);
 
 }  // namespace lightwell

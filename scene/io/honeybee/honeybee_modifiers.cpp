@@ -213,39 +213,53 @@ std::optional<int> HoneybeeModifiers::named(const std::string& modifier) {
 std::optional<Material> HoneybeeModifiers::material(const std::string& modifier) {
   if (!primitives_.contains(modifier)) define_usual(modifier);
   const auto found = primitives_.find(modifier);
-  if (found == primitives_.end()) {
-    remarks_.add("Modifiers that are not defined", modifier);
-    return std::nullopt;
-  }
+  if (found == primitives_.end()) return std::nullopt;
   return read_radiance_material(found->second, {}, remarks_);
 }
 
-// The modifier that an object names itself: that of its first state, if it changes.
-std::string HoneybeeModifiers::own_modifier(const JsonObject& object, HoneybeeKind kind) {
-  const auto radiance = radiance_properties(object);
-  if (!radiance) return {};
-  const std::string own = radiance->string_or("modifier", "");
-  const std::vector<JsonObject> states = radiance->objects("states");
-  if (states.empty()) return own;
+// The modifier that an object has where it is in none of its states.
+std::string HoneybeeModifiers::without_states(const JsonObject& object, HoneybeeKind kind,
+                                              const std::string& set) {
+  if (const auto radiance = radiance_properties(object)) {
+    if (const std::string own = radiance->string_or("modifier", ""); !own.empty()) return own;
+  }
+  if (!set.empty() && !sets_.contains(set)) {
+    remarks_.add("Modifier sets that are not defined were read as the generic one", set);
+  }
+  return from_set(set, kind).value_or(slot_of(kind).usual);
+}
+
+void HoneybeeModifiers::remark_states(const JsonObject& object, HoneybeeKind kind,
+                                      const std::vector<JsonObject>& states) {
   const std::string name = object.string_or("identifier", object.place());
   if (is_shade(kind) && states.size() > 1) {
     remarks_.add("Shades that change were read in their first state", name);
   }
   for (const JsonObject& state : states) {
     if (!state.objects("shades").empty() || state.has("vmtx_geometry")) {
-      remarks_.add("What states add beside their modifier was left out", name);
+      remarks_.add("Shades and geometry that a state adds were left out", name);
     }
   }
-  return states.front().string_or("modifier", own);
+}
+
+std::vector<std::string> HoneybeeModifiers::of_states(const JsonObject& object, HoneybeeKind kind,
+                                                      const std::string& set) {
+  std::vector<std::string> names;
+  const auto radiance = radiance_properties(object);
+  if (!radiance) return names;
+  for (const JsonObject& state : radiance->objects("states")) {
+    const std::string of_state = state.string_or("modifier", "");
+    names.push_back(of_state.empty() ? without_states(object, kind, set) : of_state);
+  }
+  return names;
 }
 
 std::optional<int> HoneybeeModifiers::of(const JsonObject& object, HoneybeeKind kind,
                                          const std::string& set) {
-  if (const std::string own = own_modifier(object, kind); !own.empty()) return named(own);
-  if (!set.empty() && !sets_.contains(set)) {
-    remarks_.add("Modifier sets that are not defined were read as Honeybee's own", set);
-  }
-  return named(from_set(set, kind).value_or(slot_of(kind).usual));
+  const std::vector<std::string> states = of_states(object, kind, set);
+  if (states.empty()) return named(without_states(object, kind, set));
+  remark_states(object, kind, radiance_properties(object)->objects("states"));
+  return named(states.front());
 }
 
 }  // namespace lightwell

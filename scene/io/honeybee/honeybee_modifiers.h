@@ -38,7 +38,7 @@ enum class HoneybeeKind {
 /// The modifiers (materials) of a Honeybee model.
 ///
 /// An object has the modifier of its first state, else that which it names itself, else that of its
-/// room's modifier set for objects of its kind, else Honeybee's own. Modifiers are those of
+/// room's modifier set for objects of its kind, else Honeybee's generic one. Modifiers are those of
 /// RADIANCE, and are read as such.
 class HoneybeeModifiers {
  public:
@@ -50,16 +50,22 @@ class HoneybeeModifiers {
   /// Index of the material of an object in the scene; empty for objects that cannot be seen. `set`
   /// names the modifier set of the object's room, or is empty.
   std::optional<int> of(const JsonObject& object, HoneybeeKind kind, const std::string& set);
-  /// The same for a modifier's name.
-  std::optional<int> named(const std::string& modifier);
-  /// The material of a modifier, which is not added to the scene; empty if it cannot be seen.
+  /// Names of the modifiers of an object's states: each state's own, else that which the object has
+  /// without states. Empty for an object without states.
+  std::vector<std::string> of_states(const JsonObject& object, HoneybeeKind kind,
+                                     const std::string& set);
+  /// The material of a modifier, which is not added to the scene; empty if the modifier is not
+  /// defined, or cannot be seen.
   std::optional<Material> material(const std::string& modifier);
 
  private:
   void define(const JsonObject& modifier);
   void try_to_define(const JsonObject& modifier);
   void define_usual(const std::string& name);
-  std::string own_modifier(const JsonObject& object, HoneybeeKind kind);
+  std::optional<int> named(const std::string& modifier);
+  std::string without_states(const JsonObject& object, HoneybeeKind kind, const std::string& set);
+  void remark_states(const JsonObject& object, HoneybeeKind kind,
+                     const std::vector<JsonObject>& states);
   std::optional<std::string> from_set(const std::string& set, HoneybeeKind kind);
 
   const std::filesystem::path& file_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "scene/errors.h"
+#include "scene/io/flat_loop.h"
 
 namespace lightwell {
 namespace {
@@ -97,17 +98,23 @@ void HoneybeeShapes::add_room(const JsonObject& room) {
   add_shades(room, set);
 }
 
-// True if the faces of a room enclose a positive volume: a third of the sum of p . n dA (Gauss).
+// True if the faces of a room enclose a positive volume: a third of the sum of (p - m) . n dA
+// (Gauss). With the room's middle as m, the sign is right also if a face is missing.
 bool HoneybeeShapes::faces_outward(const JsonObject& room) const {
-  double volume = 0.0;
+  std::vector<Loop> loops;
+  Loop all;
   for (const JsonObject& face : room.objects("faces")) {
     try {
-      const Loop boundary = polygon_of(face).boundary;
-      volume += boundary.front().dot(area_vector(boundary)) / 3.0;
+      loops.push_back(polygon_of(face).boundary);
+      all.insert(all.end(), loops.back().begin(), loops.back().end());
     } catch (const InputError&) {
       continue;  // add_face() names the fault
     }
   }
+  if (all.empty()) return false;
+  const Eigen::Vector3d middle = mean_point(all);
+  double volume = 0.0;
+  for (const Loop& loop : loops) volume += (loop.front() - middle).dot(area_vector(loop)) / 3.0;
   return volume > 0.0;
 }
 
@@ -151,7 +158,22 @@ void HoneybeeShapes::add_face(const JsonObject& face, const std::string& set, bo
 void HoneybeeShapes::add_opening(const JsonObject& opening, HoneybeeKind kind,
                                  const std::string& set) {
   add_shades(opening, set);
-  if (!is_read_already(opening)) add_polygon(opening, kind, set, polygon_of(opening));
+  if (is_read_already(opening)) return;
+  const std::size_t before = scene_.surfaces.size();
+  add_polygon(opening, kind, set, polygon_of(opening));
+  if (scene_.surfaces.size() > before) add_states(opening, kind, set);
+}
+
+// Records the states of the opening that became the last surface.
+void HoneybeeShapes::add_states(const JsonObject& opening, HoneybeeKind kind,
+                                const std::string& set) {
+  std::vector<std::string> states = modifiers_.of_states(opening, kind, set);
+  if (states.size() < 2) return;
+  const auto radiance = radiance_properties(opening);
+  dynamic_openings_.push_back(
+      {.surface = scene_.surfaces.back().name,
+       .group = radiance->string_or("dynamic_group_identifier", name_of(opening)),
+       .states = std::move(states)});
 }
 
 void HoneybeeShapes::add_shades(const JsonObject& parent, const std::string& set) {

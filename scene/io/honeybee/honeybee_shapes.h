@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "scene/io/honeybee/honeybee_modifiers.h"
 #include "scene/io/json_object.h"
@@ -15,6 +16,13 @@
 #include "scene/scene.h"
 
 namespace lightwell {
+
+/// An opening whose modifier changes with the state of its group.
+struct DynamicOpening {
+  std::string surface{};              ///< name in the scene
+  std::string group{};                ///< identifier of the dynamic group
+  std::vector<std::string> states{};  ///< names of the modifiers; the scene has the first
+};
 
 /// Converts the rooms, faces, openings and shades of a Honeybee model to surfaces, one for each
 /// object, with the identifier of the object as name. Openings are cut out of their face. The
@@ -36,6 +44,8 @@ class HoneybeeShapes {
   /// InputError for lists of objects that are none.
   void add(const JsonObject& model);
   const Repairs& repairs() const { return repairs_; }
+  /// The openings of two and more states so far.
+  const std::vector<DynamicOpening>& dynamic_openings() const { return dynamic_openings_; }
 
  private:
   template <class Use>
@@ -46,6 +56,7 @@ class HoneybeeShapes {
   void add_opening(const JsonObject& opening, HoneybeeKind kind, const std::string& set);
   void add_shades(const JsonObject& parent, const std::string& set);
   void add_shade_mesh(const JsonObject& mesh);
+  void add_states(const JsonObject& opening, HoneybeeKind kind, const std::string& set);
   void add_polygon(const JsonObject& object, HoneybeeKind kind, const std::string& set,
                    Polygon polygon);
   void add_surface(const JsonObject& object, HoneybeeKind kind, const std::string& set,
@@ -66,6 +77,7 @@ class HoneybeeShapes {
   NumberedNames names_;
   SceneSize size_;
   std::set<std::string, std::less<>> read_{};  // identifiers of faces and openings
+  std::vector<DynamicOpening> dynamic_openings_{};
 };
 
 }  // namespace lightwell

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -11,111 +10,78 @@
 
 #include "scene/errors.h"
 #include "scene/io/honeybee/honeybee_model.h"
-#include "scene/io/honeybee/honeybee_modifiers.h"
-#include "scene/io/remarks.h"
+#include "scene/io/honeybee/honeybee_shapes.h"
 #include "scene/io/window_states.h"
 
 namespace lightwell {
 namespace {
 
-// Modifiers of the states of an opening, "" where the state keeps that of the opening.
-using StateModifiers = std::vector<std::string>;
+// A dynamic group and the modifiers of its states, and the surfaces that have both.
+using Groups = std::map<std::pair<std::string, std::vector<std::string>>, std::set<int>>;
 
-class WindowCollector {
- public:
-  explicit WindowCollector(const Scene& scene) {
-    for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
-      surface_of_.emplace(scene.surfaces[s].name, static_cast<int>(s));
-    }
+Groups groups_of(const std::vector<DynamicOpening>& openings, const Scene& scene) {
+  std::map<std::string, int> surface_of;
+  for (std::size_t s = 0; s < scene.surfaces.size(); ++s) {
+    surface_of.emplace(scene.surfaces[s].name, static_cast<int>(s));
   }
-
-  void collect(const JsonObject& model) {
-    for (const JsonObject& room : model.objects("rooms")) collect_faces(room, "faces");
-    collect_faces(model, "orphaned_faces");
-    collect_openings(model, "orphaned_apertures");
-    collect_openings(model, "orphaned_doors");
+  Groups groups;
+  for (const DynamicOpening& opening : openings) {
+    const auto surface = surface_of.find(opening.surface);
+    if (surface == surface_of.end()) continue;
+    groups[{opening.group, opening.states}].insert(surface->second);
   }
+  return groups;
+}
 
-  OperatedWindows operated(const JsonObject& model, HoneybeeModifiers& modifiers) const {
-    OperatedWindows windows;
-    std::map<std::string, int> times_named;
-    for (const auto& [key, surfaces] : groups_) {
-      const auto& [name, states] = key;
-      if (states.size() > most_window_states) {
-        model.fail(fmt::format("the group '{}' of windows has {} states; at most {} can be read",
-                               name, states.size(), most_window_states));
-      }
-      const int number = ++times_named[name];
-      WindowGroup group{.name = number == 1 ? name : fmt::format("{} {}", name, number),
-                        .surfaces = {surfaces.begin(), surfaces.end()}};
-      for (const std::string& modifier : states) {
-        add_state(modifier, modifiers, windows.materials, group);
-      }
-      windows.groups.push_back(std::move(group));
+// Adds a state; the scene itself has the first.
+void add_state(const JsonObject& model, const std::string& modifier, HoneybeeModifiers& modifiers,
+               std::vector<Material>& materials, WindowGroup& group) {
+  const bool is_named = std::ranges::any_of(
+      group.states, [&](const WindowState& state) { return state.name == modifier; });
+  WindowState state{.name = is_named ? fmt::format("state {}", group.states.size() + 1) : modifier};
+  if (!group.states.empty() && modifier != group.states.front().name) {
+    auto material = modifiers.material(modifier);
+    if (!material) {
+      model.fail(fmt::format(
+          "state {} of the windows '{}' has the modifier '{}', which is not defined or cannot be "
+          "seen; define it, or give other states with '--windows FILE.toml'",
+          group.states.size() + 1, group.name, modifier));
     }
-    return windows;
+    state.material = static_cast<int>(materials.size());
+    material->name = modifier;
+    materials.push_back(std::move(*material));
   }
-
- private:
-  void collect_faces(const JsonObject& parent, const char* list) {
-    for (const JsonObject& face : parent.objects(list)) {
-      collect_openings(face, "apertures");
-      collect_openings(face, "doors");
-    }
-  }
-
-  void collect_openings(const JsonObject& parent, const char* list) {
-    for (const JsonObject& opening : parent.objects(list)) {
-      const auto radiance = radiance_properties(opening);
-      if (!radiance) continue;
-      StateModifiers states;
-      for (const JsonObject& state : radiance->objects("states")) {
-        states.push_back(state.string_or("modifier", ""));
-      }
-      const auto surface = surface_of_.find(opening.string_or("identifier", ""));
-      if (states.size() < 2 || surface == surface_of_.end()) continue;
-      const std::string name =
-          radiance->string_or("dynamic_group_identifier", opening.string_or("identifier", ""));
-      groups_[{name, states}].insert(surface->second);
-    }
-  }
-
-  // The scene has the first state.
-  static void add_state(const std::string& modifier, HoneybeeModifiers& modifiers,
-                        std::vector<Material>& materials, WindowGroup& group) {
-    const auto has_name = [&](const std::string& name) {
-      return std::ranges::any_of(group.states, [&](const auto& s) { return s.name == name; });
-    };
-    WindowState state{.name = modifier};
-    if (modifier.empty() || has_name(modifier)) {
-      state.name = fmt::format("state {}", group.states.size() + 1);
-    }
-    if (!group.states.empty() && !modifier.empty()) {
-      if (auto material = modifiers.material(modifier)) {
-        state.material = static_cast<int>(materials.size());
-        material->name = modifier;
-        materials.push_back(std::move(*material));
-      }
-    }
-    group.states.push_back(std::move(state));
-  }
-
-  std::map<std::string, int, std::less<>> surface_of_{};
-  std::map<std::pair<std::string, StateModifiers>, std::set<int>> groups_{};
-};
+  group.states.push_back(std::move(state));
+}
 
 }  // namespace
 
 OperatedWindows read_honeybee_windows(const Scene& scene) {
   const nlohmann::json document = read_honeybee_document(scene.file);
   const JsonObject model(scene.file, document, "");
-  WindowCollector windows(scene);
-  windows.collect(model);
-  Scene unused;
-  unused.bands = scene.bands;
-  Remarks remarks;  // of the reader of the scene
-  HoneybeeModifiers modifiers(scene.file, radiance_properties(model), unused, remarks);
-  return windows.operated(model, modifiers);
+  Scene shapes_of;
+  shapes_of.bands = scene.bands;
+  Remarks remarks;  // The reader of the scene has reported the same ones.
+  HoneybeeModifiers modifiers(scene.file, radiance_properties(model), shapes_of, remarks);
+  HoneybeeShapes shapes(metres_of(model), modifiers, shapes_of, remarks);
+  shapes.add(model);
+  OperatedWindows windows;
+  std::map<std::string, int> times_named;
+  for (const auto& [key, surfaces] : groups_of(shapes.dynamic_openings(), scene)) {
+    const auto& [name, states] = key;
+    if (states.size() > most_window_states) {
+      model.fail(fmt::format("the group '{}' of windows has {} states; at most {} can be read",
+                             name, states.size(), most_window_states));
+    }
+    const int number = ++times_named[name];
+    WindowGroup group{.name = number == 1 ? name : fmt::format("{} {}", name, number),
+                      .surfaces = {surfaces.begin(), surfaces.end()}};
+    for (const std::string& modifier : states) {
+      add_state(model, modifier, modifiers, windows.materials, group);
+    }
+    windows.groups.push_back(std::move(group));
+  }
+  return windows;
 }
 
 }  // namespace lightwell

@@ -17,8 +17,6 @@
 namespace lightwell {
 namespace {
 
-constexpr double radiance_lumens_per_watt = 179.0;  // lm/W of white light; Ward & Shakespeare 1998
-
 RadianceView view_of(const JsonObject& view, double metres_per_unit) {
   RadianceView result;
   const auto vector = [&](const char* key, const Eigen::Vector3d& otherwise) {
@@ -109,7 +107,8 @@ std::vector<SensorGrid> read_honeybee_grids(const std::filesystem::path& path) {
   const auto radiance = radiance_properties(model);
   if (!radiance) return grids;
   for (const JsonObject& from : radiance->objects("sensor_grids")) {
-    SensorGrid grid{.name = from.string_or("identifier", from.place())};
+    SensorGrid grid{.name = from.string_or("identifier", from.place()),
+                    .group = from.string_or("group_identifier", "")};
     for (const JsonObject& sensor : from.objects("sensors")) {
       const auto position = sensor.point("pos");
       if (!position) sensor.fail("has no 'pos'");

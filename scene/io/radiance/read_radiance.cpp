@@ -18,8 +18,6 @@
 namespace lightwell {
 namespace {
 
-constexpr double radiance_lumens_per_watt = 179.0;  // lm/W of white light; Ward & Shakespeare 1998
-
 const char* const unusable_views = "Views that cannot be used were left out";
 
 class RadianceReader {

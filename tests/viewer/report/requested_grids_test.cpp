@@ -65,6 +65,26 @@ TEST(RequestedGrids, PlanesLieAboveFloorsWhoseFrontsFaceDown) {
   }
 }
 
+TEST(RequestedGrids, SurfacesAndPlanesWithoutHeightHaveTheSameSide) {
+  const Scene scene = two_storeys();
+  EXPECT_EQ(grids(plane("lower floor", 0.0), scene)[0].points[0].normal, Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(grids({.surfaces = {"lower floor"}}, scene)[0].points[0].normal,
+            Eigen::Vector3d::UnitZ());
+  EXPECT_EQ(grids({.surfaces = {"ceiling"}}, scene)[0].points[0].normal,
+            Eigen::Vector3d(-Eigen::Vector3d::UnitZ()));
+}
+
+// A court whose paving lies just above a slab, with nothing around.
+TEST(RequestedGrids, PlanesLieAboveACourtOverASlab) {
+  Scene scene = two_storeys();
+  scene.surfaces.clear();
+  for (const double z : {0.0, -0.02}) {
+    add_polygon(z < 0.0 ? "slab" : "paving", 1, {{0, 3, z}, {4, 3, z}, {4, 0, z}, {0, 0, z}},
+                scene);
+  }
+  EXPECT_DOUBLE_EQ(grids(plane("paving", 0.8), scene)[0].points[0].position.z(), 0.8);
+}
+
 TEST(RequestedGrids, PlanesLieBelowCeilings) {
   const std::vector<LuxGrid> found = grids(plane("ceiling", 0.5), two_storeys());
   ASSERT_EQ(found.size(), 1u);
@@ -86,6 +106,10 @@ TEST(RequestedGrids, PatternsAskForAllSurfacesAndMaterialsThatFit) {
   EXPECT_EQ(found[1].name, "upper floor + 0.75 m");
   EXPECT_EQ(grids(plane("grey*", 0.75), scene).size(), 2u);
   EXPECT_EQ(grids({.surfaces = {"wall"}}, scene).size(), 1u) << "a name goes before patterns";
+  // The strip without points leaves nothing of one of the surfaces.
+  GridRequest too_wide = plane("*", 0.75);
+  too_wide.margin = 1.4;
+  EXPECT_THROW(grids(too_wide, scene), InputError);
 }
 
 TEST(RequestedGrids, SurfacesThatAreNotThereAreRefusedBeforeTheWork) {

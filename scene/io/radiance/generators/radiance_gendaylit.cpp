@@ -14,8 +14,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double white_efficacy = 179.0;  // lm/W of RADIANCE's white
-
 struct GendaylitGiven {
   SunGiven sun{};
   char input = 0;  // the letter of the option
@@ -109,7 +107,7 @@ struct SkyLux {
 
 SkyLux output_of(const GendaylitGiven& given, const Weather& weather, double altitude) {
   if (given.output == 1) return {weather.diffuse_horizontal, weather.direct_normal};
-  const double unit = given.output == 0 ? white_efficacy : 1.0;
+  const double unit = given.output == 0 ? radiance_lumens_per_watt : 1.0;
   if (given.input == 'L') return {given.second / unit, given.first / unit};
   const DaylightEfficacy lm = efficacy(weather, altitude);
   return {weather.diffuse_horizontal * lm.diffuse / unit, weather.direct_normal * lm.direct / unit};

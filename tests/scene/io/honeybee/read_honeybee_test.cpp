@@ -135,6 +135,20 @@ TEST(ReadHoneybee, FrontsOfARoomFaceIntoIt) {
   }
 }
 
+// Far from the origin, with a wall missing.
+TEST(ReadHoneybee, FrontsOfAnOpenRoomFaceIntoIt) {
+  json of = model();
+  json& faces = of["rooms"][0]["faces"];
+  faces.erase(3);
+  for (json& each : faces) {
+    each.erase("apertures");
+    each.erase("doors");
+    for (json& point : each["geometry"]["boundary"]) point[0] = point[0].get<double>() + 100.0;
+  }
+  const PolygonMesh floor = std::get<PolygonMesh>(read(of).surfaces[3].shape);
+  EXPECT_GT(facet_normal(floor, floor.facets[0]).z(), 0.0);
+}
+
 TEST(ReadHoneybee, HolesOfAFaceAreOpen) {
   json shade = object("canopy", rectangle({0, 0, 4}, {3, 0, 0}, {0, 3, 0}));
   shade["geometry"]["holes"] =
@@ -259,32 +273,67 @@ polygons = [[[0, 3, 2.5], [4, 3, 2.5], [4, 0, 2.5], [0, 0, 2.5]]]
   EXPECT_EQ(scene_hash(read(of)), scene_hash(read_scene(folder.write("room.toml", native))));
 }
 
-// Two rooms side by side share a wall with a window; their other common face is air.
-TEST(ReadHoneybee, RoomsHaveTheirOwnFacesShareOpeningsAndAirIsOpen) {
-  const auto shared = [](const std::string& name, const std::string& other, double x) {
-    json wall = face(name, "Wall", rectangle({x, 0, 0}, {0, 3, 0}, {0, 0, 2.5}));
-    wall["boundary_condition"] = {{"type", "Surface"},
-                                  {"boundary_condition_objects", {other, "room of " + other}}};
-    json window = object("window of " + name, rectangle({x, 1, 1}, {0, 1, 0}, {0, 0, 1}));
+// The room, and the same room 4 m east of it, whose wall "west" lies on the wall "east" of the
+// first. Both walls have the same window.
+json two_rooms() {
+  json first = room(), second = room();
+  second["identifier"] = "second";
+  for (json& each : second["faces"]) {
+    each["identifier"] = "second " + each["identifier"].get<std::string>();
+    for (json& point : each["geometry"]["boundary"]) point[0] = point[0].get<double>() + 4.0;
+    each.erase("apertures");
+    each.erase("doors");
+  }
+  const auto join = [](json& wall, const std::string& name, const std::string& other) {
+    json window = object("window of " + name, rectangle({4, 1, 1}, {0, 1, 0}, {0, 0, 1}));
     window["boundary_condition"] = {
         {"type", "Surface"},
         {"boundary_condition_objects", {"window of " + other, other, "room of " + other}}};
+    wall["boundary_condition"] = {{"type", "Surface"},
+                                  {"boundary_condition_objects", {other, "room of " + other}}};
     wall["apertures"] = json::array({window});
-    return wall;
   };
-  json first = room(), second = room();
-  second["identifier"] = "second";
-  first["faces"] = {shared("a", "b", 4.0),
-                    face("air", "AirBoundary", rectangle({0, 0, 0}, {4, 0, 0}, {0, 0, 2.5}))};
-  second["faces"] = json::array({shared("b", "a", 4.0)});
-  const Scene scene = read(model({first, second}));
+  constexpr int west = 2, east = 3;
+  join(first["faces"][east], "east", "second west");
+  join(second["faces"][west], "second west", "east");
+  return model({first, second});
+}
+
+const PolygonMesh& mesh_of(const Scene& scene, const std::string& surface) {
+  for (const Surface& s : scene.surfaces) {
+    if (s.name == surface) return std::get<PolygonMesh>(s.shape);
+  }
+  throw std::runtime_error("no surface " + surface);
+}
+
+TEST(ReadHoneybee, RoomsHaveTheirOwnFacesAndShareOpenings) {
+  json of = two_rooms();
+  of["tolerance"] = 0.01;
+  const Scene scene = read(of);
   const auto area = areas(scene);
-  ASSERT_EQ(area.size(), 3u);
-  EXPECT_NEAR(area.at("a"), 7.5 - 1.0, rounding);
-  EXPECT_NEAR(area.at("b"), 7.5 - 1.0, rounding);
-  EXPECT_NEAR(area.at("window of a"), 1.0, rounding);
+  EXPECT_NEAR(area.at("east"), 7.5 - 1.0, rounding);
+  EXPECT_NEAR(area.at("second west"), 7.5 - 1.0, rounding);
+  EXPECT_NEAR(area.at("window of east"), 1.0, rounding);
+  EXPECT_FALSE(area.contains("window of second west"));
   // Inner windows have the clearer glass.
-  EXPECT_EQ(material_of(scene, "window of a").name, "generic_interior_window_vis_0.88");
+  EXPECT_EQ(material_of(scene, "window of east").name, "generic_interior_window_vis_0.88");
+  // The second face lies by twice the tolerance in its own room.
+  for (const Eigen::Vector3d& point : mesh_of(scene, "east").vertices) EXPECT_EQ(point.x(), 4.0);
+  for (const Eigen::Vector3d& point : mesh_of(scene, "second west").vertices) {
+    EXPECT_NEAR(point.x(), 4.02, rounding);
+  }
+  of["units"] = "Feet";
+  for (const Eigen::Vector3d& point : mesh_of(read(of), "second west").vertices) {
+    EXPECT_NEAR(point.x(), 0.3048 * 4.02, rounding);
+  }
+}
+
+TEST(ReadHoneybee, AirBoundariesAreOpen) {
+  json of = model();
+  of["rooms"][0]["faces"][1]["face_type"] = "AirBoundary";
+  const auto area = areas(read(of));
+  EXPECT_FALSE(area.contains("north"));
+  EXPECT_TRUE(area.contains("west"));
 }
 
 TEST(ReadHoneybee, ShadesHaveTheModifierOfTheirPlace) {
@@ -370,9 +419,52 @@ TEST(ReadHoneybee, OpeningsWithStatesAreOperatedTogether) {
   EXPECT_EQ(tinted.dielectric->transmissivity[0], 0.1f);
 }
 
+TEST(ReadHoneybee, StatesWithoutModifierHaveThatOfTheirOpening) {
+  json of = model();
+  of["properties"]["radiance"]["modifiers"] =
+      json::array({{{"type", "Plastic"}, {"identifier", "shutter"}, {"r_reflectance", 0.4}}});
+  json& window = of["rooms"][0]["faces"][0]["apertures"][0];
+  window["properties"]["radiance"] = {
+      {"dynamic_group_identifier", "shutters"},
+      {"states", {{{"modifier", nullptr}}, {{"modifier", "shutter"}}}}};
+  const TemporaryFolder folder;
+  Scene scene = read_scene(folder.write("model.hbjson", of.dump()));
+  EXPECT_EQ(material_of(scene, "window").name, "generic_exterior_window_vis_0.64");
+  OperatedWindows windows = read_windows(scene);
+  ASSERT_EQ(windows.groups.size(), 1u);
+  EXPECT_EQ(windows.materials.at(0).reflectance[0], 0.4f);
+  // The other way round: open with a modifier of the state, closed with that of the opening.
+  window["properties"]["radiance"]["modifier"] = "shutter";
+  window["properties"]["radiance"]["states"] =
+      json::array({{{"modifier", "generic_exterior_window_vis_0.64"}}, {{"modifier", nullptr}}});
+  scene = read_scene(folder.write("model.hbjson", of.dump()));
+  EXPECT_TRUE(material_of(scene, "window").dielectric.has_value());
+  windows = read_windows(scene);
+  ASSERT_TRUE(windows.groups.at(0).states.at(1).material.has_value());
+  EXPECT_EQ(windows.materials.at(0).reflectance[0], 0.4f);
+}
+
+TEST(ReadHoneybee, StatesOfUndefinedModifiersAreRefused) {
+  json of = model();
+  of["rooms"][0]["faces"][0]["apertures"][0]["properties"]["radiance"] = {
+      {"dynamic_group_identifier", "panes"},
+      {"states", {{{"modifier", "generic_exterior_window_vis_0.64"}}, {{"modifier", "misspelt"}}}}};
+  const TemporaryFolder folder;
+  const Scene scene = read_scene(folder.write("model.hbjson", of.dump()));
+  try {
+    read_windows(scene);
+    FAIL() << "a state of no material was read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("windows 'panes' has the modifier 'misspelt'"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 // Two patches of directions: from the normal to 30 degrees and beyond, with projected solid angles
 // of pi / 4 and 3 pi / 4.
-std::string bsdf_xml(const std::string& transmission, const std::string& reflection) {
+std::string bsdf_xml(const std::string& transmission, const std::string& reflection,
+                     const std::string& structure) {
   const auto data = [](const char* direction, const std::string& values) {
     return fmt::format(
         "<WavelengthData><Wavelength unit=\"Integral\">Visible</Wavelength><WavelengthDataBlock>"
@@ -386,18 +478,22 @@ std::string bsdf_xml(const std::string& transmission, const std::string& reflect
         "</UpperTheta></ThetaBounds></AngleBasisBlock>",
         lower, upper);
   };
-  return "<WindowElement><Optical><Layer><DataDefinition><AngleBasis>" + block(0, 30) +
-         block(30, 90) + "</AngleBasis></DataDefinition>" +
-         data("Transmission Front", transmission) + data("Reflection Front", reflection) +
-         data("Reflection Back", reflection) + "</Layer></Optical></WindowElement>";
+  return "<WindowElement><Optical><Layer><DataDefinition><IncidentDataStructure>" + structure +
+         "</IncidentDataStructure><AngleBasis>" + block(0, 30) + block(30, 90) +
+         "</AngleBasis></DataDefinition>" + data("Transmission Front", transmission) +
+         data("Reflection Front", reflection) + data("Reflection Back", reflection) +
+         "</Layer></Optical></WindowElement>";
 }
 
-Material material_of_bsdf(const std::string& transmission, const std::string& reflection) {
+Material material_of_bsdf(const std::string& transmission, const std::string& reflection,
+                          const std::string& structure = "Columns",
+                          const json& added = json::object()) {
   json of = model();
   of["properties"]["radiance"]["modifiers"] =
       json::array({{{"type", "BSDF"},
                     {"identifier", "shade"},
-                    {"bsdf_data", bsdf_xml(transmission, reflection)}}});
+                    {"bsdf_data", bsdf_xml(transmission, reflection, structure)}}});
+  of["properties"]["radiance"]["modifiers"][0].update(added);
   of["rooms"][0]["faces"][0]["apertures"][0]["properties"]["radiance"]["modifier"] = "shade";
   return material_of(read(of), "window");
 }
@@ -418,6 +514,31 @@ TEST(ReadHoneybee, BsdfsScatterAsMuchAsTheirMatrices) {
       material_of_bsdf(fmt::format("{}, 0, 0, {}", 0.8 / a, 0.8 / (3.0 * a)), "0 0 0 0");
   EXPECT_NEAR(clear.regular_transmittance[0], 0.8f, single);
   EXPECT_FALSE(clear.is_translucent());
+}
+
+// Light of the patch around the normal, a quarter of all, scatters evenly by the value 0.4 / pi;
+// light of the other patch passes within its patch alone, by 0.9 of it.
+TEST(ReadHoneybee, MatricesOfBsdfsHaveColumnsOrRowsOfIncidentLight) {
+  const double even = 0.4 * std::numbers::inv_pi, within = 0.9 / (0.75 * std::numbers::pi);
+  const std::string by_columns = fmt::format("{0}, 0, {0}, {1}", even, within);
+  const std::string by_rows = fmt::format("{0}, {0}, 0, {1}", even, within);
+  for (const Material& shade : {material_of_bsdf(by_columns, "0 0 0 0", "Columns"),
+                                material_of_bsdf(by_rows, "0 0 0 0", "Rows")}) {
+    constexpr float single = 1e-6f;
+    EXPECT_NEAR(shade.transmittance[0], 0.25f * 0.4f, single);
+    EXPECT_NEAR(shade.regular_transmittance[0], 0.75f * 0.9f, single);
+  }
+}
+
+TEST(ReadHoneybee, DiffuseSharesOfBsdfsAreAdded) {
+  const std::string even = fmt::format("{0}, {0}, {0}, {0}", 0.3 * std::numbers::inv_pi);
+  const Material shade = material_of_bsdf(
+      even, even, "Columns",
+      {{"diffuse_transmittance", {0.1, 0.1, 0.1}}, {"front_diffuse_reflectance", {0.2, 0.2, 0.2}}});
+  constexpr float single = 1e-6f;
+  EXPECT_NEAR(shade.transmittance[0], 0.4f, single);
+  // The mean of both faces.
+  EXPECT_NEAR(shade.reflectance[0], 0.3f + 0.1f, single);
 }
 
 TEST(ReadHoneybee, FaultsAreSentences) {
