@@ -185,6 +185,37 @@ void count_operated(const OperatedYear& year, std::span<const SkyHour> hours, Ye
   });
 }
 
+void require_writable_files(const DaylightArguments& arguments, const OutputFolder& folder) {
+  for (const std::string& file : files_of(arguments)) {
+    require_writable(folder / file);
+    require_different({arguments.walk, folder / file});
+  }
+  if (!arguments.walk.empty()) require_writable(arguments.walk);
+}
+
+// Writes the page of --walk. An interrupt leaves the year, which is written, and no page: false.
+bool finish_walk(const DaylightArguments& arguments, const DaylightInputs& inputs,
+                 const WalkedYear& year, Feedback feedback) {
+  try {
+    write_walk(arguments, inputs, year, feedback.console, feedback.report);
+  } catch (const Interrupted&) {
+    feedback.console.finish_phase();
+    feedback.console.say("warning: interrupted; the files of the year are in '" +
+                         arguments.output + "', and the page '" + arguments.walk +
+                         "' is not written");
+    return false;
+  }
+  return true;
+}
+
+void add_figures(const YearReport& made, Report& report) {
+  const Json figures = year_json(made);
+  for (const char* key : {"relative_error", "rooms", "windows", "method", "superposition_error",
+                          "states", "glare", "exposure_to_sunlight"}) {
+    if (figures.contains(key)) report.add(key, figures[key]);
+  }
+}
+
 // Goes through the year and fills in all measures. `files` may be null.
 OperatedYear go_through_year(const DaylightInputs& inputs, const DaylightModel& model,
                              const OperationTask& task, HourlyFiles* files, YearReport& made) {
@@ -322,14 +353,8 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   const std::vector<SkyHour> hours = sky_hours(weather, inputs.up, inputs.north);
   YearReport made = daylight_report(arguments, inputs, weather_notes(weather, hours, console));
   const OutputFolder folder(arguments.output);
-  for (const std::string& file : files_of(arguments)) require_writable(folder / file);
+  require_writable_files(arguments, folder);
   const MetricFolders metric_folders(folder / metrics_folder, inputs.grids);
-  if (!arguments.walk.empty()) {
-    for (const std::string& file : files_of(arguments)) {
-      require_different({arguments.walk, folder / file});
-    }
-    require_writable(arguments.walk);
-  }
 
   Stopwatch watch;
   DaylightModel model(inputs.scene, inputs.up, inputs.north,
@@ -370,27 +395,25 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
       report.add_file(folder / metrics_folder / file);
     }
   }
+  bool is_whole = true;
   if (!arguments.walk.empty()) {
-    const auto count = made.rooms.empty() ? 0 : made.rooms.front().count;
-    write_walk(arguments, inputs,
-               {.model = model,
-                .hours = hours,
-                .sensors = std::span(sensors.probes).first(static_cast<std::size_t>(count)),
-                .daylight_factor = made.daylight_factor.head(count)},
-               console, report);
+    const auto count = made.rooms.front().count;
+    is_whole =
+        finish_walk(arguments, inputs,
+                    {.model = model,
+                     .hours = hours,
+                     .sensors = std::span(sensors.probes).first(static_cast<std::size_t>(count)),
+                     .daylight_factor = made.daylight_factor.head(count)},
+                    {console, report});
     report.add_phase("walk", watch.lap());
   }
   report.add("patches", model.mesh().patch_count());
   report.add("sensors", sensors.probes.size());
   report.add("hours_with_light", hours.size());
-  const Json figures = year_json(made);
-  for (const char* key : {"relative_error", "rooms", "windows", "method", "superposition_error",
-                          "states", "glare", "exposure_to_sunlight"}) {
-    if (figures.contains(key)) report.add(key, figures[key]);
-  }
+  add_figures(made, report);
   if (!console.options().json && !console.options().quiet) fmt::print("{}", year_text(made));
   report.print();
-  return exit_done;
+  return is_whole ? exit_done : exit_not_accurate;
 }
 
 }  // namespace lightwell

@@ -192,20 +192,29 @@ DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, Receive
 
 namespace {
 
+// A disc at distance 1: its middle, the axes of its plane and its radius.
+struct DiscFrame {
+  explicit DiscFrame(const SunDisc& disc)
+      : direction(disc.direction), radius(std::tan(0.5 * disc.angle_degrees * degree)) {
+    tangent_frame(disc.direction, a, b);
+  }
+  Eigen::Vector3d direction, a, b;
+  double radius;
+};
+
 // Rays of a receiver to suns, with the sun and the weight of each.
 struct SunRays {
   RayBatch batch;
   std::vector<std::size_t> sun{};
   std::vector<float> weight{};
 
-  // Adds a ray of a point to a place (r, phi) of a disc that (u, v) in [0,1)^2 give.
-  void add(std::size_t point, std::size_t number, const SunDisc& disc, float share, double u,
+  // Adds a ray of a point to the place (r, phi) of a disc that (u, v) in [0,1)^2 give. `frame` is
+  // that of the disc.
+  void add(std::size_t point, std::size_t number, const DiscFrame& frame, float share, double u,
            double v) {
-    Eigen::Vector3d a, b;
-    tangent_frame(disc.direction, a, b);
-    const double r = std::sqrt(u) * std::tan(0.5 * disc.angle_degrees * degree),
-                 phi = 2.0 * std::numbers::pi * v;
-    batch.add(point, (disc.direction + r * (std::cos(phi) * a + std::sin(phi) * b)).normalized());
+    const double r = std::sqrt(u) * frame.radius, phi = 2.0 * std::numbers::pi * v;
+    batch.add(point, (frame.direction + r * (std::cos(phi) * frame.a + std::sin(phi) * frame.b))
+                         .normalized());
     sun.push_back(number);
     weight.push_back(share);
   }
@@ -221,10 +230,11 @@ Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, Rece
   for (std::size_t s = 0; s < suns.size(); ++s) {
     const std::uint64_t of_sun = random_key(sun_key, s);
     const auto random = [&](std::uint64_t number) { return random_of(of_sun, number); };
+    const DiscFrame frame(suns[s]);
     if (view.open[static_cast<std::size_t>(sky.cell_of(suns[s].direction))] == 0) {
       const std::size_t p = point_of(random(0), points.size());
       if (points[p].normal.dot(suns[s].direction) > 0.0) {
-        cast.add(p, s, suns[s], 1.0f, random(1), random(2));
+        cast.add(p, s, frame, 1.0f, random(1), random(2));
       }
       continue;
     }
@@ -234,7 +244,7 @@ Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, Rece
       for (int i = 0; i < rays; ++i) {
         const std::uint64_t number =
             3 + 2 * (p * static_cast<std::size_t>(rays) + static_cast<std::size_t>(i));
-        cast.add(p, s, suns[s], share, (i + random(number)) / rays, random(number + 1));
+        cast.add(p, s, frame, share, (i + random(number)) / rays, random(number + 1));
       }
     }
   }

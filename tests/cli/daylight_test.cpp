@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -10,6 +12,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "radiosity/closed_forms/polygon_form_factor.h"
@@ -155,6 +158,25 @@ TEST_F(DaylightCommand, WritesAPageToWalkIn) {
   const std::size_t begin = page.find('[', page.find("\"position\"", camera));
   const Json eye = Json::parse(page.substr(begin, page.find(']', begin) + 1 - begin));
   EXPECT_NEAR(eye[1].get<double>(), 1.6, 1e-6);
+}
+
+// Small patches make the page take seconds, which begin once the year is written.
+TEST_F(DaylightCommand, CtrlCWithinThePageKeepsTheYear) {
+  const Words fine = {"daylight",  "court.toml", "--weather",    "year.wea",         "-o",
+                      "year",      "--plane",    "floor@0.8",    "--max-patch-size", "0.12",
+                      "--rays",    "64",         "--walk",       "walk.html",        "--sky", "1"};
+  Running running(folder / "", fine);
+  const auto is_written = [&] { return std::filesystem::exists(folder / "year/year.json"); };
+  for (int i = 0; i < 1200 && !is_written(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  ASSERT_TRUE(is_written()) << running.err();
+  running.signal(SIGINT);
+  const Ended ended = running.wait();
+  EXPECT_EQ(ended.code, 4) << ended.err;
+  EXPECT_NE(ended.err.find("the page 'walk.html' is not written"), std::string::npos) << ended.err;
+  EXPECT_FALSE(std::filesystem::exists(folder / "walk.html"));
+  EXPECT_EQ(Json::parse(text_of("year.json"))["rooms"].size(), 1u);
 }
 
 TEST_F(DaylightCommand, HoursAreThoseOfTheWeather) {
