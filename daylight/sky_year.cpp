@@ -15,25 +15,46 @@ namespace {
 
 using std::numbers::pi;
 
-// Luminance of a sky's dome, up to a factor, as the mean over a patch, by the midpoint rule.
-Eigen::ArrayXd means_of_patches(const SkyPatches& patches, const Sky& sky) {
-  constexpr int steps = 3;
-  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(patches.dome_count());
-  for (int p = 0; p < patches.dome_count(); ++p) {
-    for (int i = 0; i < steps; ++i) {
-      for (int j = 0; j < steps; ++j) {
-        const Eigen::Vector3d towards = patches.direction(p, (i + 0.5) / steps, (j + 0.5) / steps);
-        mean[p] += double{sky_radiance(sky, towards)[0]};
+// What all hours have in common: points of each patch of the dome by the midpoint rule, and the
+// irradiance that each gives open level ground per radiance, sr.
+struct DomeSamples {
+  static constexpr int steps = 3, count = steps * steps;
+
+  explicit DomeSamples(const SkyPatches& sky)
+      : patches(sky),
+        towards(3, Eigen::Index{count} * sky.dome_count()),
+        on_ground(sky.irradiances(sky.up()).head(sky.dome_count())) {
+    Eigen::Index at = 0;
+    for (int p = 0; p < sky.dome_count(); ++p) {
+      for (int i = 0; i < steps; ++i) {
+        for (int j = 0; j < steps; ++j) {
+          towards.col(at++) = sky.direction(p, (i + 0.5) / steps, (j + 0.5) / steps);
+        }
       }
     }
   }
-  return mean / (steps * steps);
+  const SkyPatches& patches;
+  Eigen::Matrix3Xd towards;
+  Eigen::ArrayXd on_ground;
+};
+
+// Luminance of a sky's dome, up to a factor, as the mean over a patch.
+Eigen::ArrayXd means_of_patches(const DomeSamples& dome, const Sky& sky) {
+  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(dome.patches.dome_count());
+  Eigen::Index at = 0;
+  for (int p = 0; p < dome.patches.dome_count(); ++p) {
+    for (int i = 0; i < DomeSamples::count; ++i) {
+      mean[p] += double{sky_radiance(sky, dome.towards.col(at++))[0]};
+    }
+  }
+  return mean / DomeSamples::count;
 }
 
 // Scales patches to `dome_lux` on open ground, and adds the ground, lit by `horizontal_lux`.
-Eigen::ArrayXf scaled(const SkyPatches& patches, const Eigen::ArrayXd& dome, double dome_lux,
+Eigen::ArrayXf scaled(const DomeSamples& samples, const Eigen::ArrayXd& dome, double dome_lux,
                       double horizontal_lux, double ground_reflectance) {
-  const double lux = (dome * patches.irradiances(patches.up()).head(dome.size())).sum();
+  const SkyPatches& patches = samples.patches;
+  const double lux = (dome * samples.on_ground).sum();
   Eigen::ArrayXf luminance(patches.column_count());
   luminance.head(dome.size()) = (dome * (lux > 0.0 ? dome_lux / lux : 0.0)).cast<float>();
   luminance[patches.ground_column()] = static_cast<float>(ground_reflectance * horizontal_lux / pi);
@@ -42,6 +63,15 @@ Eigen::ArrayXf scaled(const SkyPatches& patches, const Eigen::ArrayXd& dome, dou
 
 Sky white_sky(const SkyPatches& patches) {
   return {.up = patches.up(), .north = patches.north(), .scale = Spectrum::Ones(1)};
+}
+
+Eigen::ArrayXf luminances_of(const DomeSamples& dome, const SkyHour& hour,
+                             double ground_reflectance) {
+  Sky sky = white_sky(dome.patches);
+  sky.gradation = hour.gradation;
+  sky.bright = hour.sun;
+  return scaled(dome, means_of_patches(dome, sky), hour.dome_lux,
+                hour.horizontal_lux(dome.patches.up()), ground_reflectance);
 }
 
 }  // namespace
@@ -132,21 +162,18 @@ std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour
 
 Eigen::ArrayXf column_luminances(const SkyPatches& patches, const SkyHour& hour,
                                  double ground_reflectance) {
-  Sky sky = white_sky(patches);
-  sky.gradation = hour.gradation;
-  sky.bright = hour.sun;
-  return scaled(patches, means_of_patches(patches, sky), hour.dome_lux,
-                hour.horizontal_lux(patches.up()), ground_reflectance);
+  return luminances_of(DomeSamples(patches), hour, ground_reflectance);
 }
 
 BandArray hour_luminances(const SkyPatches& sky, std::span<const SkyHour> hours,
                           double ground_reflectance) {
   BandArray luminance(sky.column_count(), static_cast<Eigen::Index>(hours.size()));
+  const DomeSamples dome(sky);
   constexpr int grain = 8;
   parallel_for(static_cast<int>(hours.size()), grain, [&](int begin, int end) {
     for (int h = begin; h < end; ++h) {
       luminance.col(h) =
-          column_luminances(sky, hours[static_cast<std::size_t>(h)], ground_reflectance);
+          luminances_of(dome, hours[static_cast<std::size_t>(h)], ground_reflectance);
     }
   });
   return luminance;
@@ -155,7 +182,8 @@ BandArray hour_luminances(const SkyPatches& sky, std::span<const SkyHour> hours,
 Eigen::ArrayXf overcast_luminances(const SkyPatches& patches, double ground_reflectance) {
   Sky sky = white_sky(patches);
   sky.kind = SkyKind::overcast;
-  return scaled(patches, means_of_patches(patches, sky), 1.0, 1.0, ground_reflectance);
+  const DomeSamples dome(patches);
+  return scaled(dome, means_of_patches(dome, sky), 1.0, 1.0, ground_reflectance);
 }
 
 }  // namespace lightwell
