@@ -357,16 +357,16 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   const MetricFolders metric_folders(folder / metrics_folder, inputs.grids);
 
   Stopwatch watch;
-  DaylightModel model(inputs.scene, inputs.up, inputs.north,
-                      daylight_options(arguments, inputs.scene, console));
-  if (!arguments.walk.empty()) check_year_basis(model.mesh(), hours);
+  const DaylightOptions options = daylight_options(arguments, inputs.scene, console);
+  // Before form factors, which take long where the page is too large.
+  if (!arguments.walk.empty()) check_year_basis(build_patches(inputs.scene, options.mesh), hours);
+  DaylightModel model(inputs.scene, inputs.up, inputs.north, options);
   DaylightSensors sensors = daylight_sensors(arguments, inputs, model.caster());
   model.set_sensors(probe_points(model.caster(), sensors.all()));
   report.add_phase("sky", watch.lap());
-  made.rooms = std::move(sensors.rooms);
   made.conventions = conventions_of_year(arguments, inputs, model.sky());
-  std::vector<SensorRange> ranges;
-  for (const YearRoom& room : made.rooms) ranges.push_back({room.first, room.count});
+  const std::vector<SensorRange> ranges = sensors.ranges();
+  made.rooms = std::move(sensors.rooms);
   std::optional<HourlyFiles> files;
   if (arguments.hourly) files.emplace(folder, static_cast<int>(sensors.probes.size()));
   const OperatedYear year = go_through_year(inputs, model,

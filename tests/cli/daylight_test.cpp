@@ -377,6 +377,18 @@ TEST_F(DaylightCommand, WrongInputIsASentence) {
   EXPECT_NE(ended.err.find("weather is read from .epw"), std::string::npos) << ended.err;
 }
 
+// The limit is told before form factors, which would take minutes for these patches.
+TEST_F(DaylightCommand, APageOfTooManyVerticesIsRefusedAtOnce) {
+  const Ended ended =
+      run({"daylight", "court.toml", "--weather", "year.wea", "-o", "year", "--plane", "floor@0.8",
+           "--walk", "walk.html", "--max-patch-size", "0.02"});
+  EXPECT_EQ(ended.code, 3);
+  EXPECT_NE(ended.err.find("vertices, and a page of a year takes 400000 at most; give a larger "
+                           "'--max-patch-size'"),
+            std::string::npos)
+      << ended.err;
+}
+
 // A year whose every hour is dark has states of windows, and no light in them.
 TEST_F(DaylightCommand, AYearWithoutLightHasNoMeasures) {
   folder.write("court.toml", glazed_court(roof_states));
