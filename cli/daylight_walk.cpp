@@ -19,7 +19,10 @@ Camera view_of_room(const DaylightInputs& inputs, const WalkedYear& year) {
   Eigen::Index dim = 0, bright = 0;
   year.daylight_factor.minCoeff(&dim);
   year.daylight_factor.maxCoeff(&bright);
-  const Eigen::Vector3d& from = year.sensors[static_cast<std::size_t>(dim)].position;
+  // Sensors may lie on the floor itself.
+  constexpr double off_the_floor = 1e-3;  // m
+  const Eigen::Vector3d from =
+      year.sensors[static_cast<std::size_t>(dim)].position + off_the_floor * inputs.up;
   const Eigen::Vector3d& to = year.sensors[static_cast<std::size_t>(bright)].position;
   const ElementCaster& caster = year.model.caster();
   const auto free_way = [&](const Eigen::Vector3d& direction) {
@@ -29,7 +32,8 @@ Camera view_of_room(const DaylightInputs& inputs, const WalkedYear& year) {
     return hit.facet < 0 ? eye_height : double{hit.t};
   };
   const double above_floor = free_way(-inputs.up), below_ceiling = free_way(inputs.up);
-  const double rise = std::clamp(eye_height - above_floor, 0.0, 0.6 * below_ceiling);
+  constexpr double most_of_room = 0.6;  // of the height that is left below a low ceiling
+  const double rise = std::clamp(eye_height - above_floor, 0.0, most_of_room * below_ceiling);
   Camera camera;
   camera.name = "room";
   camera.position = from + rise * inputs.up;

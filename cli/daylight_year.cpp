@@ -200,9 +200,8 @@ bool finish_walk(const DaylightArguments& arguments, const DaylightInputs& input
     write_walk(arguments, inputs, year, feedback.console, feedback.report);
   } catch (const Interrupted&) {
     feedback.console.finish_phase();
-    feedback.console.say("warning: interrupted; the files of the year are in '" +
-                         arguments.output + "', and the page '" + arguments.walk +
-                         "' is not written");
+    feedback.console.say("warning: interrupted; the files of the year are in '" + arguments.output +
+                         "', and the page '" + arguments.walk + "' is not written");
     return false;
   }
   return true;
@@ -359,7 +358,10 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   Stopwatch watch;
   const DaylightOptions options = daylight_options(arguments, inputs.scene, console);
   // Before form factors, which take long where the page is too large.
-  if (!arguments.walk.empty()) check_year_basis(build_patches(inputs.scene, options.mesh), hours);
+  if (!arguments.walk.empty()) {
+    constexpr int fewest_bands = 1;  // of a grey scene; find_year_basis() knows them
+    check_year_basis(build_patches(inputs.scene, options.mesh), fewest_bands, hours);
+  }
   DaylightModel model(inputs.scene, inputs.up, inputs.north, options);
   DaylightSensors sensors = daylight_sensors(arguments, inputs, model.caster());
   model.set_sensors(probe_points(model.caster(), sensors.all()));

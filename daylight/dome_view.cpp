@@ -213,8 +213,9 @@ struct SunRays {
   void add(std::size_t point, std::size_t number, const DiscFrame& frame, float share, double u,
            double v) {
     const double r = std::sqrt(u) * frame.radius, phi = 2.0 * std::numbers::pi * v;
-    batch.add(point, (frame.direction + r * (std::cos(phi) * frame.a + std::sin(phi) * frame.b))
-                         .normalized());
+    batch.add(
+        point,
+        (frame.direction + r * (std::cos(phi) * frame.a + std::sin(phi) * frame.b)).normalized());
     sun.push_back(number);
     weight.push_back(share);
   }

@@ -22,13 +22,17 @@ constexpr std::uint64_t of_sample_vertices = 0x7ea5, of_range_finder = 0x7ea6;
 // Least light of a vertex that errors are relative to, as a share of the median of all.
 constexpr double least_of_median = 0.25;
 
-// Vertices, drawn by the areas around them.
-std::vector<int> sample_vertices(const PatchMesh& mesh, int count) {
+// Vertices, drawn by the areas around them: `samples`, then as many `checks`, which are none of the
+// samples unless the mesh has hardly any others.
+std::vector<int> sample_vertices(const PatchMesh& mesh, int samples, int checks) {
   std::vector<double> sum;
   double area = 0.0;
   for (int e = 0; e < mesh.element_count(); ++e) sum.push_back(area += mesh.element_area[e]);
   std::vector<int> vertices;
-  for (int i = 0; i < count; ++i) {
+  std::vector<char> is_sample(static_cast<std::size_t>(mesh.vertex_count()), 0);
+  const int count = samples + checks;
+  const int most_draws = 64 * count;  // the last ones may be of samples
+  for (int i = 0; static_cast<int>(vertices.size()) < count; ++i) {
     const auto random = [&](std::uint64_t number) {
       return random_uniform(random_key(of_sample_vertices, static_cast<std::uint64_t>(i), number));
     };
@@ -37,7 +41,12 @@ std::vector<int> sample_vertices(const PatchMesh& mesh, int count) {
         std::ranges::upper_bound(sum, at) - sum.begin(), mesh.element_count() - 1));
     const int corners = mesh.corner_count(e);
     const int c = std::min(static_cast<int>(random(1) * corners), corners - 1);
-    vertices.push_back(mesh.corners[static_cast<std::size_t>(e)][static_cast<std::size_t>(c)]);
+    const int vertex = mesh.corners[static_cast<std::size_t>(e)][static_cast<std::size_t>(c)];
+    const bool is_check = static_cast<int>(vertices.size()) >= samples;
+    char& known = is_sample[static_cast<std::size_t>(vertex)];
+    if (is_check && known != 0 && i < most_draws) continue;
+    if (!is_check) known = 1;
+    vertices.push_back(vertex);
   }
   return vertices;
 }
@@ -222,20 +231,30 @@ BandArray in_terms(const BandArray& values, const Eigen::MatrixXf& factors, Eige
 // The most terms, a multiple of 4.
 int most_terms(const PatchMesh& mesh, Eigen::Index bands, const YearBasisOptions& options) {
   constexpr double bytes = 2.0;
-  const double of_term = bytes * static_cast<double>(bands * mesh.vertex_count());
+  constexpr Eigen::Index of_page = 3;  // pages have red, green and blue, or grey
+  const double of_term =
+      bytes * static_cast<double>(std::min(bands, of_page)) * mesh.vertex_count();
   const int afforded = static_cast<int>(std::min(options.most_bytes / of_term, 1e4));
   return std::max(4, std::min(options.most, afforded) / 4 * 4);
 }
 
 }  // namespace
 
-void check_year_basis(const PatchMesh& mesh, std::span<const SkyHour> hours,
+void check_year_basis(const PatchMesh& mesh, int bands, std::span<const SkyHour> hours,
                       const YearBasisOptions& options) {
   if (mesh.vertex_count() > options.most_vertices) {
     throw InputError(fmt::format(
         "the surfaces have {} vertices, and a page of a year takes {} at most; give a larger "
         "'--max-patch-size'",
         mesh.vertex_count(), options.most_vertices));
+  }
+  const double bytes =
+      double{sizeof(float)} * bands * mesh.patch_count() * static_cast<double>(hours.size());
+  if (bytes > options.most_memory) {
+    throw InputError(fmt::format(
+        "the light of {} patches in {} hours takes {:.1f} GB, and a page of a year takes {:.1f} GB "
+        "at most; give a larger '--max-patch-size'",
+        mesh.patch_count(), hours.size(), 1e-9 * bytes, 1e-9 * options.most_memory));
   }
   if (hours.empty()) {
     throw InputError("the weather has no hour with daylight, so that a page would be black");
@@ -245,12 +264,12 @@ void check_year_basis(const PatchMesh& mesh, std::span<const SkyHour> hours,
 YearBasis find_year_basis(const DaylightModel& model, std::span<const SkyHour> hours,
                           double ground_reflectance, const YearBasisOptions& options) {
   const PatchMesh& mesh = model.mesh();
-  check_year_basis(mesh, hours, options);
+  check_year_basis(mesh, model.scene().bands.count(), hours, options);
   const DomeOfVertices seen{
       .sky = SkyPatches(options.sky_subdivision, model.sky().up(), model.sky().north()),
       .effort = options.view};
   const Eigen::Index bands = model.scene().bands.count();
-  const VertexList samples(mesh, sample_vertices(mesh, options.samples + options.checks));
+  const VertexList samples(mesh, sample_vertices(mesh, options.samples, options.checks));
   SampledYear year = light_of_year(model, seen, samples, hours, ground_reflectance);
   const Eigen::ArrayXd brightness = make_relative(year.samples);
   const Eigen::MatrixXd vectors = leading_vectors(year.samples.topRows(options.samples * bands),

@@ -19,6 +19,7 @@ struct YearBasisOptions {
   DomeEffort view{.search = 2, .rays = 1024};  ///< of a vertex towards the dome
   int rays = 4096;  ///< of a vertex, for light that surfaces reflect; sample vertices have fewer
   int most_vertices = 400'000;
+  double most_memory = 3e9;  ///< bytes, of the radiosity of all patches in all hours
   double most_bytes = 48e6;  ///< of the light in 16 bits; there are fewer terms rather than more
 };
 
@@ -43,9 +44,10 @@ struct YearBasis {
   int term_count() const { return static_cast<int>(weight.cols()); }
 };
 
-/// Throws InputError for a mesh of more than `most_vertices`, and where no hour has daylight:
-/// before the long work of find_year_basis().
-void check_year_basis(const PatchMesh& mesh, std::span<const SkyHour> hours,
+/// Throws InputError for a mesh of more than `most_vertices`, or whose light of all hours takes
+/// more than `most_memory`, and where no hour has daylight: before the long work of
+/// find_year_basis().
+void check_year_basis(const PatchMesh& mesh, int bands, std::span<const SkyHour> hours,
                       const YearBasisOptions& options = {});
 
 /// Finds the terms by a truncated singular value decomposition of the light of sample vertices in

@@ -78,7 +78,7 @@ SetText set_head(const TableLayout& layout, const PdfCanvas& canvas, const Table
   MarkedText head = column.head;
   const std::size_t unit = head.rfind(", ");
   if (unit != MarkedText::npos && natural_width(canvas, head, style) > width) {
-    head.replace(unit, 2, ",\n");
+    head[unit + 1] = '\n';
   }
   return canvas.set(head, style, width);
 }

@@ -50,6 +50,22 @@ driver.run(async (page, found) => {
   found.next = [element('date').value, element('hour').value];
   panel.play(false);
 
+  // A sun that rises 20 s before the middle of the first lit hour.
+  const horizon = year.horizon_between, shares = year.shares_at, first = year.numbers[0];
+  year.horizon_between = () => first + 0.5 - 20 / 3600;
+  const of_minute = Array.from({length: 91}, (_, m) =>
+    year.shares_at(first - 1 + m / 60).reduce((sum, [, share]) => sum + share, 0));
+  found.late_sunrise = Math.max(...of_minute.slice(1).map((x, m) => x - of_minute[m]));
+  year.horizon_between = horizon;
+  // A lit midnight, as of a polar summer.
+  year.shares_at = () => [[0, 1]];
+  panel.set(79, 23.98);
+  panel.play(true);
+  panel.advance(0.1);
+  panel.play(false);
+  found.after_midnight = [element('date').valueAsNumber, element('hour').valueAsNumber];
+  year.shares_at = shares;
+
   const exposure_at = (day, hour) => {
     panel.set(day, hour);
     page.meter_moment(page.metered_at + 1e6);
@@ -127,10 +143,16 @@ TEST_P(InBrowser, ThePageShowsEveryMomentOfAYear) {
   EXPECT_GT(number(found["readings"][0]["sunlight"]), 0.0);
   EXPECT_EQ(lit, 1) << "the other places are in the shade";
 
-  // Light grows and falls within an hour, half an hour by the sun's own rise and set, or within
-  // 60 minutes between two hours: no minute changes it by more than a thirtieth of the day's most.
+  // Light grows and falls within an hour, half an hour at least at the sun's rise and set, or
+  // within 60 minutes between two hours: no minute changes it by more than a thirtieth of the day's
+  // most.
   for (const Json& step : found["steps"]) EXPECT_LT(step.get<double>(), 1.0 / 30.0);
   EXPECT_EQ(number(found["at_night"]["illuminance"]), 0.0);
+  constexpr double rounding = 1e-9;  // of hours of a year, 8760, in double precision: 2e-12
+  EXPECT_NEAR(found["late_sunrise"].get<double>(), 1.0 / 30.0, rounding);
+  EXPECT_EQ(found["after_midnight"][0], 80);
+  // The slider has steps; 0.08 is the hour itself.
+  EXPECT_LT(found["after_midnight"][1].get<double>(), 0.2);
 
   EXPECT_EQ(found["played"], Json::array({"79", "16.5"}));
   EXPECT_EQ(found["next"][0], "171");

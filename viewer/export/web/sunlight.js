@@ -1,8 +1,8 @@
 // Light straight from the sun: a map of what its rays meet first, and of what panes let pass, drawn from the sun.
 
-/** Texels along the map's sides: 1 cm each in a room of 20 m. Larger models get more. */
+/** Texels along the map's sides: 1 to 1.5 cm each in a room of 20 m. Larger models get more. */
 const usual_map_size = 2048, large_map_size = 4096, large_model = 25;  // m
-const sun_half_angle = 0.2665 * Math.PI / 180;
+const sun_half_angle = 0.2665 * Math.PI / 180;  // as scene/sky.h
 
 /** Sunlight of a fragment, lx of red, green and blue. */
 const sunlight_functions = `
@@ -34,7 +34,7 @@ float reached(vec3 p, vec2 slope) {
       if (depth <= first_met(ivec2(low) + ivec2(i, j), size - 1) + slack) sum += weight.x * weight.y;
     }
   }
-  // Half of the edge is left out, so that no light leaks where a wall stands on the floor.
+  // Half of the edge is left out, so that no light leaks where a wall stands on the floor. Sunlit places end some 0.7 texel early.
   return max(0.0, 2.0 * sum / 9.0 - 1.0);
 }
 
@@ -238,7 +238,7 @@ class Sunlight {
       renderer.render(scene, camera);
     };
     render(this.near, 0x000000);
-    // What lies between panes and the sun hides them from the map, too: rays of the sun end there.
+    // Surfaces between panes and the sun hide the panes from the map, too: rays of the sun end there.
     if (panes) {
       this.weigh_panes();
       panes.mesh.visible = true;

@@ -24,7 +24,7 @@ function sun_position(days, latitude, longitude) {
   return {azimuth: Math.atan2(east, north), altitude: Math.atan2(up, Math.hypot(north, east))};
 }
 
-/** The light of a moment as a mean of two hours': their indices and shares. Both in the dark: null. */
+/** The hours of a year with light, and the light of any moment of them. */
 class Year {
   constructor(model) {
     const {bytes, about} = model, year = about.year, {count, numbers, skies, weights} = year.hours;
@@ -66,7 +66,8 @@ class Year {
 
   /**
    * Hours have their light in their middle. Between two lit ones it changes evenly; from and to the dark it grows from nothing at
-   * sunrise, and falls to nothing at sunset. Pairs of an hour's index and its share.
+   * sunrise, and falls to nothing at sunset, in half an hour at least: the sun may rise seconds before the middle of an hour. Pairs
+   * of an hour's index and its share.
    */
   shares_at(hour) {
     const last = this.index_of_hour.length, before = Math.floor(hour - 0.5), part = hour - 0.5 - before;
@@ -75,7 +76,8 @@ class Year {
     if (a >= 0 && b >= 0) return [[a, 1 - part], [b, part]];
     if (a < 0 && b < 0) return [];
     const lit = a >= 0 ? before : before + 1, dark = a >= 0 ? before + 1 : before;
-    const zero = this.horizon_between(before + 0.5, before + 1.5) ?? dark + 0.5;
+    const horizon = this.horizon_between(before + 0.5, before + 1.5) ?? dark + 0.5;
+    const zero = a < 0 ? Math.min(horizon, lit) : Math.max(horizon, lit + 1);
     const share = (hour - zero) / (lit + 0.5 - zero);
     return share > 0 ? [[Math.max(a, b), Math.min(1, share)]] : [];
   }
@@ -152,9 +154,11 @@ class YearPanel {
     element('play').addEventListener('click', () => this.play(!this.plays));
     element('adapt').addEventListener('click', () => this.adapt(!this.is_automatic));
     this.adapt(true);
-    // The first noon of the year with sun about an equinox.
-    const spring = year.about.latitude >= 0 ? 79 : 265;
-    this.set(spring, 12.5);
+    // Noon at the equinox of spring, or the lit hour nearest to it in weather of a part of the year.
+    const spring = hours_a_day * (year.about.latitude >= 0 ? 79 : 265) + 12;
+    const near = (hour) => Math.abs(hour - spring);
+    const first = year.numbers.reduce((best, hour) => near(hour) < near(best) ? hour : best);
+    this.set(Math.floor(first / hours_a_day), first % hours_a_day + 0.5);
   }
 
   set(day, hour) {
@@ -178,6 +182,10 @@ class YearPanel {
     if (!this.plays) return;
     let day = element('date').valueAsNumber, hour = element('hour').valueAsNumber + hours_a_second * seconds;
     const is_dark = (h) => this.year.shares_at(hours_a_day * day + h).length === 0;
+    if (hour >= hours_a_day) {
+      hour -= hours_a_day;
+      day = (day + 1) % this.year.days;
+    }
     while (is_dark(hour)) {
       hour += 0.25;
       if (hour < hours_a_day) continue;
