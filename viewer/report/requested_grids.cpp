@@ -130,13 +130,12 @@ std::vector<LuxGrid> requested_grids(const GridRequest& asked,
   const double margin = asked.margin.value_or(strip);
   for (const CalculationGrid& grid : of_file) {
     const double usual = grid.height > 0.0 ? margin : 0.0;
-    LuxGrid made = lux_grid(
-        scene, grid.surface, up,
-        {.height = grid.height,
-         .margin = grid.margin.value_or(usual),
-         .spacing = grid.spacing > 0.0 ? grid.spacing : spacing,
-         .part = grid.part,
-         .towards = grid.height > 0.0 ? above(scene, caster, grid.surface, up) : std::nullopt});
+    LuxGrid made = lux_grid(scene, grid.surface, up,
+                            {.height = grid.height,
+                             .margin = grid.margin.value_or(usual),
+                             .spacing = grid.spacing > 0.0 ? grid.spacing : spacing,
+                             .part = grid.part,
+                             .towards = above(scene, caster, grid.surface, grid.height, up)});
     made.name = grid.name;
     for (const int other : grid.leaves_out) {
       made = without_points_over(grids[static_cast<std::size_t>(other)], std::move(made));
