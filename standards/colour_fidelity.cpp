@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "scene/cie_daylight.h"
@@ -25,23 +26,21 @@ struct LitSamples {
   std::vector<Eigen::Vector3d> samples{};
 };
 
-LitSamples lit_samples(const SpectralPower& power, const ColourSamples& samples) {
+// Means of the colour-matching functions of the CIE 1964 observer over [low, high] nm.
+Eigen::Vector3d matching_10(double low, double high) {
   static const auto matching = spectra_of_table(standards_data::colour_matching_10);
+  return {mean(matching[0], low, high), mean(matching[1], low, high), mean(matching[2], low, high)};
+}
+
+LitSamples lit_samples(const SpectralPower& power, const ColourSamples& samples) {
   LitSamples lit{.samples{samples.size(), Eigen::Vector3d::Zero()}};
-  for (std::size_t k = 0; k < power.watts.size(); ++k) {
-    const double low = std::max(power.edges_nm[k], first_receptor_nm);
-    const double high = std::min(power.edges_nm[k + 1], last_receptor_nm);
-    if (!(low < high) || power.watts[k] == 0.0) continue;
-    const double within = (high - low) / (power.edges_nm[k + 1] - power.edges_nm[k]);
-    const Eigen::Vector3d light =
-        power.watts[k] * within *
-        Eigen::Vector3d(mean(matching[0], low, high), mean(matching[1], low, high),
-                        mean(matching[2], low, high));
+  for_each_visible_interval(power, [&](double low, double high, double watts) {
+    const Eigen::Vector3d light = watts * matching_10(low, high);
     lit.white += light;
     for (std::size_t i = 0; i < samples.size(); ++i) {
       lit.samples[i] += mean(samples[i], low, high) * light;
     }
-  }
+  });
   constexpr double percent = 100.0;
   const double scale = percent / lit.white.y();
   lit.white *= scale;
@@ -124,20 +123,17 @@ SpectralPower scaled_power(SpectralPower power, double factor) {
 
 // Y of the 1964 observer of a light on white.
 double white_of(const SpectralPower& power) {
-  static const auto matching = spectra_of_table(standards_data::colour_matching_10);
   double sum = 0.0;
-  for (std::size_t k = 0; k < power.watts.size(); ++k) {
-    const double low = std::max(power.edges_nm[k], first_receptor_nm);
-    const double high = std::min(power.edges_nm[k + 1], last_receptor_nm);
-    if (low < high) sum += power.watts[k] * mean(matching[1], low, high);
-  }
+  for_each_visible_interval(power, [&](double low, double high, double watts) {
+    sum += watts * matching_10(low, high).y();
+  });
   return sum;
 }
 
 SpectralPower reference_of(double kelvin) {
   constexpr double last_black_body = 4000.0, first_daylight = 5000.0;
   if (kelvin <= last_black_body) return black_body_power(kelvin);
-  const SpectralPower day = daylight_illuminant(std::max(kelvin, last_black_body));
+  const SpectralPower day = daylight_illuminant(kelvin);
   if (kelvin >= first_daylight) return day;
   const double share = (kelvin - last_black_body) / (first_daylight - last_black_body);
   const SpectralPower body = black_body_power(kelvin);
@@ -170,6 +166,23 @@ double gamut_area(const std::vector<Eigen::Vector3d>& colours,
     area += 0.5 * (p.x() * q.y() - p.y() * q.x());
   }
   return area;
+}
+
+// R_f and R_g without bounds.
+std::optional<ColourFidelity> fidelity_of(const SpectralPower& power,
+                                          const ColourSamples& samples) {
+  const auto light = eye_light(power);
+  if (!light || !light->colour_temperature || *light->colour_temperature > hottest_daylight) {
+    return {};
+  }
+  const auto test = uniform_colours(power, samples);
+  const auto reference = uniform_colours(reference_of(*light->colour_temperature), samples);
+  double sum = 0.0;
+  for (std::size_t i = 0; i < test.size(); ++i) sum += (test[i] - reference[i]).norm();
+  const double raw = 100.0 - 6.73 * sum / static_cast<double>(test.size());
+  const double area = gamut_area(reference, reference);
+  return ColourFidelity{.fidelity = 10.0 * std::log1p(std::exp(raw / 10.0)),
+                        .gamut = area > 0.0 ? 100.0 * gamut_area(test, reference) / area : 0.0};
 }
 
 }  // namespace
@@ -211,18 +224,13 @@ ColourSamples read_colour_samples(const std::filesystem::path& path) {
 
 std::optional<ColourFidelity> colour_fidelity(const SpectralPower& power,
                                               const ColourSamples& samples) {
-  const auto light = eye_light(power);
-  if (!light || !light->colour_temperature || *light->colour_temperature > hottest_daylight) {
-    return {};
-  }
-  const auto test = uniform_colours(power, samples);
-  const auto reference = uniform_colours(reference_of(*light->colour_temperature), samples);
-  double sum = 0.0;
-  for (std::size_t i = 0; i < test.size(); ++i) sum += (test[i] - reference[i]).norm();
-  const double raw = 100.0 - 6.73 * sum / static_cast<double>(test.size());
-  const double area = gamut_area(reference, reference);
-  return ColourFidelity{.fidelity = 10.0 * std::log1p(std::exp(raw / 10.0)),
-                        .gamut = area > 0.0 ? 100.0 * gamut_area(test, reference) / area : 0.0};
+  auto rated = fidelity_of(power, samples);
+  if (!rated) return {};
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const auto coarse = fidelity_of(in_wider_intervals(power), samples);
+  rated->fidelity_within = coarse ? std::abs(coarse->fidelity - rated->fidelity) : unknown;
+  rated->gamut_within = coarse ? std::abs(coarse->gamut - rated->gamut) : unknown;
+  return rated;
 }
 
 }  // namespace lightwell

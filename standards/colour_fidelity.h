@@ -22,6 +22,9 @@ ColourSamples read_colour_samples(const std::filesystem::path& path);
 struct ColourFidelity {
   double fidelity = 0.0;  ///< R_f, 0 to 100, which is also that of CIE 224:2017
   double gamut = 0.0;     ///< R_g, 100 for the reference
+  /// Bounds of their errors by the width of the intervals: the differences that
+  /// in_wider_intervals() makes; NaN: unknown.
+  double fidelity_within = 0.0, gamut_within = 0.0;
 };
 
 /// R_f and R_g of a light:

@@ -79,15 +79,11 @@ SpectralPower black_body_power(double kelvin) {
 
 Eigen::Vector3d tristimulus(const SpectralPower& power, const SpectrumSamples* reflectance) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t k = 0; k < power.watts.size(); ++k) {
-    const double low = std::max(power.edges_nm[k], first_receptor_nm);
-    const double high = std::min(power.edges_nm[k + 1], last_receptor_nm);
-    if (!(low < high) || power.watts[k] == 0.0) continue;
-    const double within = (high - low) / (power.edges_nm[k + 1] - power.edges_nm[k]);
+  for_each_visible_interval(power, [&](double low, double high, double watts) {
     const double rho = reflectance ? mean(*reflectance, low, high) : 1.0;
     const auto matching = colour_matching(low, high);
-    sum += power.watts[k] * within * rho * Eigen::Vector3d(matching[0], matching[1], matching[2]);
-  }
+    sum += watts * rho * Eigen::Vector3d(matching[0], matching[1], matching[2]);
+  });
   return sum;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <optional>
 
 #include "scene/spectrum_samples.h"
@@ -10,6 +11,17 @@ namespace lightwell {
 
 /// Wavelengths from and to which receptors and test colours have values, nm.
 inline constexpr double first_receptor_nm = 380.0, last_receptor_nm = 780.0;
+
+/// Visits the parts of a power's intervals between these wavelengths: visit(low, high, watts).
+template <class Visit>
+void for_each_visible_interval(const SpectralPower& power, Visit&& visit) {
+  for (std::size_t k = 0; k < power.watts.size(); ++k) {
+    const double low = std::max(power.edges_nm[k], first_receptor_nm);
+    const double high = std::min(power.edges_nm[k + 1], last_receptor_nm);
+    if (!(low < high) || power.watts[k] == 0.0) continue;
+    visit(low, high, power.watts[k] * ((high - low) / (power.edges_nm[k + 1] - power.edges_nm[k])));
+  }
+}
 
 /// CIE 1931 X, Y and Z of light that a surface of `reflectance` reflects, null for a white one,
 /// W/m^2 times the colour-matching functions.

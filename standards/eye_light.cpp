@@ -20,15 +20,11 @@ const std::vector<SpectrumSamples>& action_spectra() {
 // E_alpha of each receptor, W/m^2.
 std::array<double, receptor_count> alpha_opic(const SpectralPower& power) {
   std::array<double, receptor_count> sums{};
-  for (std::size_t k = 0; k < power.watts.size(); ++k) {
-    const double low = power.edges_nm[k], high = power.edges_nm[k + 1];
-    const double from = std::max(low, first_receptor_nm), to = std::min(high, last_receptor_nm);
-    if (!(from < to)) continue;
-    const double watts = power.watts[k] * (to - from) / (high - low);
+  for_each_visible_interval(power, [&](double low, double high, double watts) {
     for (std::size_t a = 0; a < sums.size(); ++a) {
-      sums[a] += watts * mean(action_spectra()[a], from, to);
+      sums[a] += watts * mean(action_spectra()[a], low, high);
     }
-  }
+  });
   return sums;
 }
 
@@ -79,16 +75,20 @@ std::optional<EyeLight> eye_light(const SpectralPower& power) {
   return light;
 }
 
-std::optional<RatedColour> rated_colour(const SpectralPower& power) {
-  const auto light = eye_light(power);
-  if (!light || !light->colour_rendering) return {};
+SpectralPower in_wider_intervals(const SpectralPower& power) {
   SpectralPower wider{.edges_nm = {power.edges_nm.front()}};
   for (std::size_t k = 0; k < power.watts.size(); k += 2) {
     const std::size_t end = std::min(k + 2, power.watts.size());
     wider.edges_nm.push_back(power.edges_nm[end]);
     wider.watts.push_back(power.watts[k] + (end > k + 1 ? power.watts[k + 1] : 0.0));
   }
-  const auto coarse = eye_light(wider);
+  return wider;
+}
+
+std::optional<RatedColour> rated_colour(const SpectralPower& power) {
+  const auto light = eye_light(power);
+  if (!light || !light->colour_rendering) return {};
+  const auto coarse = eye_light(in_wider_intervals(power));
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   return RatedColour{.rendering = *light->colour_rendering,
                      .within = coarse && coarse->colour_rendering

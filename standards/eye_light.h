@@ -55,8 +55,12 @@ std::optional<SpectralPower> spectral_power(const Bands& bands, const Spectrum& 
 /// have values from 380 to 780 nm. Empty without light.
 std::optional<EyeLight> eye_light(const SpectralPower& power);
 
+/// The same power in intervals twice as wide: pairs of neighbours, from the first one on. Figures
+/// change by about the error that the width of the intervals makes.
+SpectralPower in_wider_intervals(const SpectralPower& power);
+
 /// R_a of a light, and a bound of its error by the width of the intervals: the difference that
-/// intervals twice as wide make.
+/// in_wider_intervals() makes; NaN if these have no R_a.
 struct RatedColour {
   double rendering = 0.0, within = 0.0;
 };

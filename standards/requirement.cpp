@@ -6,13 +6,10 @@
 #include <limits>
 
 namespace lightwell {
-namespace {
 
 double share(double part, double whole) {
   return whole > 0.0 ? part / whole : 0.0;
 }
-
-}  // namespace
 
 const char* figure_symbol(Figure figure) {
   constexpr std::array names = {"E_m",
@@ -36,6 +33,8 @@ const char* figure_symbol(Figure figure) {
                                 "gradient",
                                 "R_G",
                                 "R_a"};
+  static_assert(names.size() == static_cast<std::size_t>(Figure::colour_rendering) + 1,
+                "each figure has a symbol");
   return names[static_cast<std::size_t>(figure)];
 }
 
@@ -130,7 +129,10 @@ Requirement diversity_at_most(double limit, const GridField& of) {
 
 void add_colour_rendering(double limit, const std::vector<NamedRating>& luminaires,
                           const std::string& area, std::vector<Requirement>& requirements) {
-  const auto worst = std::ranges::min_element(luminaires, {}, &NamedRating::value);
+  const auto worst = std::ranges::min_element(luminaires, {}, [](const NamedRating& one) {
+    const bool is_known = !std::isnan(one.value) && !std::isnan(one.within);
+    return is_known ? one.value - one.within : -std::numeric_limits<double>::infinity();
+  });
   if (!(limit > 0.0) || worst == luminaires.end()) return;
   requirements.push_back({.area = area,
                           .place = worst->name,

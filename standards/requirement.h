@@ -55,8 +55,9 @@ struct Requirement {
   bool is_upper = false;        ///< true: the figure must not exceed the limit
   bool is_recommended = false;  ///< true: the standard advises, and does not require
   double limit = 0.0;
-  std::optional<double>
-      value{};  ///< empty: there is nothing to rate, such as glare without luminaires
+  /// Empty: there is nothing to rate, such as glare without luminaires. NaN: the figure is not
+  /// defined for what is there.
+  std::optional<double> value{};
   /// Bound of the error of `value`, with odds of about 19 to 1; NaN: unknown.
   double within = 0.0;
 };
@@ -87,12 +88,16 @@ double known_bound(const LuxField& field, double lux);
 /// A rating, or an index, of a name.
 struct NamedRating {
   std::string name{};
-  double value = 0.0;
+  double value = 0.0;   ///< NaN: not defined
   double within = 0.0;  ///< bound of its error; NaN: unknown
 };
 
-/// Adds the requirement for the colour rendering R_a of luminaires: that of the worst one. Nothing
-/// if no R_a is known, or the limit is 0.
+/// Part over whole, and 0 of a whole that is not above 0.
+double share(double part, double whole);
+
+/// Adds the requirement for the colour rendering R_a of luminaires: that of the one whose R_a may
+/// be the least, by value less bound. A luminaire without a known bound comes before all others.
+/// Nothing if there is no luminaire, or the limit is 0.
 void add_colour_rendering(double limit, const std::vector<NamedRating>& luminaires,
                           const std::string& area, std::vector<Requirement>& requirements);
 

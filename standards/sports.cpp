@@ -18,11 +18,6 @@ int nearest_odd(double count) {
   return std::max(1, 2 * static_cast<int>(std::floor(0.5 * count)) + 1);
 }
 
-// The relative bound of the point of a field whose illuminance is nearest to `lux`.
-double relative_bound_at(const LuxField& field, double lux) {
-  return lux > 0.0 ? known_bound(field, lux) / lux : 0.0;
-}
-
 void add_camera_limits(const CameraField& camera, const TelevisionLimits& limits,
                        const std::string& area, std::vector<Requirement>& requirements) {
   const LuxField& field = *camera.field.field;
@@ -36,13 +31,13 @@ void add_camera_limits(const CameraField& camera, const TelevisionLimits& limits
                             .value = value,
                             .within = within});
   };
-  const double least = relative_bound_at(field, field.least);
   add(Figure::vertical_mean, limits.mean, field.mean, field.mean_within * field.mean);
   add(Figure::vertical_uniformity, limits.uniformity, field.uniformity,
-      field.uniformity * (least + field.mean_within));
-  const double contrast = field.greatest > 0.0 ? field.least / field.greatest : 0.0;
+      uniformity_at_least(limits.uniformity, camera.field).within);
+  const double contrast = share(field.least, field.greatest);
   add(Figure::vertical_contrast, limits.contrast, contrast,
-      contrast * (least + relative_bound_at(field, field.greatest)));
+      share(known_bound(field, field.least), field.greatest) +
+          contrast * share(known_bound(field, field.greatest), field.greatest));
   const Gradient gradient = greatest_gradient(*camera.grid, field);
   add(Figure::gradient, limits.gradient, gradient.percent, gradient.within);
 }
@@ -95,6 +90,7 @@ LuxGrid sport_grid(const LuxGrid& area) {
 
 Gradient greatest_gradient(const LuxGrid& grid, const LuxField& field) {
   Gradient greatest;
+  double highest = 0.0;  // of change and bound
   const auto index_of = [&](int cell) -> std::optional<Eigen::Index> {
     const auto at = std::ranges::lower_bound(grid.cell, cell);
     if (at == grid.cell.end() || *at != cell) return {};
@@ -106,9 +102,9 @@ Gradient greatest_gradient(const LuxGrid& grid, const LuxField& field) {
     const double brighter = std::max(field.lux[a], field.lux[*b]);
     if (!(brighter > 0.0)) return;
     const double change = percent * std::abs(field.lux[a] - field.lux[*b]) / brighter;
-    if (!(change > greatest.percent)) return;
-    const double bounds = field.lux_within[a] + field.lux_within[*b];
-    greatest = {change, std::isnan(bounds) ? 0.0 : percent * bounds / brighter};
+    const double bound = percent * (field.lux_within[a] + field.lux_within[*b]) / brighter;
+    if (std::isnan(bound) || change + bound > highest) highest = change + bound;
+    if (change > greatest.percent) greatest = {change, bound};
   };
   for (std::size_t i = 0; i < grid.cell.size(); ++i) {
     const int cell = grid.cell[i];
@@ -116,6 +112,8 @@ Gradient greatest_gradient(const LuxGrid& grid, const LuxField& field) {
     if ((cell + 1) % grid.columns != 0) compare(here, index_of(cell + 1));
     compare(here, index_of(cell + grid.columns));
   }
+  const double others = highest - greatest.percent;
+  greatest.within = std::isnan(others) ? others : std::max(greatest.within, others);
   return greatest;
 }
 

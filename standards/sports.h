@@ -61,10 +61,14 @@ struct SportPlace {
 std::vector<Requirement> sport_requirements(const SportPlace& place, const SportLimits& limits,
                                             const TelevisionLimits& cameras);
 
-/// Greatest change between neighbouring points of a grid, percent of the brighter of both (CIE
-/// 169:2005), and its bound. 0 for a single point.
+/// Greatest change between points that are neighbours along or across a grid, percent of the
+/// brighter of both for one step of the grid (CIE 169:2005). Diagonal neighbours are left out. 0
+/// for a single point.
 struct Gradient {
-  double percent = 0.0, within = 0.0;
+  double percent = 0.0;
+  /// Bound of the error: no change of any two neighbours lies above `percent + within` by their
+  /// bounds. NaN if the bound of a point with a lit neighbour is not known.
+  double within = 0.0;
 };
 Gradient greatest_gradient(const LuxGrid& grid, const LuxField& field);
 

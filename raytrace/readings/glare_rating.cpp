@@ -64,9 +64,11 @@ std::vector<ArrivingLight> arriving_light(const Scene& scene, const ElementCaste
 
 double veiling_luminance(const std::vector<ArrivingLight>& arriving, const Eigen::Vector3d& look) {
   constexpr double narrowest = 1.5, widest = 60.0, factor = 10.0;  // degrees; CIE 112
+  constexpr double surely_wider = 0.499;                           // below the cosine of `widest`
   double sum = 0.0;
   for (const ArrivingLight& light : arriving) {
     const double cosine = std::clamp(light.direction.dot(look), -1.0, 1.0);
+    if (cosine < surely_wider) continue;
     const double theta = std::acos(cosine) / degree;
     if (theta < narrowest || theta > widest) continue;
     sum += factor * light.lux * cosine / (theta * theta);
@@ -86,7 +88,7 @@ double glare_rating(double luminaires_veil, double environment_veil) {
 
 double greatest_glare_rating(const std::vector<ArrivingLight>& arriving, double environment_veil,
                              const Eigen::Vector3d& up) {
-  constexpr int directions = 72;
+  constexpr int directions = 4 * 360;
   constexpr double below = 2.0 * degree;
   Eigen::Vector3d a, b;
   tangent_frame(up, a, b);

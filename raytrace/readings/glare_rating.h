@@ -35,9 +35,16 @@ double environment_veil(double lux, double rho);
 /// Glare rating R_G = 27 + 24 log10(L_vl / L_ve^0.9) of CIE 112-1994, at least 0.
 double glare_rating(double luminaires_veil, double environment_veil);
 
-/// The greatest rating of an eye that looks 2 degrees below the horizon all around, in steps of 5
-/// degrees. `up` is unit.
+/// The greatest rating of an eye that looks 2 degrees below the horizon all around, in steps of a
+/// quarter of a degree. `up` is unit.
 double greatest_glare_rating(const std::vector<ArrivingLight>& arriving, double environment_veil,
                              const Eigen::Vector3d& up);
+
+/// Bound of the part of R_G that the steps of greatest_glare_rating() leave out, for luminaires
+/// that are not below the eye and stay between the two angles of veiling_luminance(). The nearest
+/// step is at most 0.125 degrees of azimuth off; theta is 2 degrees or more, so theta^2 grows by a
+/// factor of (2^2 + 0.125^2) / 2^2 at most, and R_G falls by 24 log10(1.0039) = 0.041 at most. The
+/// cosine of theta changes this by less than 0.001.
+inline constexpr double glare_rating_step_within = 0.05;
 
 }  // namespace lightwell

@@ -133,7 +133,7 @@ double reduced_luminance_coefficient(const RTable& table, double tan_gamma, doub
 
 double average_luminance_coefficient(const RTable& table) {
   constexpr int squares = 20;  // for each length of 1
-  constexpr double before = 4.0, beyond = 12.0, beside = 3.0, side = 1.0 / squares;
+  constexpr double before = 4.0, beyond = heights_beyond_point, beside = 3.0, side = 1.0 / squares;
   constexpr int along = static_cast<int>((before + beyond) * squares);
   constexpr int across = static_cast<int>(beside * squares);
   double sum = 0.0, solid_angle = 0.0;
@@ -201,12 +201,16 @@ RTable read_r_table(const std::filesystem::path& path) {
     file.fail(last, "holds fewer than two lines of values; an r-table has one for each tan(gamma)");
   }
   RTable table = std::move(lines.table);
+  if (table.tan_gamma.back() < heights_beyond_point) {
+    file.fail(last,
+              fmt::format("ends the table at a tan(gamma) of {:g}, and luminaires count up to "
+                          "{:g}; add the lines up to there, with 0 where r is not known",
+                          table.tan_gamma.back(), heights_beyond_point));
+  }
   table.name = path.filename().string();
   table.r = array_of(lines.rows);
   table.q0 = average_luminance_coefficient(table);
-  // Roads lie from about 0.03 to 0.3 per steradian, also when they are wet.
-  constexpr double darkest = 0.005, lightest = 2.0;
-  if (!(table.q0 >= darkest && table.q0 <= lightest) || !(table.r(0, 0) > 0.0)) {
+  if (!(table.q0 >= darkest_road && table.q0 <= lightest_road) || !(table.r(0, 0) > 0.0)) {
     file.fail(last, fmt::format("ends a table of Q0 {:.3g} per steradian, which is no road; write "
                                 "r times 10^4, as CIE 144 does",
                                 table.q0));

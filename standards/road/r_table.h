@@ -21,8 +21,17 @@ struct RTable {
   double q0 = 0.0;      ///< average luminance coefficient Q_0 by which the table is called, 1/sr
 };
 
+/// Luminaires count up to this many heights beyond a point of the road (EN 13201-3), so tables
+/// reach to this tan(gamma).
+inline constexpr double heights_beyond_point = 12.0;
+
+/// Least and greatest Q_0 of a surface that is taken for a road, 1/sr. Roads lie from about 0.03 to
+/// 0.3, also when they are wet; the range is three times wider on either side.
+inline constexpr double darkest_road = 0.01, lightest_road = 0.9;
+
 /// r in 1/sr, linear in tan(gamma) and in beta between the entries; 0 beyond the last tan(gamma).
-/// `tan_gamma` >= 0, `beta` in [0,180] degrees.
+/// `tan_gamma` >= 0, `beta` in [0,180] degrees. Editions of CIE 140 and EN 13201-3 may ask for
+/// another interpolation.
 double reduced_luminance_coefficient(const RTable& table, double tan_gamma, double beta);
 
 /// Q_0 = int q dw / int dw, 1/sr, over the luminaires of a road: for a height of 1, from 4 before
@@ -40,13 +49,15 @@ RTable scaled_to(RTable table, double q0);
 std::vector<std::string> r_table_names();
 
 /// A table of r_table_names(), of Q_0 0.10, 0.07, 0.07, 0.08, 0.10 and 0.07. Cells that the
-/// publications leave blank are 0.
+/// publications leave blank are 0. r falls with tan(gamma) beyond 2 but for eight entries: of R3 at
+/// (tan gamma, beta) = (6, 25), (9.5, 15) and (10, 20), and of C2 by one last digit at (11.5, 0),
+/// (10, 10), (12, 10), (8, 20) and (9.5, 20). Public copies of the tables have them so, too.
 RTable standard_r_table(const std::string& name);
 
 /// Reads a table from a text file: numbers between commas, semicolons or blanks. The first line has
-/// the angles beta, behind an optional word; each further line has tan(gamma) and r times 10^4 for
-/// each beta. Lines that begin with # are comments. Q_0 is computed. Throws InputError naming file,
-/// line and remedy.
+/// the angles beta, behind an optional word; each further line has tan(gamma), from 0 to 12 or
+/// more, and r times 10^4 for each beta. Lines that begin with # are comments. Q_0 is computed.
+/// Throws InputError naming file, line and remedy.
 RTable read_r_table(const std::filesystem::path& path);
 
 namespace standards_data {

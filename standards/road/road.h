@@ -11,7 +11,7 @@
 
 namespace lightwell {
 
-/// Where the luminaires of a straight road stand, as its drivers see it. Of two rows, those of
+/// Arrangements of luminaires along a straight road, as its drivers see them. Of two rows, those of
 /// `staggered` are half a spacing apart. `median`: two luminaires on each mast in the middle of the
 /// strip between two carriageways.
 enum class RoadArrangement { single_right, single_left, opposite, staggered, median };
@@ -58,7 +58,9 @@ struct Road {
   double hours = 0.0;  ///< of light at full power in a year; 0: not known
 
   double lane_width() const { return width / lanes; }
-  /// Whether a lane, counted from the right, has oncoming traffic.
+  /// True if the median lies beside the left or the right edge of the carriageway.
+  bool has_median_at(bool is_left) const { return median > 0.0 && is_left != drives_on_left; }
+  /// True if a lane, counted from 0 at the right, has oncoming traffic.
   bool is_oncoming(int lane) const {
     return drives_on_left ? lane < oncoming : lane >= lanes - oncoming;
   }
@@ -67,6 +69,16 @@ struct Road {
 /// Reads a road from a TOML file (docs/road.md). Throws InputError naming file, line, key and
 /// remedy.
 Road read_road(const std::filesystem::path& path);
+
+/// A row of luminaires along a road.
+struct LuminaireRowPlace {
+  double y = 0.0;       ///< m, of the luminaires
+  double facing = 1.0;  ///< +1 or -1: the street side looks along `facing` times y
+  double first = 0.0;   ///< m along x of one luminaire, in [0,spacing)
+};
+
+/// The rows of a road's luminaires: one or two.
+std::vector<LuminaireRowPlace> luminaire_rows(const Road& road);
 
 /// "single-right", ..., "median".
 const char* arrangement_name(RoadArrangement arrangement);

@@ -28,6 +28,10 @@ struct RoadClass {
   double vertical = 0.0;                 ///< least E_v,min, lx
 
   bool is_of_luminance() const { return luminance > 0.0; }
+  /// False for P7 alone, whose performance EN 13201-2 leaves undetermined.
+  bool has_limits() const {
+    return is_of_luminance() || mean > 0.0 || semicylindrical > 0.0 || vertical > 0.0;
+  }
 };
 
 /// All classes, in the order above.

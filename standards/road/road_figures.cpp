@@ -13,16 +13,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double eye_height = 1.5, eyes_before = 60.0;  // m
-constexpr double heights_of_light = 12.0;               // the farthest luminaires of a point
+constexpr double eyes_before = 60.0;  // m
 constexpr int rows_of_lane = 3;
 
 // All luminaires that the figures of a road need.
 RoadLight light_around(const Road& road) {
-  constexpr double farthest_glare = 500.0;
   const RoadLuminaires& luminaires = road.luminaires;
   const double reach =
-      std::max(farthest_glare, heights_of_light * luminaires.height) + luminaires.spacing;
+      std::max(farthest_glare, heights_beyond_point * luminaires.height) + luminaires.spacing;
   return {road, -reach, luminaires.spacing + reach};
 }
 
@@ -50,15 +48,11 @@ Eigen::ArrayXd values_at(const LuxGrid& grid, const std::function<double(const V
   return values;
 }
 
-double share_of(double part, double whole) {
-  return whole > 0.0 ? part / whole : 0.0;
-}
-
 // U_l: along the middle row of a lane.
 double along_lane(const LuxGrid& grid, const Eigen::ArrayXd& luminance, int lane) {
   const Eigen::Index first = Eigen::Index{rows_of_lane * lane + 1} * grid.columns;
   const auto middle = luminance.segment(first, grid.columns);
-  return share_of(middle.minCoeff(), middle.maxCoeff());
+  return share(middle.minCoeff(), middle.maxCoeff());
 }
 
 /// Luminances that the driver of a lane sees, and the figures made of them.
@@ -70,7 +64,7 @@ struct SeenRoad {
 void add_glare(const Road& road, const RoadLight& light, const LuxGrid& grid, double way,
                RoadObserver& observer) {
   // The first luminaire ahead appears below the screen of 20 degrees at this distance.
-  const double start = 2.75 * (road.luminaires.height - eye_height);
+  const double start = 2.75 * (road.luminaires.height - road_eye_height);
   const double first = way > 0.0 ? -start : road.luminaires.spacing + start;
   const double mean = observer.luminance / road.luminaires.maintenance;
   observer.threshold_increment = -1.0;
@@ -92,19 +86,19 @@ SeenRoad seen_road(const Road& road, const RoadLight& light, const LuxGrid& grid
   observer.is_oncoming = road.is_oncoming(lane);
   const double way = observer.is_oncoming ? -1.0 : 1.0;
   observer.eye = {way > 0.0 ? -eyes_before : road.luminaires.spacing + eyes_before,
-                  (lane + 0.5) * road.lane_width(), eye_height};
+                  (lane + 0.5) * road.lane_width(), road_eye_height};
   const double maintenance = road.luminaires.maintenance;
   seen.luminance = maintenance * values_at(grid, [&](const Vector3d& point) {
                      return light.luminance(road.surface, point, observer.eye);
                    });
   observer.luminance = seen.luminance.mean();
-  observer.uniformity = share_of(seen.luminance.minCoeff(), observer.luminance);
+  observer.uniformity = share(seen.luminance.minCoeff(), observer.luminance);
   observer.longitudinal_uniformity = along_lane(grid, seen.luminance, lane);
   if (road.wet_surface) {
     const Eigen::ArrayXd wet = values_at(grid, [&](const Vector3d& point) {
       return light.luminance(*road.wet_surface, point, observer.eye);
     });
-    observer.wet_uniformity = share_of(wet.minCoeff(), wet.mean());
+    observer.wet_uniformity = share(wet.minCoeff(), wet.mean());
   }
   add_glare(road, light, grid, way, observer);
   return seen;
@@ -136,7 +130,8 @@ RoadField lit_strip(const Road& road, const RoadLight& light, const std::string&
   return strip;
 }
 
-// Whether a strip with a class of its own begins at an edge of the carriageway.
+// True if a strip with a class of its own begins within a lane's width of an edge of the
+// carriageway.
 bool has_neighbour(const Road& road, bool is_left) {
   return std::ranges::any_of(road.strips, [&](const RoadStrip& strip) {
     return strip.is_left == is_left && !strip.classes.empty() && strip.gap < road.lane_width();
@@ -152,9 +147,9 @@ void add_edges(const Road& road, const RoadLight& light, RoadFigures& figures) {
     };
     const double inside = mean(is_left ? edge - wide : edge);
     const double outside = mean(is_left ? edge : edge - wide);
-    const bool is_median = road.median > 0.0 && is_left != road.drives_on_left;
+    const bool is_median = road.has_median_at(is_left);
     figures.edges.push_back({.is_left = is_left,
-                             .value = share_of(outside, inside),
+                             .value = share(outside, inside),
                              .is_required = !is_median && !has_neighbour(road, is_left)});
   }
 }
@@ -242,7 +237,7 @@ void add_upright_limits(const RoadClass& limits, const Road& road, const RoadLig
   for (const double way : {1.0, -1.0}) {
     const Vector3d facing(way, 0.0, 0.0);
     const Eigen::ArrayXd lux = values_at(strip.grid, [&](const Vector3d& ground) {
-      const Vector3d face = ground + eye_height * Vector3d::UnitZ();
+      const Vector3d face = ground + road_eye_height * Vector3d::UnitZ();
       return is_round ? light.semicylindrical(face, facing) : light.vertical(face, facing);
     });
     requirements.push_back(
@@ -279,17 +274,23 @@ void add_power(const Road& road, RoadFigures& figures) {
   constexpr double km = 1000.0, kilowatt = 1000.0;
   const double power = watts * luminaires_of_field(road.luminaires.arrangement);
   figures.watts_per_km = power * km / spacing;
-  const int carriageways = road.median > 0.0 ? 2 : 1;
   double area = 0.0, flux = 0.0;
-  for (std::size_t i = 0; i < figures.illuminance.size(); ++i) {
-    const RoadField& strip = figures.illuminance[i];
-    // Each strip beside one of two carriageways has its like beside the other.
-    const double here = strip.grid.area * carriageways;
+  // An area without a class is not to be lit. Of two carriageways each has its like, and so has
+  // each strip on their outer sides. Strips in the median belong to both.
+  const auto add = [&](const RoadField& lit, const std::vector<RoadClass>& classes, int count) {
+    if (classes.empty()) return;
+    const double here = lit.grid.area * count;
     area += here;
-    flux += here * strip.field.mean;
+    flux += here * lit.field.mean;
+  };
+  const int both = road.median > 0.0 ? 2 : 1;
+  add(figures.illuminance.front(), road.classes, both);
+  for (std::size_t i = 0; i < road.strips.size(); ++i) {
+    const RoadStrip& strip = road.strips[i];
+    add(figures.illuminance[i + 1], strip.classes, road.has_median_at(strip.is_left) ? 1 : both);
   }
   if (flux > 0.0) figures.power_density = power / flux;
-  if (road.hours > 0.0) figures.energy = power * road.hours / (kilowatt * area);
+  if (road.hours > 0.0 && area > 0.0) figures.energy = power * road.hours / (kilowatt * area);
 }
 
 }  // namespace
@@ -302,7 +303,8 @@ RoadField illuminance_map(const Road& road) {
   }
   const auto count = [](double length) {
     constexpr double apart = 0.5;  // m
-    return static_cast<int>(std::ceil(length / apart));
+    constexpr int most = 400;      // more would not show on paper
+    return std::min(most, static_cast<int>(std::ceil(length / apart)));
   };
   const Eigen::Vector2d size(road.luminaires.spacing, high - low);
   RoadField map{"road and strips",

@@ -47,7 +47,8 @@ struct RoadFigures {
   std::vector<EdgeRatio> edges{};        ///< right, left
   std::vector<Requirement> requirements{};
   /// Power over lit area and illuminance, W/(lx m^2) (EN 13201-5: D_P), and energy of a year,
-  /// kWh/m^2 (D_E); empty: power or hours are not known.
+  /// kWh/m^2 (D_E), over the carriageways and strips that have a class; a strip in the median
+  /// counts once. Empty: power or hours are not known.
   std::optional<double> power_density{}, energy{};
   double watts_per_km = 0.0;  ///< 0: power is not known
 
@@ -60,7 +61,7 @@ struct RoadFigures {
 RoadFigures road_figures(const Road& road);
 
 /// Illuminance of the carriageway, of all strips and of a lane's width beside them, lx, at points
-/// about half a metre apart, for a drawing.
+/// about half a metre apart, at most 400 along and across, for a drawing.
 RoadField illuminance_map(const Road& road);
 
 /// The points of a strip for EN 13201-3: `width` from `right` (m, y) between two luminaires of a

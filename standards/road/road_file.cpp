@@ -70,8 +70,7 @@ void read_carriageway(const TomlValue& value, Road& road) {
   const auto surface = table.find("surface");
   road.surface = surface ? read_surface(*surface) : standard_r_table("R3");
   if (const auto q0 = table.find("q0")) {
-    constexpr double darkest = 0.01, lightest = 0.5;
-    road.surface = scaled_to(road.surface, q0->number_within(darkest, lightest));
+    road.surface = scaled_to(road.surface, q0->number_within(darkest_road, lightest_road));
   }
   if (const auto wet = table.find("wet_surface")) road.wet_surface = read_surface(*wet);
   constexpr double hours_of_year = 8784.0;
@@ -161,6 +160,56 @@ void read_strips(const TomlValue& strips, Road& road) {
   }
 }
 
+// Requires a class that limits something, and one of luminance where a wet surface is given.
+void require_limits(const TomlTable& document, const Road& road) {
+  bool has_class = !road.classes.empty();
+  bool has_limits = std::ranges::any_of(road.classes, &RoadClass::has_limits);
+  for (const RoadStrip& strip : road.strips) {
+    has_class = has_class || !strip.classes.empty();
+    has_limits = has_limits || std::ranges::any_of(strip.classes, &RoadClass::has_limits);
+  }
+  const TomlValue at = document.require("road");
+  if (!has_class) at.fail("has no class, and no strip has one; write class = \"M3\"");
+  if (!has_limits) {
+    at.fail(
+        "is of class P7 alone, which has no limit, so there is nothing to hold the road to; name "
+        "another class, such as \"P6\"");
+  }
+  if (road.wet_surface && std::ranges::none_of(road.classes, &RoadClass::is_of_luminance)) {
+    at.fail(
+        "has a wet_surface, of which M classes alone limit a figure, and no M class; name one, or "
+        "leave 'wet_surface' out");
+  }
+}
+
+// Refuses strips that overlap on one side, or reach over the median.
+void require_apart(const TomlTable& document, const Road& road) {
+  constexpr double rounding = 1e-9;  // m
+  for (const bool is_left : {false, true}) {
+    std::vector<const RoadStrip*> side;
+    for (const RoadStrip& strip : road.strips) {
+      if (strip.is_left == is_left) side.push_back(&strip);
+    }
+    std::ranges::sort(side, {}, &RoadStrip::gap);
+    for (std::size_t i = 1; i < side.size(); ++i) {
+      const double end = side[i - 1]->gap + side[i - 1]->width;
+      if (!(side[i]->gap < end - rounding)) continue;
+      document.require("strips").fail(fmt::format(
+          "overlap: '{}' reaches to {:g} m from the carriageway, and '{}' begins at {:g} m; make "
+          "its 'gap' {:g} or more",
+          side[i - 1]->name, end, side[i]->name, side[i]->gap, end));
+    }
+    if (side.empty() || !road.has_median_at(is_left)) continue;
+    const double end = side.back()->gap + side.back()->width;
+    if (end > road.median + rounding) {
+      document.require("strips").fail(fmt::format(
+          "reach over the median: '{}' ends {:g} m from the carriageway, and the median "
+          "is {:g} m wide; make the strip narrower",
+          side.back()->name, end, road.median));
+    }
+  }
+}
+
 void require_consistent_road(const TomlTable& document, const Road& road) {
   const bool has_median = road.median > 0.0;
   if (has_median != (road.luminaires.arrangement == RoadArrangement::median)) {
@@ -174,12 +223,8 @@ void require_consistent_road(const TomlTable& document, const Road& road) {
         "has a median, so its other carriageway has the oncoming traffic; leave 'oncoming_lanes' "
         "out");
   }
-  const bool limits_something =
-      !road.classes.empty() ||
-      std::ranges::any_of(road.strips, [](const RoadStrip& one) { return !one.classes.empty(); });
-  if (!limits_something) {
-    document.require("road").fail("has no class, and no strip has one; write class = \"M3\"");
-  }
+  require_limits(document, road);
+  require_apart(document, road);
 }
 
 }  // namespace
@@ -198,6 +243,27 @@ const char* arrangement_name(RoadArrangement arrangement) {
       break;
   }
   return "single-right";
+}
+
+std::vector<LuminaireRowPlace> luminaire_rows(const Road& road) {
+  const RoadLuminaires& luminaires = road.luminaires;
+  const LuminaireRowPlace right{luminaires.overhang, 1.0};
+  const LuminaireRowPlace left{road.width - luminaires.overhang, -1.0};
+  switch (luminaires.arrangement) {
+    case RoadArrangement::single_left:
+      return {left};
+    case RoadArrangement::opposite:
+      return {right, left};
+    case RoadArrangement::staggered:
+      return {right, {left.y, left.facing, 0.5 * luminaires.spacing}};
+    case RoadArrangement::median:
+      // The other carriageway lies across the median, to the right where traffic keeps left.
+      if (road.drives_on_left) return {right, {-road.median - right.y, -1.0}};
+      return {left, {road.width + road.median + right.y, 1.0}};
+    case RoadArrangement::single_right:
+      break;
+  }
+  return {right};
 }
 
 Road read_road(const std::filesystem::path& path) {

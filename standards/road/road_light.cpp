@@ -13,9 +13,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Heights within which luminaires count (EN 13201-3).
-constexpr double heights_around = 5.0, heights_beyond = 12.0;
-
 // Directions of C0, of C90 and of the zenith of a luminaire whose side of the road looks along
 // `facing` times y.
 Eigen::Matrix3d road_axes(const RoadLuminaires& luminaires, double facing) {
@@ -47,39 +44,13 @@ RoadLight::RoadLight(const Road& road, double from, double to)
     : file_(road.luminaires.file),
       flux_factor_(road.luminaires.flux_factor),
       height_(road.luminaires.height) {
-  const RoadLuminaires& luminaires = road.luminaires;
-  const double right = luminaires.overhang, left = road.width - luminaires.overhang;
-  const bool is_staggered = luminaires.arrangement == RoadArrangement::staggered;
-  const auto add = [&](double y, double facing, double first = 0.0) {
-    add_row(road, first, y, facing, from, to);
-  };
-  switch (luminaires.arrangement) {
-    case RoadArrangement::single_right:
-      add(right, 1.0);
-      break;
-    case RoadArrangement::single_left:
-      add(left, -1.0);
-      break;
-    case RoadArrangement::opposite:
-    case RoadArrangement::staggered:
-      add(right, 1.0);
-      add(left, -1.0, is_staggered ? 0.5 * luminaires.spacing : 0.0);
-      break;
-    case RoadArrangement::median:
-      // The other carriageway lies across the median, to the right where traffic keeps left.
-      add(road.drives_on_left ? right : left, road.drives_on_left ? 1.0 : -1.0);
-      add(road.drives_on_left ? -road.median - right : road.width + road.median + right,
-          road.drives_on_left ? -1.0 : 1.0);
-      break;
-  }
-}
-
-void RoadLight::add_row(const Road& road, double first, double y, double facing, double from,
-                        double to) {
   const double spacing = road.luminaires.spacing;
-  const Eigen::Matrix3d axes = road_axes(road.luminaires, facing);
-  for (double k = std::ceil((from - first) / spacing); first + k * spacing <= to; k += 1.0) {
-    placed_.push_back({{first + k * spacing, y, height_}, axes});
+  for (const LuminaireRowPlace& row : luminaire_rows(road)) {
+    const Eigen::Matrix3d axes = road_axes(road.luminaires, row.facing);
+    const double begin = std::ceil((from - row.first) / spacing);
+    for (double k = begin; row.first + k * spacing <= to; k += 1.0) {
+      placed_.push_back({{row.first + k * spacing, row.y, height_}, axes});
+    }
   }
 }
 
@@ -90,7 +61,7 @@ double RoadLight::intensity(const Placed& luminaire, const Vector3d& way) const 
 // Visits the luminaires within 5 heights along and across with the vector from them to the point.
 template <class Visit>
 void RoadLight::for_each_near(const Vector3d& point, Visit&& visit) const {
-  const double reach = heights_around * height_;
+  const double reach = heights_around_point * height_;
   for (const Placed& luminaire : placed_) {
     const Vector3d way = point - luminaire.position;
     if (std::abs(way.x()) <= reach && std::abs(way.y()) <= reach) visit(luminaire, way);
@@ -130,12 +101,12 @@ double RoadLight::luminance(const RTable& surface, const Vector3d& point,
                             const Vector3d& eye) const {
   const Vector3d sight = point - eye;
   const double way = sight.x() > 0.0 ? 1.0 : -1.0;
-  const double reach = heights_around * height_;
+  const double reach = heights_around_point * height_;
   double sum = 0.0;
   for (const Placed& luminaire : placed_) {
     const Vector3d to_light = luminaire.position - point;
     const double beyond = way * to_light.x();
-    if (beyond < -reach || beyond > heights_beyond * height_) continue;
+    if (beyond < -reach || beyond > heights_beyond_point * height_) continue;
     if (std::abs(to_light.y()) > reach) continue;
     const double tangent = std::hypot(to_light.x(), to_light.y()) / to_light.z();
     const double r = reduced_luminance_coefficient(surface, tangent, beta_of(sight, to_light));
@@ -145,7 +116,7 @@ double RoadLight::luminance(const RTable& surface, const Vector3d& point,
 }
 
 double RoadLight::veiling_luminance(const Vector3d& eye, double way) const {
-  constexpr double farthest = 500.0, screen = 20.0, down = 1.0, age = 23.0;
+  constexpr double screen = 20.0, down = 1.0, age = 23.0;
   constexpr double nearest_angle = 0.1, narrow = 1.5, widest = 60.0;  // degrees
   const double wide_factor = 9.86 * (1.0 + std::pow(age / 66.4, 4));
   const double narrow_factor = 5.0 * (1.0 + std::pow(age / 62.5, 4));
@@ -154,7 +125,7 @@ double RoadLight::veiling_luminance(const Vector3d& eye, double way) const {
   for (const Placed& luminaire : placed_) {
     const Vector3d to_light = luminaire.position - eye;
     const double ahead = way * to_light.x();
-    if (!(ahead > 0.0) || ahead > farthest) continue;
+    if (!(ahead > 0.0) || ahead > farthest_glare) continue;
     if (to_light.z() > ahead * std::tan(screen * degree)) continue;
     const double d = to_light.norm(), cosine = std::min(1.0, to_light.dot(look) / d);
     const double theta = std::acos(cosine) / degree;

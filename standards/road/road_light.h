@@ -7,6 +7,12 @@
 
 namespace lightwell {
 
+/// Distances within which luminaires count (EN 13201-3): in mounting heights around a point, for
+/// heights beyond see r_table.h, and in metres ahead of an eye.
+inline constexpr double heights_around_point = 5.0, farthest_glare = 500.0;
+/// Height of drivers' eyes and of the points of upright figures above the road, m (EN 13201-3).
+inline constexpr double road_eye_height = 1.5;
+
 /// Luminaires of a road between two places along it.
 class RoadLight {
  public:
@@ -50,7 +56,6 @@ class RoadLight {
     Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
   };
 
-  void add_row(const Road& road, double first, double y, double facing, double from, double to);
   double intensity(const Placed& luminaire, const Eigen::Vector3d& way) const;
   template <class Visit>
   void for_each_near(const Eigen::Vector3d& point, Visit&& visit) const;

@@ -5,12 +5,16 @@
 
 #include "scene/parallel.h"
 #include "standards/road/road_figures.h"
+#include "standards/road/road_light.h"
 
 namespace lightwell {
 
 std::vector<SpacingRange> spacings_that_meet(const Road& road, const Progress& progress) {
-  constexpr double least = 1.0, greatest = 500.0;             // m
-  constexpr double heights_least = 0.5, heights_most = 17.0;  // 5 before a point and 12 beyond it
+  constexpr double least = 1.0, greatest = 500.0;  // m
+  constexpr double heights_least = 0.5;
+  // The luminaires of two staggered rows are half a spacing apart.
+  const double apart = road.luminaires.arrangement == RoadArrangement::staggered ? 2.0 : 1.0;
+  const double heights_most = apart * (heights_around_point + heights_beyond_point);
   constexpr int steps_of_metre = static_cast<int>(1.0 / spacing_step + 0.5);
   const double height = road.luminaires.height;
   const int first =

@@ -136,15 +136,18 @@ TEST(EyeLight, FarFromBlackBodiesHasNoColourTemperature) {
   EXPECT_GT(green.duv, 0.05);
 }
 
-// Three lines of 10 nm (standard deviation) as a lamp has them, in intervals of `step` nm, each
-// with the mean of its part.
+// Three lines of 10 nm (standard deviation) as a white lamp of 4800 K has them, in intervals of
+// `step` nm, each with the power of its part.
 SpectralPower three_lines(double step) {
+  struct Line {
+    double nm, height;
+  };
   SpectralPower power{.edges_nm = {first_nm}};
   for (double low = first_nm; low < 780.0 - 1e-9; low += step) {
     double sum = 0.0;
     for (double nm = low + 0.25; nm < low + step; nm += 0.5) {
-      for (const double peak : {450.0, 545.0, 610.0}) {
-        sum += std::exp(-0.5 * std::pow((nm - peak) / 10.0, 2));
+      for (const auto& [peak, height] : {Line{450.0, 0.8}, Line{545.0, 1.2}, Line{610.0, 1.0}}) {
+        sum += height * std::exp(-0.5 * std::pow((nm - peak) / 10.0, 2));
       }
     }
     power.edges_nm.push_back(low + step);
@@ -154,15 +157,24 @@ SpectralPower three_lines(double step) {
 }
 
 /// The bound of R_a covers the error of wide intervals, against intervals of 1 nm, and shrinks with
-/// them. Daylight has R_a of 100 by definition.
+/// them. Daylight has R_a of 100 by definition; nothing is known of a green light.
 TEST(EyeLight, BoundsTheErrorOfColourRendering) {
-  const double exact = rated_colour(three_lines(1.0))->rendering;
-  for (const double step : {5.0, 10.0, 20.0}) {
-    const RatedColour rated = *rated_colour(three_lines(step));
-    EXPECT_LE(std::abs(rated.rendering - exact), rated.within) << step;
+  const auto exact = rated_colour(three_lines(1.0));
+  ASSERT_TRUE(exact);
+  double wider = exact->within;
+  for (const double step : {2.0, 5.0, 10.0}) {
+    const auto rated = rated_colour(three_lines(step));
+    ASSERT_TRUE(rated) << step;
+    EXPECT_LE(std::abs(rated->rendering - exact->rendering), rated->within) << step;
+    EXPECT_GT(rated->within, wider) << step;
+    wider = rated->within;
   }
-  EXPECT_LT(rated_colour(three_lines(2.0))->within, 0.1);
   EXPECT_NEAR(rated_colour(daylight_illuminant(6504.0))->rendering, 100.0, 0.1);
+  SpectralPower green = three_lines(5.0);
+  for (std::size_t k = 0; k < green.watts.size(); ++k) {
+    if (green.edges_nm[k] < 500.0 || green.edges_nm[k] > 570.0) green.watts[k] = 0.0;
+  }
+  EXPECT_FALSE(rated_colour(green));
 }
 
 }  // namespace

@@ -256,7 +256,8 @@ std::vector<NamedGlare> observers_of(const DesignArea& area, const LightingRepor
   return observers;
 }
 
-// R_G of new luminaires for the eyes of an area; its bound follows from that of E_h,av.
+// R_G of new luminaires for the eyes of an area; its bound follows from that of E_h,av and from the
+// steps of the directions. Luminaires' own light is taken as exact.
 std::vector<NamedRating> glare_ratings(const DesignArea& area, const LuxField& pitch,
                                        const Eigen::Vector3d& up, const LightingReport& report) {
   constexpr double per_relative = 24.0 * 0.9 / std::numbers::ln10;
@@ -266,13 +267,13 @@ std::vector<NamedRating> glare_ratings(const DesignArea& area, const LuxField& p
   for (const std::string& name : area.observers) {
     const auto at = std::ranges::find(report.observers, name, &Observer::name);
     if (at == report.observers.end()) continue;
-    ratings.push_back(
-        {name, greatest_glare_rating(at->arriving, veil, up), per_relative * pitch.mean_within});
+    ratings.push_back({name, greatest_glare_rating(at->arriving, veil, up),
+                       per_relative * pitch.mean_within + glare_rating_step_within});
   }
   return ratings;
 }
 
-// R_a of the luminaires whose spectrum is known.
+// R_a of the luminaires whose spectrum is known; NaN where R_a is not defined.
 std::vector<NamedRating> rated_luminaires(const LightingReport& report) {
   std::vector<NamedRating> rated;
   for (const LuminaireRow& row : report.luminaires) {

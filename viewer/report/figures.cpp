@@ -86,6 +86,11 @@ Json eye_json(const EyeLight& light) {
   return json;
 }
 
+// The bound of an index behind its value, where it is known.
+std::string index_bound(double within) {
+  return std::isfinite(within) ? fmt::format(" ± {:.1g}", within) : "";
+}
+
 // Illuminance of an eye, and where wavelengths are known its melanopic EDI, CCT and R_a.
 std::string eye_text(const Observer& observer) {
   std::string text = fmt::format("{}: {} lx at the eye", observer.name, lux_text(observer.lux));
@@ -100,8 +105,10 @@ std::string eye_text(const Observer& observer) {
     if (light.colour_rendering) text += fmt::format(", R_a {:.0f}", *light.colour_rendering);
   }
   if (observer.fidelity) {
-    text += fmt::format(", R_f {:.0f}, R_g {:.0f}", observer.fidelity->fidelity,
-                        observer.fidelity->gamut);
+    const ColourFidelity& colours = *observer.fidelity;
+    text += fmt::format(", R_f {:.0f}{}, R_g {:.0f}{}", colours.fidelity,
+                        index_bound(colours.fidelity_within), colours.gamut,
+                        index_bound(colours.gamut_within));
   }
   return text + "\n";
 }
@@ -128,6 +135,8 @@ Json observer_json(const Observer& observer) {
   if (observer.fidelity) {
     json["R_f"] = observer.fidelity->fidelity;
     json["R_g"] = observer.fidelity->gamut;
+    json["R_f_within"] = observer.fidelity->fidelity_within;  // null: unknown
+    json["R_g_within"] = observer.fidelity->gamut_within;
   }
   return json;
 }
@@ -135,7 +144,7 @@ Json observer_json(const Observer& observer) {
 Json luminaire_json(const LuminaireRow& row) {
   Json json = {{"name", row.name}, {"number", row.count}, {"lumens", row.flux}};
   if (row.watts > 0.0) json["watts"] = row.watts;
-  if (row.colour) json["R_a"] = row.colour->rendering;
+  if (row.colour) json["R_a"] = row.colour->rendering;  // null: not defined
   if (row.file) {
     json["file"] = row.file->file.filename().string();
     json["luminaire"] = row.file->name;
@@ -167,7 +176,7 @@ std::string area_text(std::span<const Requirement> of_area) {
     const Verdict verdict = verdict_of(requirement);
     if (verdict == Verdict::met) continue;
     const std::string within =
-        requirement.within == 0.0 ? "" : fmt::format(" ± {:.2g}", requirement.within);
+        requirement.within > 0.0 ? fmt::format(" ± {:.2g}", requirement.within) : "";
     text += fmt::format("  {}{}: {} {} of {}{}, {} {}\n",
                         requirement.is_recommended ? "recommended, " : "", verdict_name(verdict),
                         figure_symbol(requirement.figure),
@@ -238,6 +247,7 @@ std::string verdicts_text(std::span<const Requirement> requirements) {
 }
 
 std::string figure_text(Figure figure, double value) {
+  if (std::isnan(value)) return "not defined";
   switch (figure) {
     case Figure::uniformity:
     case Figure::modelling:

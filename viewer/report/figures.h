@@ -20,7 +20,8 @@ nlohmann::ordered_json requirements_json(std::span<const Requirement> requiremen
 /// A line for the verdict of each area, with a line for each limit that is not surely kept.
 std::string verdicts_text(std::span<const Requirement> requirements);
 
-/// A value of a figure as people read it, without its unit: "512", "0.60", "19.0".
+/// A value of a figure as people read it, without its unit: "512", "0.60", "19.0"; of NaN "not
+/// defined".
 std::string figure_text(Figure figure, double value);
 
 /// The figures that people look for first, a line each.

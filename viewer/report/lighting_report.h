@@ -31,7 +31,7 @@ struct LuminaireRow {
   int count = 0;       ///< surfaces or lamps
   double flux = 0.0;   ///< lm, of all `count` emitters, with the solution's channel scales
   double watts = 0.0;  ///< installed electric power of all `count` emitters, W; 0: unknown
-  /// R_a of the light of all; empty without wavelengths, and where R_a is not defined.
+  /// R_a of the light of all; NaN where R_a is not defined, empty without wavelengths.
   std::optional<RatedColour> colour{};
   /// The photometric file; null: none, or not the same for all lamps of the name.
   SharedLuminaireFile file{};

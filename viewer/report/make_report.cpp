@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -73,10 +74,12 @@ std::vector<LuminaireRow> luminaires(const Scene& scene, const PatchMesh& mesh,
     if (row.count == 1) row.file = file;
     if (row.file != file) row.file = nullptr;
   }
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  constexpr RatedColour undefined{.rendering = nan, .within = nan};
   for (LuminaireRow& row : rows) {
     if (partly_known.contains(row.name)) row.watts = 0.0;
     const auto power = spectral_power(scene.bands, spectra[row.name]);
-    if (power && row.flux > 0.0) row.colour = rated_colour(*power);
+    if (power && row.flux > 0.0) row.colour = rated_colour(*power).value_or(undefined);
   }
   return rows;
 }

@@ -16,39 +16,15 @@ using Eigen::Vector2d;
 
 constexpr double luminaire_length = 0.7, luminaire_width = 0.3;  // m, drawn where none is known
 
-/// A row of luminaires across the road: m along y, and the side that they face.
-struct RoadRow {
-  double y = 0.0, facing = 1.0;
-  double mast = 0.0;   ///< m along y
-  double first = 0.0;  ///< m along x
-};
-
-std::vector<RoadRow> rows_of(const Road& road) {
-  const RoadLuminaires& luminaires = road.luminaires;
-  constexpr double set_back = 0.5;  // m from the edge to masts, as drawn
-  const double right = luminaires.overhang, left = road.width - right;
-  const double behind = std::min(-set_back, luminaires.overhang);
-  const RoadRow of_right{right, 1.0, behind}, of_left{left, -1.0, road.width - behind};
-  const double half = 0.5 * luminaires.spacing;
-  switch (luminaires.arrangement) {
-    case RoadArrangement::single_left:
-      return {of_left};
-    case RoadArrangement::opposite:
-      return {of_right, of_left};
-    case RoadArrangement::staggered:
-      return {of_right, {left, -1.0, road.width - behind, half}};
-    case RoadArrangement::median: {
-      const double middle = 0.5 * road.median;
-      if (road.drives_on_left) {
-        return {{right, 1.0, -middle}, {-road.median - right, -1.0, -middle}};
-      }
-      return {{left, -1.0, road.width + middle},
-              {road.width + road.median + right, 1.0, road.width + middle}};
-    }
-    case RoadArrangement::single_right:
-      break;
+// Masts of a row, m along y.
+double mast_of(const Road& road, const LuminaireRowPlace& row) {
+  if (road.luminaires.arrangement == RoadArrangement::median) {
+    const double middle = 0.5 * road.median;
+    return road.drives_on_left ? -middle : road.width + middle;
   }
-  return {of_right};
+  constexpr double set_back = 0.5;  // m from the edge to masts, as drawn
+  const double behind = std::min(-set_back, road.luminaires.overhang);
+  return row.facing > 0.0 ? behind : road.width - behind;
 }
 
 /// Lines along the road, m along y: edges of carriageways and strips, and between lanes.
@@ -97,7 +73,7 @@ PlanLines lines_of(const Road& road, const LuxGrid& grid) {
     const double y = lane - grid.corner.y();
     if (shown(y)) add_dashes(y, length, lines);
   }
-  for (const RoadRow& row : rows_of(road)) {
+  for (const LuminaireRowPlace& row : luminaire_rows(road)) {
     for (double x = row.first; x <= length + 1e-9; x += road.luminaires.spacing) {
       const Vector2d at(x, row.y - grid.corner.y());
       if (!shown(at.y())) continue;
@@ -126,8 +102,8 @@ void add_measure(const SectionPaper& paper, double from, double to, double below
 
 void add_masts(const Road& road, const SectionPaper& paper, std::string& svg) {
   const double height = road.luminaires.height, tilt = road.luminaires.tilt;
-  for (const RoadRow& row : rows_of(road)) {
-    const double x = paper.x(row.y), y = -paper.mm * height, mast = paper.x(row.mast);
+  for (const LuminaireRowPlace& row : luminaire_rows(road)) {
+    const double x = paper.x(row.y), y = -paper.mm * height, mast = paper.x(mast_of(road, row));
     const double half = 0.5 * luminaire_length * paper.mm;
     fmt::format_to(std::back_inserter(svg),
                    "<path class=\"edge\" d=\"M{0:.2f} 0V{1:.2f}L{2:.2f} {1:.2f}\"/>"
@@ -155,9 +131,10 @@ std::string road_section_svg(const Road& road) {
   constexpr double border = 2.0, most_across = 165.0, most_up = 70.0;  // m; mm of paper
   double low = *std::ranges::min_element(found.edges) - border;
   double high = *std::ranges::max_element(found.edges) + border;
-  for (const RoadRow& row : rows_of(road)) {
-    low = std::min({low, row.y - border, row.mast - border});
-    high = std::max({high, row.y + border, row.mast + border});
+  for (const LuminaireRowPlace& row : luminaire_rows(road)) {
+    const double mast = mast_of(road, row);
+    low = std::min({low, row.y - border, mast - border});
+    high = std::max({high, row.y + border, mast + border});
   }
   const double top = road.luminaires.height + border;
   const SectionPaper paper{high, std::min(most_across / (high - low), most_up / top)};
@@ -190,7 +167,7 @@ std::string road_section_svg(const Road& road) {
                 fmt::format("{} {:g} m", marked(strip.name), strip.width), svg);
   }
   add_masts(road, paper, svg);
-  const RoadRow& first = rows_of(road).front();
+  const LuminaireRowPlace first = luminaire_rows(road).front();
   fmt::format_to(std::back_inserter(svg),
                  "<text x=\"{:.2f}\" y=\"{:.2f}\" class=\"axis\">{:g} m high, tilt {:g}°, overhang "
                  "{:g} m</text>\n",

@@ -60,7 +60,9 @@ TableRow requirement_row(const Requirement& requirement, Language language) {
   }
   TableCell value{"–"};
   if (requirement.value) {
-    value = {std::isfinite(*requirement.value) ? number(*requirement.value) : "∞"};
+    if (!std::isnan(*requirement.value)) {
+      value = {std::isfinite(*requirement.value) ? number(*requirement.value) : "∞"};
+    }
     if (requirement.within > 0.0) {
       value.bound = number_in(language, fmt::format("± {:.2g}", requirement.within));
     }
@@ -122,8 +124,14 @@ DocumentTable eye_table(const LightingReport& report, Language language) {
       if (light.colour_rendering) row.cells[5] = number("{:.0f}", *light.colour_rendering);
     }
     if (observer.fidelity) {
-      row.cells[6] = number("{:.0f}", observer.fidelity->fidelity);
-      row.cells[7] = number("{:.0f}", observer.fidelity->gamut);
+      const auto index = [&](double value, double within) {
+        TableCell cell = number("{:.0f}", value);
+        if (std::isfinite(within))
+          cell.bound = number_in(language, fmt::format("± {:.1g}", within));
+        return cell;
+      };
+      row.cells[6] = index(observer.fidelity->fidelity, observer.fidelity->fidelity_within);
+      row.cells[7] = index(observer.fidelity->gamut, observer.fidelity->gamut_within);
     }
     table.rows.push_back(std::move(row));
   }

@@ -42,11 +42,16 @@ Spectrum photometric(double luminous_value, const Spectrum& colour, const TomlVa
   return colour * static_cast<float>(luminous_value / unit);
 }
 
-// Refuses a hue beside a key that states each band.
-void refuse_hue_beside(const TomlTable& table, const std::string& how) {
-  for (const std::string& key : table.present({"cct", "spectrum"})) {
-    table.require(key).fail(fmt::format(
-        "has no meaning beside '{}', which states each band; give the brightness in lux", how));
+// Refuses the keys of a chromaticity or a spectrum: beside a key that states each band, or, with
+// an empty `how`, where nothing states a brightness.
+void refuse_colour_beside(const TomlTable& table, const std::string& how) {
+  for (const std::string& key : table.present({"color", "cct", "spectrum"})) {
+    table.require(key).fail(
+        how.empty()
+            ? "has no meaning without a brightness; give 'illuminance' in lux beside it"
+            : fmt::format(
+                  "has no meaning beside '{}', which states each band; give the brightness in lux",
+                  how));
   }
 }
 
@@ -120,10 +125,13 @@ struct SunTable {
 // Sets the irradiance of `result`; false if the table does not state it.
 bool read_brightness(const TomlTable& table, const TomlBands& bands, SunTable& result) {
   const std::string how = one_of_present(table, {"illuminance", "irradiance", "direct_normal"});
-  if (how.empty()) return false;
+  if (how.empty()) {
+    refuse_colour_beside(table, how);
+    return false;
+  }
   const TomlValue amount = table.require(how);
   if (how == "irradiance") {
-    refuse_hue_beside(table, how);
+    refuse_colour_beside(table, how);
     result.sun.irradiance = read_toml_emission(amount, bands);
     const bool is_rgb = bands.bands.wavelengths_nm.empty();
     if (is_rgb) {
@@ -257,7 +265,7 @@ void read_scale(const TomlTable& table, const TomlBands& bands, Sky& sky) {
   }
   const Spectrum zenith = sky_radiance(sky, sky.up);
   if (how == "radiance") {
-    refuse_hue_beside(table, how);
+    refuse_colour_beside(table, how);
     // The radiance is the zenith's, for any phi and f there (Sky).
     const float factor = zenith.maxCoeff() / sky.scale.maxCoeff();
     sky.scale = read_toml_emission(amount, bands) / factor;
@@ -349,7 +357,9 @@ void check_keys(const TomlTable& table, const std::string& kind) {
   not_for({"ground_reflectance", "ground_radiance", "color", "cct", "spectrum"}, "map");
   not_for({"color", "cct", "spectrum", "zenith_luminance", "radiance", "diffuse_horizontal"},
           "turbidity");
-  not_for({"illuminance", "zenith_luminance", "radiance", "diffuse_horizontal"}, "none");
+  not_for({"color", "cct", "spectrum", "illuminance", "zenith_luminance", "radiance",
+           "diffuse_horizontal"},
+          "none");
 }
 
 }  // namespace

@@ -127,7 +127,14 @@ Spectrum band_powers(const TomlValue& value, const SpectrumSamples& samples,
   for (int k = 0; k < count; ++k) {
     of_fine[k] = static_cast<float>(mean(samples, low + k * width, low + (k + 1) * width) * width);
   }
-  return linear_rgb(fine, of_fine).max(0.0f);
+  const Spectrum rgb = linear_rgb(fine, of_fine);
+  constexpr float rounding = 1e-6f;
+  if (rgb.minCoeff() < -rounding * rgb.maxCoeff()) {
+    value.fail(
+        "has a chromaticity that no mixture of red, green and blue has; give the scene bands of "
+        "wavelengths, or a 'color'");
+  }
+  return rgb.max(0.0f);
 }
 
 Spectrum sampled(const TomlValue& value, const TomlBands& bands, Quantity quantity) {

@@ -38,20 +38,30 @@ TEST(GlareRating, CountsLightsBetweenTwoAngles) {
             veiling_luminance({{at_angle(59.0), 1.0}}, Vector3d::UnitX()));
 }
 
-/// A light 10 degrees above the horizon is at least 12 degrees from a line of sight 2 degrees below
-/// it. The steps of 5 degrees leave an azimuth of 2.5 degrees at most: the angle is then at most
-/// sqrt(12^2 + 2.5^2) = 12.26 degrees, to second order, and R_G at most 48 log10(12.26 / 12) = 0.45
-/// below that of the exact direction, whichever way the light comes from.
+/// A light `high` degrees above the horizon, turned by a from a line of sight 2 degrees below it,
+/// is theta off, with cos theta = cos(high) cos(2) cos(a) - sin(high) sin(2). The steps of a
+/// quarter of a degree leave a = 0 for azimuths of whole steps and a = 0.125 for those between,
+/// which multiples of 7.125 are in turn. R_G is that of theta, to rounding, and the bound holds the
+/// difference.
 TEST(GlareRating, OfAnEyeIsTheWorstOfAllDirections) {
-  const double exact =
-      glare_rating(veiling_luminance({{at_angle(12.0), 2.0}}, Vector3d::UnitX()), 0.5);
-  for (double azimuth = 0.0; azimuth < 360.0; azimuth += 7.0) {
-    const Vector3d towards(std::cos(10.0 * degree) * std::cos(azimuth * degree),
-                           std::cos(10.0 * degree) * std::sin(azimuth * degree),
-                           std::sin(10.0 * degree));
-    const double rated = greatest_glare_rating({{towards, 2.0}}, 0.5, Vector3d::UnitZ());
-    EXPECT_LE(rated, exact + 1e-9);
-    EXPECT_GT(rated, exact - 0.45);
+  const auto rated_at = [](double high, double off) {
+    const double theta =
+        std::acos(std::cos(high * degree) * std::cos(2.0 * degree) * std::cos(off * degree) -
+                  std::sin(high * degree) * std::sin(2.0 * degree)) /
+        degree;
+    return glare_rating(veiling_luminance({{at_angle(theta), 2.0}}, Vector3d::UnitX()), 0.5);
+  };
+  for (const double high : {0.0, 10.0, 50.0}) {
+    EXPECT_LT(rated_at(high, 0.0), rated_at(high, 0.125) + glare_rating_step_within);
+    for (int i = 0; i < 50; ++i) {
+      const double azimuth = 7.125 * i;
+      const Vector3d towards(std::cos(high * degree) * std::cos(azimuth * degree),
+                             std::cos(high * degree) * std::sin(azimuth * degree),
+                             std::sin(high * degree));
+      EXPECT_NEAR(greatest_glare_rating({{towards, 2.0}}, 0.5, Vector3d::UnitZ()),
+                  rated_at(high, i % 2 == 0 ? 0.0 : 0.125), 1e-9)
+          << high << " " << azimuth;
+    }
   }
 }
 

@@ -73,38 +73,63 @@ Eigen::Array3d xyz_of(const Bands& bands, const Spectrum& values) {
 
 /// Dome and sun have the chromaticities of their temperatures, and the lux that the table states.
 /// The table of daylight and colour matching over bands of 5 nm leave 2e-4; floats 1e-6.
-TEST_F(NativeSky, DaylightHasTheHueOfItsTemperature) {
+TEST_F(NativeSky, DaylightHasTheChromaticityOfItsTemperature) {
   const Scene scene = read(wavelengths +
                            "[sky]\nkind = 'cie-clear'\nilluminance = 10000\ncct = 12000\n"
                            "[sky.sun]\naltitude = 40\nazimuth = 90\nilluminance = 50000\n"
                            "spectrum = 'D55'\n");
   EXPECT_NEAR(lux(scene), 10000.0, 2e-6 * 10000.0);
   EXPECT_NEAR(luminous(scene.bands, scene.sky->sun->irradiance), 50000.0, 2e-6 * 50000.0);
-  const auto expect_hue = [&](const Spectrum& values, double kelvin) {
+  const auto expect_chromaticity = [&](const Spectrum& values, double kelvin) {
     const Eigen::Array3d xyz = xyz_of(scene.bands, values);
     const Eigen::Vector2d xy = daylight_chromaticity(kelvin);
     EXPECT_NEAR(xyz[0] / xyz.sum(), xy.x(), 2e-4) << kelvin;
     EXPECT_NEAR(xyz[1] / xyz.sum(), xy.y(), 2e-4) << kelvin;
   };
-  expect_hue(scene.sky->scale, 12000.0);
-  expect_hue(scene.sky->sun->irradiance, 5503.0);
+  expect_chromaticity(scene.sky->scale, 12000.0);
+  expect_chromaticity(scene.sky->sun->irradiance, 5503.0);
 }
 
-/// The white of RGB bands is D65, (0.3127, 0.3290), four digits: half a unit makes up to 5e-4 of
-/// red, green and blue, and the table of daylight 4e-4. Cooler daylight is redder.
+// Red and blue over green of a chromaticity: sRGB of IEC 61966-2-1, whose matrix has four digits.
+Eigen::Array2d red_and_blue(const Eigen::Vector2d& xy) {
+  const Eigen::Vector3d xyz(xy.x() / xy.y(), 1.0, (1.0 - xy.x() - xy.y()) / xy.y());
+  Eigen::Matrix3d matrix;
+  matrix << 3.2406, -1.5372, -0.4986, -0.9689, 1.8758, 0.0415, 0.0557, -0.2040, 1.0570;
+  const Eigen::Vector3d rgb = matrix * xyz;
+  return {rgb[0] / rgb[1], rgb[2] / rgb[1]};
+}
+
+/// Red, green and blue are those of the chromaticity of the temperature. The table of daylight and
+/// the narrow bands leave 2e-4 of x and y, as above, of which the test takes the worst corner. Half
+/// a unit of the matrix's last digit times X + Y + Z, 3.9 at most for Y = 1, is 2e-4 of red, green
+/// or blue. Green lies near 1 and blue is 1.82 at most, so a ratio is off by (1 + 1.82) 2e-4, 6e-4,
+/// at most. Daylight of a lower temperature is redder.
 TEST_F(NativeSky, DaylightOfRedGreenAndBlueHasTheSpectrumsChromaticity) {
-  const auto scale = [&](const std::string& hue) {
-    const Scene scene = read("[sky]\nkind = 'uniform'\nilluminance = 1000\n" + hue);
+  const auto scale = [&](const std::string& spectrum) {
+    const Scene scene = read("[sky]\nkind = 'uniform'\nilluminance = 1000\n" + spectrum);
     EXPECT_NEAR(lux(scene), 1000.0, 2e-6 * 1000.0);
     return Spectrum(scene.sky->scale / scene.sky->scale[1]);
   };
-  const Spectrum white = scale("spectrum = 'D65'\n");
-  EXPECT_LT((white - 1.0f).abs().maxCoeff(), 2e-3f);
-  const Spectrum warm = scale("cct = 4500\n"), cold = scale("cct = 20000\n");
-  EXPECT_GT(warm[0], 1.1f);
-  EXPECT_LT(warm[2], 0.9f);
-  EXPECT_LT(cold[0], 0.9f);
-  EXPECT_GT(cold[2], 1.1f);
+  const auto expect_ratios = [&](const std::string& statement, double kelvin) {
+    const Spectrum found = scale(statement);
+    const Eigen::Vector2d xy = daylight_chromaticity(kelvin);
+    const Eigen::Array2d expected = red_and_blue(xy);
+    Eigen::Array2d within = Eigen::Array2d::Constant(6e-4);
+    constexpr double off = 2e-4;
+    for (const auto& corner : {Eigen::Vector2d(off, off), Eigen::Vector2d(off, -off)}) {
+      for (const double sign : {1.0, -1.0}) {
+        within = within.max(6e-4 + (red_and_blue(xy + sign * corner) - expected).abs());
+      }
+    }
+    EXPECT_NEAR(found[0], expected[0], within[0]) << statement;
+    EXPECT_NEAR(found[2], expected[1], within[1]) << statement;
+    return expected;
+  };
+  expect_ratios("spectrum = 'D65'\n", 6500.0 * 1.4388 / 1.4380);
+  const Eigen::Array2d warm = expect_ratios("cct = 4500\n", 4500.0);
+  const Eigen::Array2d cold = expect_ratios("cct = 20000\n", 20000.0);
+  EXPECT_GT(warm[0], cold[0]);
+  EXPECT_LT(warm[1], cold[1]);
 }
 
 /// A file of two samples with the same power everywhere is the equal-energy spectrum: every band
@@ -115,8 +140,8 @@ TEST_F(NativeSky, DaylightTakesMeasuredSpectra) {
       read(wavelengths + "[sky]\nkind = 'uniform'\nilluminance = 1000\nspectrum = 'even.csv'\n");
   EXPECT_LT(scene.sky->scale.maxCoeff() / scene.sky->scale.minCoeff(), 1.000001f);
   folder_.write("short.csv", "wavelength_nm,power\n450,2\n600,2\n");
-  const auto refused = [&](const std::string& bands, const std::string& hue) {
-    return refusal(bands + "[sky]\nkind = 'uniform'\nilluminance = 1000\n" + hue);
+  const auto refused = [&](const std::string& bands, const std::string& spectrum) {
+    return refusal(bands + "[sky]\nkind = 'uniform'\nilluminance = 1000\n" + spectrum);
   };
   EXPECT_TRUE(says(refused(wavelengths, "spectrum = 'short.csv'\n"), "covers 450-600 nm"));
   EXPECT_TRUE(says(refused("", "spectrum = 'short.csv'\n"), "of visible light"));
@@ -129,6 +154,25 @@ TEST_F(NativeSky, DaylightTakesMeasuredSpectra) {
   EXPECT_TRUE(says(refusal("[sky]\nkind = 'turbidity'\nturbidity = 3\ncct = 5000\n"
                            "[sky.sun]\naltitude = 30\nazimuth = 0\n"),
                    "no meaning for a sky of the kind 'turbidity'"));
+  // A narrow line lies outside of the triangle of red, green and blue.
+  folder_.write("line.csv", "wavelength_nm,power\n300,0\n509,0\n510,1\n511,0\n900,0\n");
+  EXPECT_TRUE(says(refused("", "spectrum = 'line.csv'\n"), "no mixture of red, green and blue"));
+}
+
+/// A colour that nothing uses is a mistake of the writer.
+TEST_F(NativeSky, RefusesColoursWithoutABrightness) {
+  const std::string sun = "[sky.sun]\naltitude = 30\nazimuth = 0\n";
+  for (const char* colour : {"color = [1, 2, 3]\n", "cct = 5500\n", "spectrum = 'D55'\n"}) {
+    EXPECT_TRUE(says(refusal("[sky]\nkind = 'turbidity'\nturbidity = 3\n" + sun + colour),
+                     "no meaning without a brightness"));
+    EXPECT_TRUE(
+        says(refusal("[sky]\nkind = 'none'\n" + std::string(colour) + sun + "illuminance = 1000\n"),
+             "no meaning for a sky of the kind 'none'"));
+    EXPECT_TRUE(says(refusal("[sky]\nkind = 'none'\n" + sun + "irradiance = 8\n" + colour),
+                     "no meaning beside 'irradiance'"));
+    EXPECT_TRUE(says(refusal("[sky]\nkind = 'uniform'\nradiance = 1\n" + std::string(colour)),
+                     "no meaning beside 'radiance'"));
+  }
 }
 
 TEST_F(NativeSky, BrightnessOfTheZenithAndRadianceAreTaken) {
