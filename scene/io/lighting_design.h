@@ -49,7 +49,7 @@ struct TelevisionLimits {
   double gradient = 0.0;    ///< greatest change between neighbouring points, percent
 };
 
-/// What an area for sports has beside its grid.
+/// An area's sport, and the cameras that look at it (keys of an [[areas]] table).
 struct SportUse {
   std::string sport{};                 ///< key of a sport
   int number = 1;                      ///< of its class: 1, 2 or 3

@@ -30,8 +30,8 @@ inline constexpr double heights_beyond_point = 12.0;
 inline constexpr double darkest_road = 0.01, lightest_road = 0.9;
 
 /// r in 1/sr, linear in tan(gamma) and in beta between the entries; 0 beyond the last tan(gamma).
-/// `tan_gamma` >= 0, `beta` in [0,180] degrees. Editions of CIE 140 and EN 13201-3 may ask for
-/// another interpolation.
+/// `tan_gamma` >= 0, `beta` in [0,180] degrees. Whether CIE 140 and EN 13201-3 ask for another
+/// interpolation was not checked.
 double reduced_luminance_coefficient(const RTable& table, double tan_gamma, double beta);
 
 /// Q_0 = int q dw / int dw, 1/sr, over the luminaires of a road: for a height of 1, from 4 before

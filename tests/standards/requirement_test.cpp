@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <vector>
 
 namespace lightwell::requirement_test {
 namespace {
@@ -66,6 +67,25 @@ TEST(Requirement, StandsWithOthersAsTheWorstOfThem) {
   EXPECT_EQ(verdict_of(std::array{met, advice}), Verdict::met);
   EXPECT_EQ(verdict_of(std::array{met, close}), Verdict::too_close);
   EXPECT_EQ(verdict_of(std::array{close, missed, met}), Verdict::missed);
+}
+
+/// R_a 81 +- 0.1 is surely above 80, and 81.5 +- 3 may lie below. A luminaire whose R_a is not
+/// defined leaves the requirement open, and is named before all others.
+TEST(Requirement, OfColourRenderingIsThatOfTheLuminaireWhichMayHaveTheLeast) {
+  const auto worst_of = [](const std::vector<NamedRating>& luminaires) {
+    std::vector<Requirement> requirements;
+    add_colour_rendering(80.0, luminaires, "hall", requirements);
+    return requirements.at(0);
+  };
+  const NamedRating sure{"sure", 81.0, 0.1}, vague{"vague", 81.5, 3.0};
+  EXPECT_EQ(verdict_of(worst_of({sure})), Verdict::met);
+  EXPECT_EQ(worst_of({sure, vague}).place, "vague");
+  EXPECT_EQ(verdict_of(worst_of({sure, vague})), Verdict::too_close);
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const NamedRating undefined{"green", nan, nan}, unbounded{"coarse", 95.0, nan};
+  EXPECT_EQ(worst_of({sure, undefined, vague}).place, "green");
+  EXPECT_EQ(verdict_of(worst_of({sure, undefined, vague})), Verdict::too_close);
+  EXPECT_EQ(worst_of({sure, unbounded}).place, "coarse");
 }
 
 TEST(Requirement, OfOneAreaAreToldTogether) {

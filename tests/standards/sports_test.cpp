@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "scene/errors.h"
@@ -53,7 +54,10 @@ TEST(SportGrid, KeepsTheOutlineAndTheHeight) {
 
 /// Neighbours along and across: 100, 80, 50 beside each other, and 60 below the first: the greatest
 /// change is 40 % from 100 to 60, greater than 37.5 % from 80 to 50. 50 and 60 end two rows and are
-/// no neighbours. Bounds of 1 lx each make 2 of 100.
+/// no neighbours. Bounds of 1 lx each make 2 of 100 there, and 2 of 80 from 80 to 50: no change
+/// lies above 40 + 2 = 42 %. Bounds of 3 lx of the points of 80 and 50 make 6 of 80, so the change
+/// there may be 37.5 + 7.5 = 45 %, 5 above the greatest. An unknown bound leaves the gradient
+/// unknown.
 TEST(Sports, GradientIsTheGreatestChangeBetweenNeighbours) {
   LuxGrid grid = level_grid(3.0, 2.0, 3, 2);
   grid.cell.resize(4);
@@ -62,6 +66,11 @@ TEST(Sports, GradientIsTheGreatestChangeBetweenNeighbours) {
   const Gradient gradient = greatest_gradient(grid, field);
   EXPECT_NEAR(gradient.percent, 40.0, 1e-12);
   EXPECT_NEAR(gradient.within, 2.0, 1e-12);
+  field.lux_within = Eigen::Array4d(0.0, 3.0, 3.0, 0.0);
+  EXPECT_NEAR(greatest_gradient(grid, field).percent, 40.0, 1e-12);
+  EXPECT_NEAR(greatest_gradient(grid, field).within, 5.0, 1e-12);
+  field.lux_within[2] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(std::isnan(greatest_gradient(grid, field).within));
 }
 
 std::vector<Figure> figures_of(const std::vector<Requirement>& requirements) {
@@ -73,8 +82,9 @@ std::vector<Figure> figures_of(const std::vector<Requirement>& requirements) {
 /// Football of class II: 200 lx, U_0 0.6, R_G 50, R_a 60; and limits towards a camera.
 TEST(Sports, AreHeldToTheLimitsOfTheirClass) {
   const LuxGrid grid = level_grid(2.0, 1.0, 2, 1);
-  const LuxField pitch = field_of(Eigen::Array2d(150, 270)),
-                 upright = field_of(Eigen::Array2d(60, 100));
+  const LuxField pitch = field_of(Eigen::Array2d(150, 270));
+  LuxField upright = field_of(Eigen::Array2d(60, 100));
+  upright.lux_within.setZero();
   const SportPlace place{.name = "pitch",
                          .pitch = {"pitch", &pitch},
                          .cameras = {{{"main", &upright}, &grid}},

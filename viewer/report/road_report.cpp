@@ -175,8 +175,8 @@ DocumentSection road_basis(const RoadReport& report) {
                 "nothing shades and nothing reflects but the road.",
                 "Reduced luminance coefficients are linear in tan(γ) and β between the entries of "
                 "the table of the surface (CIE 144:2001), intensities in C and γ between those of "
-                "the photometric file. Some editions of the calculation may ask for quadratic "
-                "interpolation.",
+                "the photometric file. Whether EN 13201-3 asks for another interpolation was not "
+                "checked.",
                 "Luminance: luminaires from 5 heights before a point to 12 beyond it. Illuminance: "
                 "luminaires within 5 heights.",
                 "f<sub>TI</sub> and the luminance in it are those of new luminaires, for drivers "

@@ -117,7 +117,7 @@ EmergencyArea read_emergency(const TomlValue& value) {
                                 : EmergencyArea::high_risk_task_area;
 }
 
-// Reads what an area has beside its grid, for an activity.
+// Reads the keys of an area for an activity, but for its grid.
 void read_activity(const TomlTable& table, const Scene& scene,
                    const std::vector<CalculationGrid>& grids, DesignArea& area) {
   area.activity = table.require("activity").name();
@@ -148,7 +148,7 @@ TelevisionLimits read_television(const TomlValue& value) {
           .gradient = gradient ? gradient->number_within(0.0, percent) : 0.0};
 }
 
-// Reads what an area has beside its grid, for a sport.
+// Reads the keys of an area for a sport, but for its grid.
 void read_sport(const TomlTable& table, const Scene& scene, DesignArea& area) {
   SportUse use{.sport = table.require("sport").name()};
   const std::string number = table.require("class").one_of({"I", "II", "III"});

@@ -20,7 +20,8 @@ struct Reference {
   std::array<double, 2> lux, edges;
 };
 
-/// The references come from a computation of its own, in numpy, with 8 digits printed.
+/// The references come from road_reference.py beside this file, which shares no code with the
+/// program and prints 8 digits.
 void expect_near(const RoadFigures& figures, const Reference& reference) {
   const auto near = [](double value, double wanted) { EXPECT_NEAR(value, wanted, 1e-7 * wanted); };
   for (std::size_t i = 0; i < 2; ++i) {
@@ -54,6 +55,69 @@ TEST(RoadFigures, AreThoseOfAnIndependentComputation) {
                                      {0.98351278, 0.61758427, 0.81384742, 6.0593942}}},
                                    {14.501241, 9.3421403},
                                    {0.46890816, 0.46890816}});
+}
+
+/// A carriageway beside a median of 3 m, and one of more than 5 cd/m^2, where f_TI has another
+/// formula, with tilted luminaires on the left.
+TEST(RoadFigures, OfMediansAndBrightRoadsAreThoseOfAnIndependentComputation) {
+  Road road = read_road(street);
+  road.strips.clear();
+  road.oncoming = 0;
+  road.median = 3.0;
+  road.surface = standard_r_table("C2");
+  road.luminaires.arrangement = RoadArrangement::median;
+  road.luminaires.spacing = 32.0;
+  road.luminaires.height = 10.0;
+  expect_near(road_figures(road), {{{{0.82451881, 0.6221496, 0.91316066, 4.7514539},
+                                     {0.77758369, 0.609154, 0.77866333, 5.9410296}}},
+                                   {11.636889, 7.0144213},
+                                   {0.6142473, 0.70362905}});
+  road = read_road(street);
+  road.surface = standard_r_table("R1");
+  road.luminaires.arrangement = RoadArrangement::single_left;
+  road.luminaires.tilt = 5.0;
+  road.luminaires.flux_factor = 10.0;
+  expect_near(road_figures(road), {{{{12.882186, 0.64582239, 0.68496525, 5.6984249},
+                                     {12.741143, 0.65742473, 0.76659388, 7.4709757}}},
+                                   {139.65777, 64.119733},
+                                   {0.5322931, 0.16748664}});
+}
+
+/// D_P = P / sum(E A) and D_E = P t / (1000 A) over the areas that have a class: of 40 m by 7 m,
+/// and of a strip of 2 m once a class makes it an area to be lit. Of two carriageways everything
+/// counts twice but a strip in the median. Rounding of a few products is below 1e-12.
+TEST(RoadFigures, OfPowerCountTheAreasToBeLit) {
+  Road road = road_of_even_lamps();
+  road.classes = {*find_road_class("C3")};
+  road.luminaires.watts = 50.0;
+  road.hours = 4000.0;
+  road.strips = {{.name = "verge", .is_left = true, .width = 2.0}};
+  const auto expect_power = [&](double watts, double carriageways, double strips) {
+    const RoadFigures figures = road_figures(road);
+    const double area = carriageways * 280.0, strip = strips * 80.0;
+    const double flux =
+        area * figures.illuminance[0].field.mean + strip * figures.illuminance[1].field.mean;
+    EXPECT_NEAR(*figures.power_density, watts / flux, 1e-12);
+    EXPECT_NEAR(*figures.energy, watts * 4.0 / (area + strip), 1e-12);
+  };
+  expect_power(50.0, 1.0, 0.0);
+  road.strips.front().classes = {*find_road_class("P5")};
+  expect_power(50.0, 1.0, 1.0);
+  road.luminaires.arrangement = RoadArrangement::median;
+  road.median = 3.0;
+  expect_power(100.0, 2.0, 1.0);
+  road.strips.front().is_left = false;
+  expect_power(100.0, 2.0, 2.0);
+}
+
+/// Half a metre apart up to 400 points: a spacing of 40 m has 80 columns, and one of 500 m 400; 7 m
+/// and a lane of 3.5 m on either side have 28 rows.
+TEST(RoadFigures, AreMappedByAFewThousandPoints) {
+  Road road = road_of_even_lamps();
+  EXPECT_EQ(illuminance_map(road).grid.columns, 80);
+  EXPECT_EQ(illuminance_map(road).grid.rows, 28);
+  road.luminaires.spacing = 500.0;
+  EXPECT_EQ(illuminance_map(road).grid.columns, 400);
 }
 
 /// The same requirements with the same figures, in the order of their areas and symbols; `swaps`:
@@ -152,8 +216,8 @@ std::vector<Figure> figures_of(const Road& road) {
   return figures;
 }
 
-/// Which figures the classes of EN 13201-2 limit. An edge ratio is asked for where no strip with a
-/// class of its own begins, and not at a median.
+/// The figures that the classes of EN 13201-2 limit. An edge ratio is asked for at edges where no
+/// strip with a class of its own begins, and not at a median.
 TEST(RoadFigures, AreHeldToTheLimitsOfTheClasses) {
   Road road = road_of_even_lamps();
   road.classes = {*find_road_class("M3")};
@@ -192,6 +256,21 @@ TEST(RoadSpacing, IsTheGreatestThatMeetsTheClasses) {
   road.classes = {*find_road_class("M1")};
   road.luminaires.flux_factor *= 0.01;
   EXPECT_TRUE(spacings_that_meet(road).empty());
+}
+
+/// A mean luminance of almost nothing is met at any spacing, so the greatest spacing is the last
+/// one that is tried: 17 heights of 2 m, and twice that of staggered rows.
+TEST(RoadSpacing, OfStaggeredRowsIsTriedToTwiceTheDistance) {
+  Road road = road_of_even_lamps();
+  road.luminaires.height = 2.0;
+  road.luminaires.flux_factor = 1e6;
+  road.classes = {{.key = "of luminance", .luminance = 1e-6}};
+  const auto greatest = [&](RoadArrangement arrangement) {
+    road.luminaires.arrangement = arrangement;
+    return spacings_that_meet(road).back().greatest;
+  };
+  EXPECT_EQ(greatest(RoadArrangement::opposite), 34.0);
+  EXPECT_EQ(greatest(RoadArrangement::staggered), 68.0);
 }
 
 }  // namespace

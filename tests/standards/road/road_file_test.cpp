@@ -88,6 +88,34 @@ TEST_F(RoadFile, IsRefusedWithASentence) {
   expect("side = \"right\"", "side = \"right\"\nname = \"carriageway\"", "taken");
   expect("[[strips]]", "[strips]", "[[strips]]");
   expect("lanes = 2", "lanes = 2\ncolour = 1", "colour");
+  expect("M3", "P7", "no limit, so there is nothing to hold the road to");
+  expect("class = \"M3\"", "class = \"C3\"\nwet_surface = \"R4\"", "no M class");
+  expect("lanes = 2", "lanes = 2\nq0 = 1.0", "q0");
+}
+
+/// Strips may touch each other and fill the median, and no more.
+TEST_F(RoadFile, RefusesStripsThatOverlap) {
+  const auto second = [](const std::string& side, const std::string& gap) {
+    return "[[strips]]\nname = \"path\"\nside = \"" + side + "\"\nwidth = 1\ngap = " + gap +
+           "\n[[strips]]";
+  };
+  expect(
+      "[[strips]]", second("right", "1.5"),
+      "'strip 2' reaches to 2 m from the carriageway, and 'path' begins at 1.5 m; make its 'gap' "
+      "2 or more");
+  EXPECT_EQ(refusal("[[strips]]", second("right", "2")), "");
+  EXPECT_EQ(refusal("[[strips]]", second("left", "0")), "");
+  const std::string median = "median = 3\nlanes = 2";
+  const auto with_median = [&](const std::string& strips) {
+    std::string text = plain;
+    text.replace(text.find("lanes = 2"), 9, median);
+    text.replace(text.find("spacing"), 7, "arrangement = \"median\"\nspacing");
+    return message_of<InputError>([&] { read_road(written(text, "[[strips]]", strips)); });
+  };
+  EXPECT_EQ(with_median(second("left", "2")), "");
+  EXPECT_TRUE(says(with_median(second("left", "2.5")),
+                   "reach over the median: 'path' ends 3.5 m from the carriageway"));
+  EXPECT_EQ(with_median(second("right", "2.5")), "");
 }
 
 }  // namespace

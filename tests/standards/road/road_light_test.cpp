@@ -70,6 +70,30 @@ TEST(RoadLight, VeilsAsTheFormulaDoes) {
   EXPECT_EQ(light.veiling_luminance({-501.0, 0.0, 1.5}, 1.0), 0.0);
 }
 
+/// Near the line of sight: a lamp 4 m high, 2.5 m above an eye 400 m before it, is atan(2.5 / 400)
+/// and 1 degree off, 1.3580940 degrees. E = 1000 cos(theta) / 160006.25 = 6.2480003e-3 lx, and L_v
+/// = (10 / theta^3 + 5.0917018 / theta^2) E = 0.042191378 cd/m^2. Seven digits stand here. Lamps 1
+/// m below the eye, 50 m ahead, are 0.146 degrees off, and those 55 m ahead 0.042, where none
+/// counts.
+TEST(RoadLight, VeilsNearTheLineOfSight) {
+  Road road = road_of_even_lamps();
+  road.luminaires.height = 4.0;
+  const double veil = one_lamp(road).veiling_luminance({-400.0, 0.0, 1.5}, 1.0);
+  EXPECT_NEAR(veil, 0.042191378, 1e-7 * veil);
+  road.luminaires.height = 0.5;
+  EXPECT_GT(one_lamp(road).veiling_luminance({-50.0, 0.0, 1.5}, 1.0), 0.0);
+  EXPECT_EQ(one_lamp(road).veiling_luminance({-55.0, 0.0, 1.5}, 1.0), 0.0);
+}
+
+/// A lamp at the height of the eye, 10 m ahead and y to the side, is theta off, with cos theta =
+/// cos(1) 10 / sqrt(100 + y^2): 59.96 degrees for y = 17.3 m, and 60.04 for 17.36 m.
+TEST(RoadLight, VeilsUpToSixtyDegrees) {
+  Road road = road_of_even_lamps();
+  road.luminaires.height = 1.5;
+  EXPECT_GT(one_lamp(road).veiling_luminance({-10.0, 17.3, 1.5}, 1.0), 0.0);
+  EXPECT_EQ(one_lamp(road).veiling_luminance({-10.0, 17.36, 1.5}, 1.0), 0.0);
+}
+
 /// A luminaire with light in the plane C90 alone, at 45 degrees, lights the point across the road;
 /// turned about its street side by 90 degrees it lights along; tilted by 45 degrees it lights
 /// straight ahead, above the road.
