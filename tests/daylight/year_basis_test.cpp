@@ -80,11 +80,13 @@ TEST_F(YearBasisOf, AllTermsAreTheLightOfSensorsInTheSamePlaces) {
 // The error said is that of all vertices and hours: root mean square, relative to the vertex and to
 // the hour. Squares of vertices' errors vary by about their mean, so that the mean of the 256
 // vertices of the check varies by a sixteenth, and its root by a thirtieth; four such are 13 %.
-// Vertices are drawn by area, and all of this room's have nearly the same.
+// Vertices are drawn by area, and all of this room's have nearly the same. A tenth of them at most
+// are samples, of which less is left out: the mean of the squares is lower by a tenth at most.
 TEST_F(YearBasisOf, ErrorIsThatOfAllVertices) {
   DaylightModel model(test::room_with_window(test::diffuse(Bands(rgb_bands()), 0.5f)),
                       Vector3d::UnitZ(), Vector3d::UnitY(), coarse());
-  const YearBasis basis = find_year_basis(model, hours, ground, {.error = 0.05, .rays = 256});
+  const YearBasis basis =
+      find_year_basis(model, hours, ground, {.error = 0.05, .samples = 64, .rays = 256});
   EXPECT_LE(basis.error, 0.05);
   EXPECT_LT(basis.term_count(), 24);
   const Eigen::ArrayXXf sensors = light_of_sensors(model, hours);
@@ -101,7 +103,9 @@ TEST_F(YearBasisOf, ErrorIsThatOfAllVertices) {
   relative.rowwise() /= of_hours;
   const Eigen::ArrayXXf errors = (left_out.colwise() / lit).rowwise() / of_hours;
   const double found = std::sqrt(double{errors.square().mean() / relative.square().mean()});
-  EXPECT_NEAR(found, basis.error, 0.13 * basis.error);
+  EXPECT_GE(model.mesh().vertex_count(), 10 * 64);
+  EXPECT_LT(found, 1.13 * basis.error);
+  EXPECT_GT(found, (0.87 - 0.05) * basis.error);
 }
 
 TEST_F(YearBasisOf, RefusesWhatAPageCannotShow) {

@@ -323,7 +323,8 @@ TEST(ReadHoneybee, RoomsHaveTheirOwnFacesAndShareOpenings) {
     EXPECT_NEAR(point.x(), 4.02, rounding);
   }
   of["units"] = "Feet";
-  for (const Eigen::Vector3d& point : mesh_of(read(of), "second west").vertices) {
+  const Scene in_feet = read(of);
+  for (const Eigen::Vector3d& point : mesh_of(in_feet, "second west").vertices) {
     EXPECT_NEAR(point.x(), 0.3048 * 4.02, rounding);
   }
 }
