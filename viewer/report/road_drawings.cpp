@@ -138,7 +138,7 @@ std::string road_section_svg(const Road& road) {
   }
   const double top = road.luminaires.height + border;
   const SectionPaper paper{high, std::min(most_across / (high - low), most_up / top)};
-  const double width = paper.mm * (high - low), below = 22.0;  // mm
+  const double width = paper.mm * (high - low), below = 28.0;  // mm
   std::string svg = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"plan\" viewBox=\"0 {:.2f} {:.2f} {:.2f}\" "
       "width=\"{:.2f}mm\" role=\"img\">\n<path class=\"edge\" d=\"M0 0H{:.2f}\"/>\n",
@@ -163,7 +163,9 @@ std::string road_section_svg(const Road& road) {
   }
   for (const RoadStrip& strip : road.strips) {
     const double right = right_edge(road, strip);
-    add_measure(paper, right, right + strip.width, 12.0,
+    // The measure of the median is in the way of its strips.
+    const double down = road.has_median_at(strip.is_left) ? 19.0 : 12.0;
+    add_measure(paper, right, right + strip.width, down,
                 fmt::format("{} {:g} m", marked(strip.name), strip.width), svg);
   }
   add_masts(road, paper, svg);
