@@ -19,7 +19,7 @@ int daylight_of_instant(const DaylightArguments& arguments, const DaylightInputs
 struct WalkedYear {
   const DaylightModel& model;
   std::span<const SkyHour> hours{};
-  /// Of the first room, for the view that a page of a scene without cameras begins with: from the
+  /// Sensors of the first room. A page of a scene without cameras begins with the view from the
   /// sensor with the least daylight to that with the most, at the height of eyes over the floor.
   std::span<const Probe> sensors{};
   Eigen::ArrayXf daylight_factor{};

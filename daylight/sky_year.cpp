@@ -15,8 +15,8 @@ namespace {
 
 using std::numbers::pi;
 
-// What all hours have in common: points of each patch of the dome by the midpoint rule, and the
-// irradiance that each gives open level ground per radiance, sr.
+// Points of each patch of the dome by the midpoint rule, and the irradiance that each patch gives
+// open level ground per radiance, sr: the same in all hours.
 struct DomeSamples {
   static constexpr int steps = 3, count = steps * steps;
 

@@ -138,15 +138,21 @@ std::vector<std::size_t> JsonObject::indices(const char* key) const {
   return array ? indices_of(key, *array) : std::vector<std::size_t>();
 }
 
-std::vector<std::vector<std::size_t>> JsonObject::index_lists(const char* key) const {
+// The lists of an array of arrays, each read by `read`.
+template <class Read>
+auto JsonObject::lists_of(const char* key, const Read& read) const {
+  std::vector<decltype(read(*value_))> lists;
   const nlohmann::json* array = find_array(key);
-  std::vector<std::vector<std::size_t>> lists;
   if (!array) return lists;
   for (const auto& list : *array) {
     if (!list.is_array()) fail(fmt::format("'{}' must be an array of arrays", key));
-    lists.push_back(indices_of(key, list));
+    lists.push_back(read(list));
   }
   return lists;
+}
+
+std::vector<std::vector<std::size_t>> JsonObject::index_lists(const char* key) const {
+  return lists_of(key, [&](const nlohmann::json& list) { return indices_of(key, list); });
 }
 
 std::vector<std::string> JsonObject::strings(const char* key) const {
@@ -185,14 +191,7 @@ std::vector<Eigen::Vector3d> JsonObject::points(const char* key) const {
 }
 
 std::vector<std::vector<Eigen::Vector3d>> JsonObject::point_lists(const char* key) const {
-  const nlohmann::json* array = find_array(key);
-  std::vector<std::vector<Eigen::Vector3d>> lists;
-  if (!array) return lists;
-  for (const auto& list : *array) {
-    if (!list.is_array()) fail(fmt::format("'{}' must be an array of lists of points", key));
-    lists.push_back(points_of(key, list));
-  }
-  return lists;
+  return lists_of(key, [&](const nlohmann::json& list) { return points_of(key, list); });
 }
 
 std::optional<JsonObject> JsonObject::object(const char* key) const {

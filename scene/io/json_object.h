@@ -58,6 +58,8 @@ class JsonObject {
   std::string sentence(std::string_view problem) const;
   const nlohmann::json* find(const char* key) const;
   const nlohmann::json* find_array(const char* key) const;
+  template <class Read>
+  auto lists_of(const char* key, const Read& read) const;
   std::vector<std::size_t> indices_of(const char* key, const nlohmann::json& array) const;
   std::vector<Eigen::Vector3d> points_of(const char* key, const nlohmann::json& array) const;
   const std::filesystem::path* file_;

@@ -17,7 +17,7 @@ struct RoadField {
   LuxField field{};    ///< with maintenance; lx, or cd/m^2 of luminance
 };
 
-/// What the driver of a lane sees. The figures are those of EN 13201-3.
+/// Figures of EN 13201-3 for the driver of a lane.
 struct RoadObserver {
   int lane = 1;  ///< from the right
   bool is_oncoming = false;

@@ -57,7 +57,7 @@ Scene red_room() {
 
 }  // namespace
 
-// As many terms as there are hours leave out nothing: the sum is the light of sensors in the same
+// Terms as many as the hours leave out nothing: the sum is the light of sensors in the same
 // places, by the same rays. What is left is the equations' tolerance, 1e-6 of the brightest patch,
 // of which the sensors' columns have one each for 145 patches and the sun, and the rounding of
 // floats in sums of up to 36 terms, 36 x 6e-8 of the vertex' brightest hour: 1e-4 of that is more
@@ -98,7 +98,7 @@ TEST_F(YearBasisOf, ErrorIsThatOfAllVertices) {
     left_out.col(static_cast<Eigen::Index>(h)) -=
         illuminance(model, light_of_hour(basis, static_cast<int>(h), 1));
   }
-  // Of each vertex, but a quarter of the median of all at least.
+  // The brightness of each vertex, but a quarter of the median of all at least.
   const auto at_least = [](const Eigen::ArrayXf& brightness) {
     Eigen::ArrayXf sorted = brightness;
     std::ranges::sort(sorted);

@@ -132,7 +132,8 @@ struct BakedModel {
   std::vector<std::uint8_t> black_behind{};  ///< 1: the face's other side was left out
 
   std::optional<BakedSky> sky{};
-  /// For pages; see bake_year(). The light above is then the mean of the year's hours with light.
+  /// Data of pages of a year; see bake_year(). The light above is then the mean of the year's hours
+  /// with light.
   std::shared_ptr<const BakedYear> year{};
   std::vector<BakedCamera> cameras{};  ///< the scene's, or one of find_start; never empty
   bool cameras_are_given = false;      ///< `cameras` are the scene's

@@ -12,7 +12,7 @@
 namespace lightwell {
 namespace {
 
-// In the order of Figure.
+// Names in the order of Figure.
 MarkedText marked_symbol(Figure figure) {
   constexpr std::array names = {"E<sub>m</sub>, lx",
                                 "E<sub>min</sub>, lx",

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
+#include <string_view>
 #include <utility>
 
 #include "scene/io/honeybee/honeybee_bsdf.h"
@@ -9,68 +12,45 @@
 namespace lightwell {
 namespace {
 
-// Where a modifier set has the modifier of a kind, and which one Honeybee uses without a set: a
-// grey plastic of this reflectance, or a glass of this transmissivity.
+// A kind's place in modifier sets, and its generic modifier, which Honeybee uses without a set.
 struct Slot {
   const char* table;
   const char* key;
-  const char* usual;
-  double value;
+  const char* generic;
+  double value;  // reflectance of a grey plastic, or transmissivity of glass
   bool is_glass = false;
 };
 
-// Transmissivities of Honeybee's windows of a visible transmittance of 0.64 and 0.88.
+// Windows that pass 0.64 and 0.88 along their normal, and their transmissivities.
+constexpr const char *outer_pane = "generic_exterior_window_vis_0.64",
+                     *inner_pane = "generic_interior_window_vis_0.88";
 constexpr double outer_glass = 0.6975761815384331, inner_glass = 0.9584154328610596;
 
-Slot slot_of(HoneybeeKind kind) {
-  const auto grey = [](const char* table, const char* key, const char* usual, double value) {
-    return Slot{table, key, usual, value};
-  };
-  const auto outer = [](const char* table, const char* key) {
-    return Slot{table, key, "generic_exterior_window_vis_0.64", outer_glass, true};
-  };
-  const auto inner = [](const char* table, const char* key) {
-    return Slot{table, key, "generic_interior_window_vis_0.88", inner_glass, true};
-  };
-  switch (kind) {
-    case HoneybeeKind::wall:
-      return grey("wall_set", "exterior_modifier", "generic_wall_0.50", 0.5);
-    case HoneybeeKind::inner_wall:
-      return grey("wall_set", "interior_modifier", "generic_wall_0.50", 0.5);
-    case HoneybeeKind::floor:
-      return grey("floor_set", "exterior_modifier", "generic_floor_0.20", 0.2);
-    case HoneybeeKind::inner_floor:
-      return grey("floor_set", "interior_modifier", "generic_floor_0.20", 0.2);
-    case HoneybeeKind::roof:
-      return grey("roof_ceiling_set", "exterior_modifier", "generic_ceiling_0.80", 0.8);
-    case HoneybeeKind::ceiling:
-      return grey("roof_ceiling_set", "interior_modifier", "generic_ceiling_0.80", 0.8);
-    case HoneybeeKind::window:
-      return outer("aperture_set", "window_modifier");
-    case HoneybeeKind::operable_window:
-      return outer("aperture_set", "operable_modifier");
-    case HoneybeeKind::skylight:
-      return outer("aperture_set", "skylight_modifier");
-    case HoneybeeKind::inner_window:
-      return inner("aperture_set", "interior_modifier");
-    case HoneybeeKind::door:
-      return grey("door_set", "exterior_modifier", "generic_opaque_door_0.50", 0.5);
-    case HoneybeeKind::inner_door:
-      return grey("door_set", "interior_modifier", "generic_opaque_door_0.50", 0.5);
-    case HoneybeeKind::overhead_door:
-      return grey("door_set", "overhead_modifier", "generic_opaque_door_0.50", 0.5);
-    case HoneybeeKind::glass_door:
-      return outer("door_set", "exterior_glass_modifier");
-    case HoneybeeKind::inner_glass_door:
-      return inner("door_set", "interior_glass_modifier");
-    case HoneybeeKind::outdoor_shade:
-      return grey("shade_set", "exterior_modifier", "generic_exterior_shade_0.35", 0.35);
-    case HoneybeeKind::indoor_shade:
-      return grey("shade_set", "interior_modifier", "generic_interior_shade_0.50", 0.5);
-    case HoneybeeKind::context:
-      break;
-  }
-  return grey("", "", "generic_context_0.20", 0.2);
+// Slots in the order of HoneybeeKind.
+constexpr auto slots = std::to_array<Slot>({
+    {"wall_set", "exterior_modifier", "generic_wall_0.50", 0.5},
+    {"wall_set", "interior_modifier", "generic_wall_0.50", 0.5},
+    {"floor_set", "exterior_modifier", "generic_floor_0.20", 0.2},
+    {"floor_set", "interior_modifier", "generic_floor_0.20", 0.2},
+    {"roof_ceiling_set", "exterior_modifier", "generic_ceiling_0.80", 0.8},
+    {"roof_ceiling_set", "interior_modifier", "generic_ceiling_0.80", 0.8},
+    {"aperture_set", "window_modifier", outer_pane, outer_glass, true},
+    {"aperture_set", "operable_modifier", outer_pane, outer_glass, true},
+    {"aperture_set", "skylight_modifier", outer_pane, outer_glass, true},
+    {"aperture_set", "interior_modifier", inner_pane, inner_glass, true},
+    {"door_set", "exterior_modifier", "generic_opaque_door_0.50", 0.5},
+    {"door_set", "interior_modifier", "generic_opaque_door_0.50", 0.5},
+    {"door_set", "overhead_modifier", "generic_opaque_door_0.50", 0.5},
+    {"door_set", "exterior_glass_modifier", outer_pane, outer_glass, true},
+    {"door_set", "interior_glass_modifier", inner_pane, inner_glass, true},
+    {"shade_set", "exterior_modifier", "generic_exterior_shade_0.35", 0.35},
+    {"shade_set", "interior_modifier", "generic_interior_shade_0.50", 0.5},
+    {"", "", "generic_context_0.20", 0.2},
+});
+static_assert(slots.size() == static_cast<std::size_t>(HoneybeeKind::context) + 1);
+
+const Slot& slot_of(HoneybeeKind kind) {
+  return slots[static_cast<std::size_t>(kind)];
 }
 
 // Names of the arguments of a modifier in RADIANCE's order, with Honeybee's values for those that a
@@ -169,28 +149,27 @@ void HoneybeeModifiers::define(const JsonObject& modifier) {
   primitives_.insert_or_assign(name, std::move(primitive));
 }
 
-// Defines the modifier that Honeybee itself has under a name.
-void HoneybeeModifiers::define_usual(const std::string& name) {
-  for (int k = 0; k <= static_cast<int>(HoneybeeKind::context); ++k) {
-    const Slot slot = slot_of(static_cast<HoneybeeKind>(k));
-    if (name != slot.usual) continue;
-    RadiancePrimitive primitive{.modifier = std::string(radiance_void),
-                                .type = slot.is_glass ? "glass" : "plastic",
-                                .name = name,
-                                .reals = {slot.value, slot.value, slot.value},
-                                .location = {.file = &file_, .line = 0}};
-    if (!slot.is_glass) primitive.reals.insert(primitive.reals.end(), {0.0, 0.0});
-    materials_.define(primitive);
-    primitives_.emplace(name, std::move(primitive));
-    return;
-  }
+// Defines the generic modifier of a name.
+void HoneybeeModifiers::define_generic(const std::string& name) {
+  const auto found = std::ranges::find(slots, std::string_view(name), [](const Slot& slot) {
+    return std::string_view(slot.generic);
+  });
+  if (found == slots.end()) return;
+  RadiancePrimitive primitive{.modifier = std::string(radiance_void),
+                              .type = found->is_glass ? "glass" : "plastic",
+                              .name = name,
+                              .reals = {found->value, found->value, found->value},
+                              .location = {.file = &file_, .line = 0}};
+  if (!found->is_glass) primitive.reals.insert(primitive.reals.end(), {0.0, 0.0});
+  materials_.define(primitive);
+  primitives_.emplace(name, std::move(primitive));
 }
 
 // The name of a modifier that a set has for a kind of object. Sets name modifiers, or contain them.
 std::optional<std::string> HoneybeeModifiers::from_set(const std::string& set, HoneybeeKind kind) {
   const auto found = sets_.find(set);
   if (found == sets_.end()) return std::nullopt;
-  const Slot slot = slot_of(kind);
+  const Slot& slot = slot_of(kind);
   const auto table = found->second.object(slot.table);
   if (!table || !table->has(slot.key)) return std::nullopt;
   if (table->is_object(slot.key)) {
@@ -203,7 +182,7 @@ std::optional<std::string> HoneybeeModifiers::from_set(const std::string& set, H
 }
 
 std::optional<int> HoneybeeModifiers::named(const std::string& modifier) {
-  if (!primitives_.contains(modifier)) define_usual(modifier);
+  if (!primitives_.contains(modifier)) define_generic(modifier);
   return materials_.of_surface({.modifier = modifier,
                                 .type = "polygon",
                                 .name = modifier,
@@ -211,7 +190,7 @@ std::optional<int> HoneybeeModifiers::named(const std::string& modifier) {
 }
 
 std::optional<Material> HoneybeeModifiers::material(const std::string& modifier) {
-  if (!primitives_.contains(modifier)) define_usual(modifier);
+  if (!primitives_.contains(modifier)) define_generic(modifier);
   const auto found = primitives_.find(modifier);
   if (found == primitives_.end()) return std::nullopt;
   return read_radiance_material(found->second, {}, remarks_);
@@ -226,7 +205,7 @@ std::string HoneybeeModifiers::without_states(const JsonObject& object, Honeybee
   if (!set.empty() && !sets_.contains(set)) {
     remarks_.add("Modifier sets that are not defined were read as the generic one", set);
   }
-  return from_set(set, kind).value_or(slot_of(kind).usual);
+  return from_set(set, kind).value_or(slot_of(kind).generic);
 }
 
 void HoneybeeModifiers::remark_states(const JsonObject& object, HoneybeeKind kind,

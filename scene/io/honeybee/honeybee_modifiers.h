@@ -13,7 +13,7 @@
 
 namespace lightwell {
 
-/// What an object of a Honeybee model is, as far as its modifier depends on that.
+/// Kinds of objects of a Honeybee model, by which modifier sets and generic modifiers are chosen.
 enum class HoneybeeKind {
   wall,
   inner_wall,
@@ -61,7 +61,7 @@ class HoneybeeModifiers {
  private:
   void define(const JsonObject& modifier);
   void try_to_define(const JsonObject& modifier);
-  void define_usual(const std::string& name);
+  void define_generic(const std::string& name);
   std::optional<int> named(const std::string& modifier);
   std::string without_states(const JsonObject& object, HoneybeeKind kind, const std::string& set);
   void remark_states(const JsonObject& object, HoneybeeKind kind,

@@ -148,8 +148,8 @@ TEST(RoadFigures, OfAMirroredRoadAreTheSame) {
   expect_same_limits(road_figures(road), road_figures(mirrored));
 }
 
-/// With masts on both sides, all traffic the other way meets the same road, turned by 180 degrees;
-/// lanes change places.
+/// Traffic the other way meets the same road, turned by 180 degrees, where masts stand on both
+/// sides; lanes change places.
 TEST(RoadFigures, OfATurnedRoadAreTheSame) {
   Road road = road_of_even_lamps();
   road.luminaires.arrangement = RoadArrangement::opposite;

@@ -33,7 +33,7 @@ class PageOfAYear : public testing::Test {
 
 }  // namespace
 
-// What the page adds up, weights times terms, is the light of the basis in every hour. Both factors
+// The sum of the page, weights times terms, is the light of the basis in every hour. Both factors
 // have 11 bits, and each product the error of both, 2^-10.
 TEST_F(PageOfAYear, WeightsTimesTermsAreTheLightOfEachHour) {
   ASSERT_EQ(year["bands"], 3);

@@ -41,7 +41,7 @@ driver.run(async (page, found) => {
   panel.set(79, 0);
   found.at_night = await read(0.5, 0.5);
 
-  // From dusk on: the next light is that of June.
+  // The next light after dusk is that of June.
   panel.set(79, 16);
   panel.play(true);
   panel.advance(0.5);

@@ -2,79 +2,21 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "scene/errors.h"
-#include "scene/io/read_scene.h"
 #include "scene/io/sensor_grids.h"
-#include "scene/io/window_states.h"
-#include "tests/temporary_folder.h"
+#include "tests/scene/io/honeybee/honeybee_models.h"
 
 namespace lightwell::read_honeybee_test {
 namespace {
 
-using nlohmann::json;
-
-json rectangle(const std::array<double, 3>& corner, const std::array<double, 3>& u,
-               const std::array<double, 3>& v) {
-  json boundary = json::array();
-  for (const auto& [a, b] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
-    json point = json::array();
-    for (std::size_t k = 0; k < 3; ++k) point.push_back(corner[k] + a * u[k] + b * v[k]);
-    boundary.push_back(point);
-  }
-  return {{"type", "Face3D"}, {"boundary", boundary}};
-}
-
-json object(const std::string& name, const json& geometry, const json& radiance = json::object()) {
-  return {{"identifier", name},
-          {"geometry", geometry},
-          {"properties", {{"radiance", radiance}}},
-          {"boundary_condition", {{"type", "Outdoors"}}}};
-}
-
-json face(const std::string& name, const std::string& type, const json& geometry,
-          const json& radiance = json::object()) {
-  json result = object(name, geometry, radiance);
-  result["face_type"] = type;
-  return result;
-}
-
-// A room of 4 x 3 x 2.5 m. Its southern wall has a window of 2 x 1 m, and a door of 0.8 x 2 m that
-// stands on the floor.
-json room() {
-  json south = face("south", "Wall", rectangle({0, 0, 0}, {4, 0, 0}, {0, 0, 2.5}));
-  south["apertures"] =
-      json::array({object("window", rectangle({0.5, 0, 1}, {2, 0, 0}, {0, 0, 1}))});
-  south["doors"] = json::array({object("door", rectangle({3, 0, 0}, {0.8, 0, 0}, {0, 0, 2}))});
-  return {{"identifier", "room"},
-          {"properties", {{"radiance", json::object()}}},
-          {"faces",
-           {south, face("north", "Wall", rectangle({4, 3, 0}, {-4, 0, 0}, {0, 0, 2.5})),
-            face("west", "Wall", rectangle({0, 3, 0}, {0, -3, 0}, {0, 0, 2.5})),
-            face("east", "Wall", rectangle({4, 0, 0}, {0, 3, 0}, {0, 0, 2.5})),
-            face("floor", "Floor", rectangle({0, 3, 0}, {4, 0, 0}, {0, -3, 0})),
-            face("ceiling", "RoofCeiling", rectangle({0, 0, 2.5}, {4, 0, 0}, {0, 3, 0}))}}};
-}
-
-json model(const json& rooms = json::array({room()})) {
-  return {{"type", "Model"},
-          {"identifier", "model"},
-          {"rooms", rooms},
-          {"properties", {{"radiance", {{"modifiers", json::array()}}}}}};
-}
-
-Scene read(const json& of) {
-  const TemporaryFolder folder;
-  return read_scene(folder.write("model.hbjson", of.dump()));
-}
+using namespace honeybee_models;
 
 std::string error_of(const std::string& text) {
   const TemporaryFolder folder;
@@ -90,13 +32,6 @@ std::map<std::string, double> areas(const Scene& scene) {
   std::map<std::string, double> result;
   for (const Surface& surface : scene.surfaces) result[surface.name] = surface_area(surface);
   return result;
-}
-
-const Material& material_of(const Scene& scene, const std::string& surface) {
-  for (const Surface& s : scene.surfaces) {
-    if (s.name == surface) return scene.materials[static_cast<std::size_t>(s.material)];
-  }
-  throw std::runtime_error("no surface " + surface);
 }
 
 // Areas are sums and differences of a few products below 20 m^2.
@@ -388,158 +323,6 @@ TEST(ReadHoneybee, SensorGridsAreInMetres) {
   EXPECT_TRUE(grids[0].positions[0].isApprox(Eigen::Vector3d(1, 2, 0.8)));
   EXPECT_EQ(grids[0].directions[0], Eigen::Vector3d::UnitZ());
   EXPECT_EQ(grids[0].directions[1], Eigen::Vector3d::UnitZ());
-}
-
-TEST(ReadHoneybee, OpeningsWithStatesAreOperatedTogether) {
-  json of = model();
-  const auto glass = [](const char* name, double t) {
-    return json{{"type", "Glass"},
-                {"identifier", name},
-                {"r_transmissivity", t},
-                {"g_transmissivity", t},
-                {"b_transmissivity", t}};
-  };
-  of["properties"]["radiance"]["modifiers"] = {glass("clear", 0.9), glass("tinted", 0.1)};
-  const json states = {{"dynamic_group_identifier", "panes"},
-                       {"states", {{{"modifier", "clear"}}, {{"modifier", "tinted"}}}}};
-  json& south = of["rooms"][0]["faces"][0];
-  south["apertures"][0]["properties"]["radiance"] = states;
-  south["doors"][0]["properties"]["radiance"] = states;
-  const TemporaryFolder folder;
-  const Scene scene = read_scene(folder.write("model.hbjson", of.dump()));
-  EXPECT_EQ(material_of(scene, "window").name, "clear");
-  const OperatedWindows windows = read_windows(scene);
-  ASSERT_EQ(windows.groups.size(), 1u);
-  const WindowGroup& group = windows.groups[0];
-  EXPECT_EQ(group.name, "panes");
-  EXPECT_EQ(group.surfaces.size(), 2u);
-  ASSERT_EQ(group.states.size(), 2u);
-  EXPECT_FALSE(group.states[0].material.has_value());
-  ASSERT_TRUE(group.states[1].material.has_value());
-  const Material& tinted = windows.materials[static_cast<std::size_t>(*group.states[1].material)];
-  EXPECT_EQ(tinted.dielectric->transmissivity[0], 0.1f);
-}
-
-TEST(ReadHoneybee, StatesWithoutModifierHaveThatOfTheirOpening) {
-  json of = model();
-  of["properties"]["radiance"]["modifiers"] =
-      json::array({{{"type", "Plastic"}, {"identifier", "shutter"}, {"r_reflectance", 0.4}}});
-  json& window = of["rooms"][0]["faces"][0]["apertures"][0];
-  window["properties"]["radiance"] = {
-      {"dynamic_group_identifier", "shutters"},
-      {"states", {{{"modifier", nullptr}}, {{"modifier", "shutter"}}}}};
-  const TemporaryFolder folder;
-  Scene scene = read_scene(folder.write("model.hbjson", of.dump()));
-  EXPECT_EQ(material_of(scene, "window").name, "generic_exterior_window_vis_0.64");
-  OperatedWindows windows = read_windows(scene);
-  ASSERT_EQ(windows.groups.size(), 1u);
-  EXPECT_EQ(windows.materials.at(0).reflectance[0], 0.4f);
-  // The other way round: open with a modifier of the state, closed with that of the opening.
-  window["properties"]["radiance"]["modifier"] = "shutter";
-  window["properties"]["radiance"]["states"] =
-      json::array({{{"modifier", "generic_exterior_window_vis_0.64"}}, {{"modifier", nullptr}}});
-  scene = read_scene(folder.write("model.hbjson", of.dump()));
-  EXPECT_TRUE(material_of(scene, "window").dielectric.has_value());
-  windows = read_windows(scene);
-  ASSERT_TRUE(windows.groups.at(0).states.at(1).material.has_value());
-  EXPECT_EQ(windows.materials.at(0).reflectance[0], 0.4f);
-}
-
-TEST(ReadHoneybee, StatesOfUndefinedModifiersAreRefused) {
-  json of = model();
-  of["rooms"][0]["faces"][0]["apertures"][0]["properties"]["radiance"] = {
-      {"dynamic_group_identifier", "panes"},
-      {"states", {{{"modifier", "generic_exterior_window_vis_0.64"}}, {{"modifier", "misspelt"}}}}};
-  const TemporaryFolder folder;
-  const Scene scene = read_scene(folder.write("model.hbjson", of.dump()));
-  try {
-    read_windows(scene);
-    FAIL() << "a state of no material was read";
-  } catch (const InputError& error) {
-    EXPECT_NE(std::string(error.what()).find("windows 'panes' has the modifier 'misspelt'"),
-              std::string::npos)
-        << error.what();
-  }
-}
-
-// Two patches of directions: from the normal to 30 degrees and beyond, with projected solid angles
-// of pi / 4 and 3 pi / 4.
-std::string bsdf_xml(const std::string& transmission, const std::string& reflection,
-                     const std::string& structure) {
-  const auto data = [](const char* direction, const std::string& values) {
-    return fmt::format(
-        "<WavelengthData><Wavelength unit=\"Integral\">Visible</Wavelength><WavelengthDataBlock>"
-        "<WavelengthDataDirection>{}</WavelengthDataDirection><ScatteringData>{}</ScatteringData>"
-        "</WavelengthDataBlock></WavelengthData>",
-        direction, values);
-  };
-  const auto block = [](int lower, int upper) {
-    return fmt::format(
-        "<AngleBasisBlock><nPhis>1</nPhis><ThetaBounds><LowerTheta>{}</LowerTheta><UpperTheta>{}"
-        "</UpperTheta></ThetaBounds></AngleBasisBlock>",
-        lower, upper);
-  };
-  return "<WindowElement><Optical><Layer><DataDefinition><IncidentDataStructure>" + structure +
-         "</IncidentDataStructure><AngleBasis>" + block(0, 30) + block(30, 90) +
-         "</AngleBasis></DataDefinition>" + data("Transmission Front", transmission) +
-         data("Reflection Front", reflection) + data("Reflection Back", reflection) +
-         "</Layer></Optical></WindowElement>";
-}
-
-Material material_of_bsdf(const std::string& transmission, const std::string& reflection,
-                          const std::string& structure = "Columns",
-                          const json& added = json::object()) {
-  json of = model();
-  of["properties"]["radiance"]["modifiers"] =
-      json::array({{{"type", "BSDF"},
-                    {"identifier", "shade"},
-                    {"bsdf_data", bsdf_xml(transmission, reflection, structure)}}});
-  of["properties"]["radiance"]["modifiers"][0].update(added);
-  of["rooms"][0]["faces"][0]["apertures"][0]["properties"]["radiance"]["modifier"] = "shade";
-  return material_of(read(of), "window");
-}
-
-TEST(ReadHoneybee, BsdfsScatterAsMuchAsTheirMatrices) {
-  // A diffuser that passes 0.6 and reflects 0.3 has the values 0.6 / pi and 0.3 / pi everywhere.
-  const std::string even = fmt::format("{0}, {0}, {0}, {0}", 0.6 * std::numbers::inv_pi);
-  const std::string back = fmt::format("{0}, {0}, {0}, {0}", 0.3 * std::numbers::inv_pi);
-  const Material diffuser = material_of_bsdf(even, back);
-  // Shares are single precision.
-  constexpr float single = 1e-6f;
-  EXPECT_NEAR(diffuser.transmittance[0], 0.6f, single);
-  EXPECT_NEAR(diffuser.reflectance[0], 0.3f, single);
-  EXPECT_FALSE(diffuser.passes_straight());
-  // A clear sheet that passes 0.8 sends the light of a patch of the angle a on by 0.8 / a.
-  const double a = std::numbers::pi / 4.0;
-  const Material clear =
-      material_of_bsdf(fmt::format("{}, 0, 0, {}", 0.8 / a, 0.8 / (3.0 * a)), "0 0 0 0");
-  EXPECT_NEAR(clear.regular_transmittance[0], 0.8f, single);
-  EXPECT_FALSE(clear.is_translucent());
-}
-
-// Light of the patch around the normal, a quarter of all, scatters evenly by the value 0.4 / pi;
-// light of the other patch passes within its patch alone, by 0.9 of it.
-TEST(ReadHoneybee, MatricesOfBsdfsHaveColumnsOrRowsOfIncidentLight) {
-  const double even = 0.4 * std::numbers::inv_pi, within = 0.9 / (0.75 * std::numbers::pi);
-  const std::string by_columns = fmt::format("{0}, 0, {0}, {1}", even, within);
-  const std::string by_rows = fmt::format("{0}, {0}, 0, {1}", even, within);
-  for (const Material& shade : {material_of_bsdf(by_columns, "0 0 0 0", "Columns"),
-                                material_of_bsdf(by_rows, "0 0 0 0", "Rows")}) {
-    constexpr float single = 1e-6f;
-    EXPECT_NEAR(shade.transmittance[0], 0.25f * 0.4f, single);
-    EXPECT_NEAR(shade.regular_transmittance[0], 0.75f * 0.9f, single);
-  }
-}
-
-TEST(ReadHoneybee, DiffuseSharesOfBsdfsAreAdded) {
-  const std::string even = fmt::format("{0}, {0}, {0}, {0}", 0.3 * std::numbers::inv_pi);
-  const Material shade = material_of_bsdf(
-      even, even, "Columns",
-      {{"diffuse_transmittance", {0.1, 0.1, 0.1}}, {"front_diffuse_reflectance", {0.2, 0.2, 0.2}}});
-  constexpr float single = 1e-6f;
-  EXPECT_NEAR(shade.transmittance[0], 0.4f, single);
-  // The mean of both faces.
-  EXPECT_NEAR(shade.reflectance[0], 0.3f + 0.1f, single);
 }
 
 TEST(ReadHoneybee, FaultsAreSentences) {
