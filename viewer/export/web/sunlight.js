@@ -47,8 +47,16 @@ vec3 plane_of(vec3 at, vec3 outwards) {
 vec3 sunlight(vec3 at, vec3 plane, vec3 outwards) {
   float cosine = dot(outwards, sun.xyz);
   if (sun.w == 0.0 || cosine <= 0.0) return vec3(0.0);
-  vec3 p = (to_sun * vec4(at, 1.0)).xyz, n = normalize(plane * from_sun);
-  vec2 slope = -n.xy / (n.z < 0.0 ? min(n.z, -1e-3) : max(n.z, 1e-3));
+  // A plane that the sun grazes rises so fast from texel to texel that the plane would pass through the surface that shades it.
+  // Below 14 degrees its slope is limited, and the map is asked before the plane instead, by what four by four texels reach: 2.8.
+  const float steepest = 4.0, reach = 3.0;  // texels
+  float along = abs(dot(plane, sun.xyz)), steep = sqrt(1.0 - min(along * along, 1.0)) / max(along, 1e-3);
+  float limit = min(1.0, steepest / max(steep, 1e-3));
+  vec2 scale = vec2(length(vec3(to_sun[0].x, to_sun[1].x, to_sun[2].x)), length(vec3(to_sun[0].y, to_sun[1].y, to_sun[2].y)));
+  vec2 texel = 1.0 / (vec2(textureSize(sun_near, 0)) * scale);
+  vec3 p = (to_sun * vec4(at + reach * (1.0 - limit) * max(texel.x, texel.y) * outwards, 1.0)).xyz;
+  vec3 n = normalize(plane * from_sun);
+  vec2 slope = -limit * n.xy / (n.z < 0.0 ? min(n.z, -1e-3) : max(n.z, 1e-3));
   return sun_lux * cosine * reached(p, slope) * texture(sun_passed, p.xy).rgb;
 }`;
 
