@@ -88,6 +88,10 @@ DaylightInputs read_daylight_inputs(const DaylightArguments& arguments, Console&
   for (const std::string& name : arguments.observers) {
     inputs.eyes.push_back(choose_camera(inputs.scene, name));
   }
+  // Before the light, which takes long.
+  if (!arguments.points.empty()) {
+    inputs.points = read_probes(arguments.points, inputs.scene.metres_per_unit);
+  }
   if (!arguments.sun_points.empty()) {
     for (const Probe& probe : read_probes(arguments.sun_points, inputs.scene.metres_per_unit)) {
       inputs.sun_points.push_back(probe.position);
@@ -132,9 +136,9 @@ DaylightSensors daylight_sensors(const DaylightArguments& arguments, const Dayli
     }
     add_room({.name = grid.name}, points, sensors);
   }
-  if (!arguments.points.empty()) {
-    add_room({.name = std::filesystem::path(arguments.points).filename().string()},
-             read_probes(arguments.points, scene.metres_per_unit), sensors);
+  if (!inputs.points.empty()) {
+    add_room({.name = std::filesystem::path(arguments.points).filename().string()}, inputs.points,
+             sensors);
   }
   if (sensors.probes.empty()) {
     throw InputError(

@@ -45,6 +45,7 @@ struct DaylightInputs {
   Scene scene{};
   OperatedWindows windows{};
   std::vector<SensorGrid> grids{};            ///< of the scene file
+  std::vector<Probe> points{};                ///< of --points
   std::vector<Camera> eyes{};                 ///< observers of glare
   std::vector<Eigen::Vector3d> sun_points{};  ///< m, of exposure to sunlight
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), north = Eigen::Vector3d::UnitY();

@@ -69,11 +69,13 @@ DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen
   if (std::ranges::any_of(scene_.materials, &Material::is_specular)) {
     paths_.emplace(scene_, *caster_, options.form_factors.max_specular_depth, PathDetail::points);
   }
+  // No fewer cells are searched than Tregenza's rows have, whose cells are as wide as windows.
+  options_.patches.stride = std::min(options_.patches.stride, options_.sky_subdivision);
   weights_ = luminous_weights(scene_.bands);
   if (options_.direct_only) return;
   FormFactorOptions rows = options.form_factors;
   rows.run.progress = options.progress;
-  form_factors_ = compute_form_factors({scene_, *caster_, *direct_light_}, rows);
+  form_factors_ = compute_form_factors(lit(), rows);
   view_patches();
 }
 
@@ -122,6 +124,11 @@ void DaylightModel::set_sensors(std::span<const GatherPoint> sensors) {
     const auto sensor = static_cast<std::size_t>(i);
     sensor_views_[sensor] = view_of(sky_, sensors_[sensor], options_.points, i);
   });
+  constexpr int hours_of_sun = 4400;  // of a year, the sources besides the sky's patches
+  const bool has_fewer_sources = sensor_count() > sky_.column_count() + hours_of_sun;
+  importance_ = options_.direct_only || has_fewer_sources
+                    ? BandArray()
+                    : importance(sensors_, options_.gather_rays);
 }
 
 DomeView DaylightModel::view_of(const SkyPatches& sky, const GatherPoint& point,
@@ -130,12 +137,79 @@ DomeView DaylightModel::view_of(const SkyPatches& sky, const GatherPoint& point,
   return view_of_dome(around(), sky, {&at, 1}, effort, sensor_key(number));
 }
 
-BandArray DaylightModel::gather(const BandArray& of_patches, const GatherPoints& points,
-                                int rays) const {
-  const LitScene lit{scene_, *caster_, *direct_light_};
+LitScene DaylightModel::lit() const {
+  return {scene_, *caster_, *direct_light_};
+}
+
+GatherOptions DaylightModel::gather_options(int rays) const {
   GatherOptions gather{.rays = rays, .replica = options_.replica};
   gather.run.progress = options_.progress;
-  return gather_indirect(lit, to_vertices(mesh_, of_patches), points, gather).indirect;
+  return gather;
+}
+
+BandArray DaylightModel::gather(const BandArray& of_patches, const GatherPoints& points,
+                                int rays) const {
+  return gather_indirect(lit(), to_vertices(mesh_, of_patches), points, gather_options(rays))
+      .indirect;
+}
+
+BandArray DaylightModel::radiosity(const BandArray& arriving) const {
+  return solve_columns(mesh_, *form_factors_, arriving, options_.tolerance, options_.progress);
+}
+
+// Irradiance of points by radiosity 1 of each patch alone, patches x (points x bands).
+BandArray DaylightModel::shares_in_gather(const GatherPoints& points, int rays) const {
+  const Eigen::Index bands = scene_.bands.count(), vertices = mesh_.vertex_count();
+  BandArray shares(mesh_.patch_count(), points.size() * bands);
+  // Shares of vertices in a block of points take 128 MB.
+  const auto most =
+      static_cast<int>(std::max<Eigen::Index>(1, (Eigen::Index{1} << 25) / (vertices * bands)));
+  for (int first = 0; first < points.size(); first += most) {
+    const int n = std::min(most, points.size() - first);
+    const GatherPoints block(n, [&](int i) {
+      GatherPoint point = points[first + i];
+      if (!point.key) point.key = static_cast<std::uint64_t>(first + i);
+      return point;
+    });
+    const BandArray E = gather_shares(lit(), block, gather_options(rays));
+    BandArray of_vertices(vertices, n * bands);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index v = 0; v < vertices; ++v) {
+        of_vertices.row(v).segment(i * bands, bands) = E.row(i).segment(v * bands, bands);
+      }
+    }
+    shares.middleCols(first * bands, n * bands) = shares_of_patches(mesh_, of_vertices);
+  }
+  return shares;
+}
+
+BandArray DaylightModel::importance(const GatherPoints& points, int rays) const {
+  // The ground before a window has a thousandth of the importance of walls behind the window, and
+  // a thousand times their light: as exact as light itself is in rooms (see tolerance).
+  constexpr double importance_outdoors = 1e-3;
+  return solve_importance(mesh_, *form_factors_, shares_in_gather(points, rays),
+                          importance_outdoors * options_.tolerance, options_.progress);
+}
+
+BandArray reflected_by_importance(const BandArray& importance, const BandArray& arriving,
+                                  Eigen::Index bands) {
+  const Eigen::Index points = importance.cols() / bands, sources = arriving.cols() / bands;
+  BandArray E(points, arriving.cols());
+  using Column = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  for (Eigen::Index b = 0; b < bands; ++b) {
+    const auto of_band = [&](const BandArray& all, Eigen::Index count) -> Column {
+      return all(Eigen::all, Eigen::seqN(b, count, bands)).matrix();
+    };
+    const Column weights = of_band(importance, points), light = of_band(arriving, sources);
+    constexpr int width = 64;
+    parallel_for(static_cast<int>((sources + width - 1) / width), 1, [&](int begin, int end) {
+      const Eigen::Index first = Eigen::Index{begin} * width,
+                         n = std::min(Eigen::Index{end} * width, sources) - first;
+      const Column part = weights.transpose() * light.middleCols(first, n);
+      E(Eigen::all, Eigen::seqN(first * bands + b, n, bands)) = part.array();
+    });
+  }
+  return E;
 }
 
 // The light that surfaces reflect to the sensors, sensors x sources, for E0 of patches x columns.
@@ -143,9 +217,9 @@ Eigen::ArrayXXf DaylightModel::reflected(const BandArray& arriving) const {
   const Eigen::Index bands = scene_.bands.count(), sources = arriving.cols() / bands;
   Eigen::ArrayXXf lux = Eigen::ArrayXXf::Zero(sensor_count(), sources);
   if (sensors_.empty()) return lux;
-  const BandArray B =
-      solve_columns(mesh_, *form_factors_, arriving, options_.tolerance, options_.progress);
-  const BandArray E = gather(B, sensors_, options_.gather_rays);
+  const BandArray E = importance_.size() > 0
+                          ? reflected_by_importance(importance_, arriving, bands)
+                          : gather(radiosity(arriving), sensors_, options_.gather_rays);
   for (Eigen::Index s = 0; s < sources; ++s) {
     lux.col(s) = (E.middleCols(s * bands, bands).matrix() * weights_.matrix()).array();
   }
@@ -175,12 +249,18 @@ Eigen::ArrayXXf DaylightModel::direct_sun(std::span<const SunDisc> suns) const {
   Eigen::ArrayXXf direct(sensor_count(), static_cast<Eigen::Index>(suns.size()));
   for_each_index(sensor_count(), "sun at sensors", options_.progress, [&](int i) {
     const SurfacePoint point = surface_point(sensors_[static_cast<std::size_t>(i)]);
-    direct.row(i) = luminous_sum(sunlight(around(), sky_, {&point, 1},
-                                          sensor_views_[static_cast<std::size_t>(i)], suns,
-                                          options_.sun_rays, sensor_key(i)))
-                        .transpose();
+    direct.row(i) =
+        luminous_sum(sunlight(around(), {&point, 1}, sensor_views_[static_cast<std::size_t>(i)],
+                              suns, options_.sun_rays, sensor_key(i)))
+            .transpose();
   });
   return direct;
+}
+
+// Irradiance of a patch straight from each sun, suns x bands.
+Eigen::ArrayXXf DaylightModel::sun_at_patch(int patch, std::span<const SunDisc> suns) const {
+  return sunlight(around(), points_of_patch(patch), patch_views_[static_cast<std::size_t>(patch)],
+                  suns, options_.sun_rays_of_patch, patch_key(patch));
 }
 
 SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const {
@@ -190,17 +270,15 @@ SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const
   if (options_.direct_only) return light;
   BandArray arriving(mesh_.patch_count(), count * bands);
   for_each_index(mesh_.patch_count(), "sun at patches", options_.progress, [&](int p) {
-    const Eigen::ArrayXXf E0 =
-        sunlight(around(), sky_, points_of_patch(p), patch_views_[static_cast<std::size_t>(p)],
-                 suns, 1, patch_key(p));
+    const Eigen::ArrayXXf E0 = sun_at_patch(p, suns);
     for (Eigen::Index s = 0; s < count; ++s) arriving.row(p).segment(s * bands, bands) = E0.row(s);
   });
   light.reflected = reflected(arriving);
   return light;
 }
 
-BandArray DaylightModel::hourly_radiosity(std::span<const SkyHour> hours,
-                                          double ground_reflectance) const {
+BandArray DaylightModel::hourly_arriving(std::span<const SkyHour> hours,
+                                         double ground_reflectance) const {
   const Eigen::Index bands = scene_.bands.count(), count = static_cast<Eigen::Index>(hours.size());
   const BandArray luminance = hour_luminances(sky_, hours, ground_reflectance);
   std::vector<SunDisc> suns;
@@ -208,7 +286,7 @@ BandArray DaylightModel::hourly_radiosity(std::span<const SkyHour> hours,
   for (Eigen::Index h = 0; h < count; ++h) {
     const SkyHour& hour = hours[static_cast<std::size_t>(h)];
     if (!(hour.sun_lux > 0.0)) continue;
-    suns.push_back({.direction = hour.sun});
+    suns.emplace_back(sky_, hour.sun);
     hour_of_sun.push_back(h);
   }
   BandArray arriving(mesh_.patch_count(), count * bands);
@@ -222,8 +300,7 @@ BandArray DaylightModel::hourly_radiosity(std::span<const SkyHour> hours,
         E0.row(b) += view.coefficient(c, b) * luminance.row(c);
       }
     }
-    const Eigen::ArrayXXf sun =
-        sunlight(around(), sky_, points_of_patch(p), view, suns, 1, patch_key(p));
+    const Eigen::ArrayXXf sun = sun_at_patch(p, suns);
     for (Eigen::Index s = 0; s < sun.rows(); ++s) {
       const Eigen::Index h = hour_of_sun[static_cast<std::size_t>(s)];
       const auto lux = static_cast<float>(hours[static_cast<std::size_t>(h)].sun_lux);
@@ -232,7 +309,7 @@ BandArray DaylightModel::hourly_radiosity(std::span<const SkyHour> hours,
     arriving.row(p) =
         Eigen::Map<const Eigen::Array<float, 1, Eigen::Dynamic>>(E0.data(), E0.size());
   });
-  return solve_columns(mesh_, *form_factors_, arriving, options_.tolerance, options_.progress);
+  return arriving;
 }
 
 }  // namespace lightwell

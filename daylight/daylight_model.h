@@ -29,10 +29,11 @@ struct DaylightOptions {
   /// outdoors, and a room behind a window may have a thousandth of its light.
   double tolerance = 1e-6;
   DomeEffort points{.search = 4, .rays = 4096};
-  DomeEffort patches{.search = 1, .rays = 1024};
+  DomeEffort patches{.search = 1, .rays = 1024, .stride = 4};
   int points_of_patch = 16;   ///< points of a patch whose view is averaged
   int sun_rays = 16;          ///< of a sensor to the sun's disc
-  int gather_rays = 1024;     ///< of a sensor, for light that surfaces reflect
+  int sun_rays_of_patch = 4;  ///< of a patch to the sun's disc
+  int gather_rays = 4096;     ///< of a sensor, for light that surfaces reflect
   std::uint64_t replica = 0;  ///< another number gives independent rays
   /// True for what sensors see of sun, sky and ground alone: surfaces reflect nothing, and no form
   /// factors are computed.
@@ -57,6 +58,10 @@ struct SensorLight {
 /// with the same form factors for every sky patch and every sun of the year (daylight coefficients:
 /// Tregenza & Waters 1983). Light at a sensor is the source's own, seen through windows, and that
 /// of all surfaces by a final gather.
+///
+/// A room has thousands of sources and mostly fewer sensors. Reflected light is then found from the
+/// other side: the importance of all patches for each sensor (see solve_importance()) is a column,
+/// and the light of every source a sum over patches.
 ///
 /// Illuminance is per unit: of a sky patch lx over cd/m^2, of the sun lx over the lx across its
 /// rays. Daylight is white, with the same power in each band; materials tint the light.
@@ -90,10 +95,14 @@ class DaylightModel {
   /// Illuminance of the sensors by each sun.
   SensorLight sun_coefficients(std::span<const SunDisc> suns) const;
 
-  /// Radiosity of the patches under the whole sky of each hour, dome, ground and sun, lm/m^2:
-  /// patches x (hours x bands), the bands of an hour side by side. A band's radiosity is that of
-  /// white light times the band's reflectances.
-  BandArray hourly_radiosity(std::span<const SkyHour> hours, double ground_reflectance) const;
+  /// Irradiance E0 of the patches straight from the whole sky of each hour, dome, ground and sun,
+  /// lx: patches x (hours x bands), the bands of an hour side by side, each as bright as all light.
+  BandArray hourly_arriving(std::span<const SkyHour> hours, double ground_reflectance) const;
+  /// B = rho (E0 + F B) for E0 of patches x (sources x bands), in the same columns.
+  BandArray radiosity(const BandArray& arriving) const;
+  /// Importance of the patches for the light that surfaces reflect to points, which gather by
+  /// `rays` each: patches x (points x bands).
+  BandArray importance(const GatherPoints& points, int rays) const;
   /// Irradiance of points by such radiosities of patches, by `rays` each: points x columns of
   /// `of_patches`.
   BandArray gather(const BandArray& of_patches, const GatherPoints& points, int rays) const;
@@ -102,12 +111,16 @@ class DaylightModel {
                    int number) const;
 
  private:
+  LitScene lit() const;
+  GatherOptions gather_options(int rays) const;
   Surroundings around() const;
   std::uint64_t patch_key(int patch) const;
   std::uint64_t sensor_key(int sensor) const;
   Eigen::ArrayXf luminous_sum(const Eigen::Ref<const Eigen::ArrayXXf>& bands) const;
   std::vector<SurfacePoint> points_of_patch(int patch) const;
   void view_patches();
+  Eigen::ArrayXXf sun_at_patch(int patch, std::span<const SunDisc> suns) const;
+  BandArray shares_in_gather(const GatherPoints& points, int rays) const;
   Eigen::ArrayXXf reflected(const BandArray& arriving) const;
 
   Scene scene_;
@@ -123,6 +136,12 @@ class DaylightModel {
   std::vector<DomeView> patch_views_{};
   std::vector<GatherPoint> sensors_{};
   std::vector<DomeView> sensor_views_{};
+  BandArray importance_{};  // of the patches for the sensors; empty where sources are fewer
 };
+
+/// Light that surfaces reflect to points by DaylightModel::importance(), for E0 of patches x
+/// (sources x bands): points x (sources x bands).
+BandArray reflected_by_importance(const BandArray& importance, const BandArray& arriving,
+                                  Eigen::Index bands);
 
 }  // namespace lightwell

@@ -99,28 +99,56 @@ void add_rays(const SkyPatches& sky, int cell, int count, std::uint64_t key, Ray
   }
 }
 
+// Numbers of which one in `stride` is drawn, each with the same probability.
+class Drawn {
+ public:
+  Drawn(int stride, std::uint64_t key)
+      : stride_(static_cast<std::size_t>(stride)),
+        first_(point_of(random_of(key, ~0ULL), stride_)) {}
+
+  bool has(std::size_t number) const { return number % stride_ == first_; }
+
+ private:
+  std::size_t stride_, first_;
+};
+
 void open_with_neighbours(const SkyPatches& sky, int cell, std::vector<char>& open) {
   open[static_cast<std::size_t>(cell)] = 1;
   for (const int beside : sky.neighbours(cell)) open[static_cast<std::size_t>(beside)] = 1;
 }
 
-// Marks the cells that rays find open, and those around them.
+// Marks the cells that rays find open, and those around them: all that lie nearer than the next
+// cell that is searched. `E` is the irradiance of each cell without obstacles.
 std::vector<char> open_cells(const Surroundings& around, const SkyPatches& sky,
-                             ReceiverPoints points, int rays_of_cell, std::uint64_t key) {
+                             ReceiverPoints points, const Eigen::ArrayXd& E,
+                             const DomeEffort& effort, std::uint64_t key) {
   RayBatch batch(around, points);
-  for (int c = 0; c < sky.cell_count(); ++c) add_rays(sky, c, rays_of_cell, key, batch);
+  const Drawn searched(effort.stride, key);
+  for (int c = 0; c < sky.cell_count(); ++c) {
+    if (!(E[c] > 0.0) || !searched.has(static_cast<std::size_t>(c))) continue;
+    add_rays(sky, c, effort.search, key, batch);
+  }
   batch.cast();
-  std::vector<char> open(static_cast<std::size_t>(sky.cell_count()), 0);
+  std::vector<char> found(static_cast<std::size_t>(sky.cell_count()), 0);
+  const auto find = [&](const Eigen::Vector3d& direction) {
+    found[static_cast<std::size_t>(sky.cell_of(direction))] = 1;
+  };
   for (std::size_t r = 0; r < batch.size(); ++r) {
     // Cells of the rays, and of where they leave.
     if ((batch.passed(r) > 0.0f).any()) {
-      open_with_neighbours(sky, sky.cell_of(batch.direction(r)), open);
+      find(batch.direction(r));
     } else if (const auto exit = batch.exit(r, key)) {
-      open_with_neighbours(sky, sky.cell_of(batch.direction(r)), open);
-      open_with_neighbours(sky, sky.cell_of(exit->direction), open);
+      find(batch.direction(r));
+      find(exit->direction);
     }
   }
-  return open;
+  for (int reach = 0; reach < std::max(1, effort.stride / 2); ++reach) {
+    const std::vector<char> before = found;
+    for (int c = 0; c < sky.cell_count(); ++c) {
+      if (before[static_cast<std::size_t>(c)] != 0) open_with_neighbours(sky, c, found);
+    }
+  }
+  return found;
 }
 
 // The mean over the points of the irradiance that each cell of radiance 1 gives without obstacles.
@@ -136,15 +164,16 @@ Eigen::ArrayXd unobstructed(const SkyPatches& sky, ReceiverPoints points) {
   return sum / static_cast<double>(points.size());
 }
 
-// The rays through a cell.
+// The rays through a cell, and the irradiance that they stand for.
 struct Span {
   int cell = 0;
+  double E = 0.0;
   std::size_t begin = 0, end = 0;
 };
 
-// Adds the light that rays through a cell of irradiance `E` find to the view.
-void add_cell(const SkyPatches& sky, const RayBatch& batch, const Span& span, double E,
-              std::uint64_t key, DomeView& view) {
+// Adds the light that rays through a cell find to the view.
+void add_cell(const SkyPatches& sky, const RayBatch& batch, const Span& span, std::uint64_t key,
+              DomeView& view) {
   double cosines = 0.0;
   for (std::size_t r = span.begin; r < span.end; ++r) cosines += batch.cosine(r);
   if (!(cosines > 0.0)) return;
@@ -153,7 +182,7 @@ void add_cell(const SkyPatches& sky, const RayBatch& batch, const Span& span, do
         (share * passed.cast<double>()).cast<float>().transpose();
   };
   for (std::size_t r = span.begin; r < span.end; ++r) {
-    const double share = E * batch.cosine(r) / cosines;
+    const double share = span.E * batch.cosine(r) / cosines;
     if (!(share > 0.0)) continue;
     add(span.cell, share, batch.passed(r));
     if (const auto exit = batch.exit(r, key)) add(sky.cell_of(exit->direction), share, exit->share);
@@ -164,10 +193,9 @@ void add_cell(const SkyPatches& sky, const RayBatch& batch, const Span& span, do
 
 DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
                       const DomeEffort& effort, std::uint64_t key) {
-  DomeView view{
-      .coefficient = Eigen::ArrayXXf::Zero(sky.column_count(), around.bands),
-      .open = open_cells(around, sky, points, effort.search, round_key(key, search_round))};
   const Eigen::ArrayXd E = unobstructed(sky, points);
+  DomeView view{.coefficient = Eigen::ArrayXXf::Zero(sky.column_count(), around.bands),
+                .open = open_cells(around, sky, points, E, effort, round_key(key, search_round))};
   double open_sum = 0.0;
   for (int c = 0; c < sky.cell_count(); ++c) {
     if (view.open[static_cast<std::size_t>(c)] != 0) open_sum += E[c];
@@ -176,31 +204,23 @@ DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, Receive
   std::vector<Span> spans;
   RayBatch batch(around, points);
   constexpr int fewest_of_open = 4;
+  const Drawn drawn(effort.stride, rays_key);
   for (int c = 0; c < sky.cell_count(); ++c) {
     if (!(E[c] > 0.0)) continue;
     const bool is_open = view.open[static_cast<std::size_t>(c)] != 0;
+    if (!is_open && !drawn.has(static_cast<std::size_t>(c))) continue;
     const int count =
         is_open ? std::max(fewest_of_open, static_cast<int>(effort.rays * E[c] / open_sum)) : 1;
     const std::size_t begin = batch.size();
     add_rays(sky, c, count, rays_key, batch);
-    spans.push_back({c, begin, batch.size()});
+    spans.push_back({c, is_open ? E[c] : effort.stride * E[c], begin, batch.size()});
   }
   batch.cast();
-  for (const Span& span : spans) add_cell(sky, batch, span, E[span.cell], rays_key, view);
+  for (const Span& span : spans) add_cell(sky, batch, span, rays_key, view);
   return view;
 }
 
 namespace {
-
-// A disc at distance 1: its middle, the axes of its plane and its radius.
-struct DiscFrame {
-  explicit DiscFrame(const SunDisc& disc)
-      : direction(disc.direction), radius(std::tan(0.5 * disc.angle_degrees * degree)) {
-    tangent_frame(disc.direction, a, b);
-  }
-  Eigen::Vector3d direction, a, b;
-  double radius;
-};
 
 // Rays of a receiver to suns, with the sun and the weight of each.
 struct SunRays {
@@ -208,14 +228,13 @@ struct SunRays {
   std::vector<std::size_t> sun{};
   std::vector<float> weight{};
 
-  // Adds a ray of a point to the place (r, phi) of a disc that (u, v) in [0,1)^2 give. `frame` is
-  // that of the disc.
-  void add(std::size_t point, std::size_t number, const DiscFrame& frame, float share, double u,
+  // Adds a ray of a point to the place (r, phi) of a disc that (u, v) in [0,1)^2 give.
+  void add(std::size_t point, std::size_t number, const SunDisc& disc, float share, double u,
            double v) {
-    const double r = std::sqrt(u) * frame.radius, phi = 2.0 * std::numbers::pi * v;
+    const double r = std::sqrt(u) * disc.radius, phi = 2.0 * std::numbers::pi * v;
     batch.add(
         point,
-        (frame.direction + r * (std::cos(phi) * frame.a + std::sin(phi) * frame.b)).normalized());
+        (disc.direction + r * (std::cos(phi) * disc.a + std::sin(phi) * disc.b)).normalized());
     sun.push_back(number);
     weight.push_back(share);
   }
@@ -223,29 +242,39 @@ struct SunRays {
 
 }  // namespace
 
-Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, ReceiverPoints points,
-                         const DomeView& view, std::span<const SunDisc> suns, int rays,
-                         std::uint64_t key) {
+SunDisc::SunDisc(const SkyPatches& sky, const Eigen::Vector3d& towards, double angle_degrees)
+    : direction(towards),
+      radius(std::tan(0.5 * angle_degrees * degree)),
+      cell(sky.cell_of(towards)) {
+  tangent_frame(direction, a, b);
+}
+
+Eigen::ArrayXXf sunlight(const Surroundings& around, ReceiverPoints points, const DomeView& view,
+                         std::span<const SunDisc> suns, int rays, std::uint64_t key) {
   SunRays cast{.batch = RayBatch(around, points)};
   const std::uint64_t sun_key = round_key(key, sun_round);
+  const std::size_t lit = std::min(points.size(), static_cast<std::size_t>(rays)),
+                    of_point = static_cast<std::size_t>(rays) / lit;
+  const float share = 1.0f / static_cast<float>(lit * of_point);
   for (std::size_t s = 0; s < suns.size(); ++s) {
+    const SunDisc& sun = suns[s];
     const std::uint64_t of_sun = random_key(sun_key, s);
     const auto random = [&](std::uint64_t number) { return random_of(of_sun, number); };
-    const DiscFrame frame(suns[s]);
-    if (view.open[static_cast<std::size_t>(sky.cell_of(suns[s].direction))] == 0) {
+    const auto is_above = [&](std::size_t p) { return points[p].normal.dot(sun.direction) > 0.0; };
+    if (view.open[static_cast<std::size_t>(sun.cell)] == 0) {
       const std::size_t p = point_of(random(0), points.size());
-      if (points[p].normal.dot(suns[s].direction) > 0.0) {
-        cast.add(p, s, frame, 1.0f, random(1), random(2));
-      }
+      if (is_above(p)) cast.add(p, s, sun, 1.0f, random(1), random(2));
       continue;
     }
-    const float share = 1.0f / (static_cast<float>(points.size()) * static_cast<float>(rays));
-    for (std::size_t p = 0; p < points.size(); ++p) {
-      if (!(points[p].normal.dot(suns[s].direction) > 0.0)) continue;
-      for (int i = 0; i < rays; ++i) {
-        const std::uint64_t number =
-            3 + 2 * (p * static_cast<std::size_t>(rays) + static_cast<std::size_t>(i));
-        cast.add(p, s, frame, share, (i + random(number)) / rays, random(number + 1));
+    // A block of so many points of a Sobol sequence is as even as the first ones are.
+    const std::size_t begin = point_of(random(0), points.size() / lit) * lit;
+    for (std::size_t p = begin; p < begin + lit; ++p) {
+      if (!is_above(p)) continue;
+      for (std::size_t i = 0; i < of_point; ++i) {
+        const std::uint64_t number = 3 + 2 * ((p - begin) * of_point + i);
+        cast.add(p, s, sun, share,
+                 (static_cast<double>(i) + random(number)) / static_cast<double>(of_point),
+                 random(number + 1));
       }
     }
   }
@@ -255,7 +284,7 @@ Eigen::ArrayXXf sunlight(const Surroundings& around, const SkyPatches& sky, Rece
     const SunDisc& sun = suns[cast.sun[r]];
     Spectrum passed = cast.batch.passed(r);
     if (const auto exit = cast.batch.exit(r, sun_key)) {
-      const double edge = std::cos(0.5 * sun.angle_degrees * degree);
+      const double edge = 1.0 / std::hypot(1.0, sun.radius);  // the cosine of the disc's edge
       if (exit->direction.dot(sun.direction) >= edge) passed += exit->share;
     }
     E.row(static_cast<Eigen::Index>(cast.sun[r])) +=

@@ -56,6 +56,7 @@ SkyPatches::SkyPatches(int subdivision, const Eigen::Vector3d& up, const Eigen::
     cells_.push_back(below);
   }
   find_neighbours();
+  find_sums();
   fine_.resize(static_cast<Eigen::Index>(cells_.size()) * fine_steps * fine_steps, 3);
   Eigen::Index at = 0;
   for (const Cell& cell : cells_) {
@@ -95,6 +96,40 @@ void SkyPatches::find_neighbours() {
   }
 }
 
+// The integrals of directions over each cell in closed form, and how far cells reach.
+void SkyPatches::find_sums() {
+  const auto count = static_cast<Eigen::Index>(cells_.size());
+  sums_.resize(count, 3);
+  middles_.resize(count, 3);
+  reaches_.resize(count);
+  // int sqrt(1 - s^2) ds, of the sine s of altitude.
+  const auto level = [](double s) {
+    return 0.5 * (s * std::sqrt(std::max(0.0, 1.0 - s * s)) + std::asin(s));
+  };
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const Cell& cell = cells_[static_cast<std::size_t>(i)];
+    const double first = 2.0 * pi * cell.begin, last = first + 2.0 * pi * cell.width;
+    sums_.row(i) =
+        (level(cell.high) - level(cell.low)) * ((std::sin(last) - std::sin(first)) * north_ +
+                                                (std::cos(first) - std::cos(last)) * east_) +
+        0.5 * (cell.high * cell.high - cell.low * cell.low) * (last - first) * up_;
+    // The cap about the zenith, and that below, lie about the vertical.
+    const bool is_cap = cell.width == 1.0;
+    middles_.row(i) = is_cap ? Eigen::Vector3d(std::copysign(1.0, cell.low + cell.high) * up_)
+                             : direction(cell, 0.5, 0.5);
+    double least = 1.0;  // cosine to the farthest corner
+    for (const double v : {0.0, 1.0}) {
+      for (const double u : {0.0, 1.0}) {
+        if (is_cap && std::abs(v == 0.0 ? cell.low : cell.high) == 1.0) continue;
+        least = std::min(least, middles_.row(i).dot(direction(cell, u, v).transpose()));
+      }
+    }
+    // A little more, since the sides of a cell that follow the horizon bulge beyond its corners.
+    constexpr double bulge = 1.05;
+    reaches_[i] = bulge * std::sqrt(std::max(0.0, 1.0 - least * least));
+  }
+}
+
 int SkyPatches::cell_of(const Eigen::Vector3d& direction) const {
   const double sine = direction.dot(up_);
   const double altitude = std::asin(std::clamp(std::abs(sine), 0.0, 1.0));
@@ -127,10 +162,16 @@ double SkyPatches::solid_angle(int cell) const {
 
 Eigen::ArrayXd SkyPatches::irradiances(const Eigen::Vector3d& normal) const {
   constexpr int each = fine_steps * fine_steps;
-  const Eigen::ArrayXd cosine = (fine_ * normal).array().max(0.0);
+  const Eigen::ArrayXd whole = (sums_ * normal).array();
+  const Eigen::ArrayXd height = (middles_ * normal).array();
   Eigen::ArrayXd E(cell_count());
   for (int cell = 0; cell < cell_count(); ++cell) {
-    E[cell] = solid_angle(cell) * cosine.segment(cell * each, each).mean();
+    if (std::abs(height[cell]) > reaches_[cell]) {
+      E[cell] = std::max(0.0, whole[cell]);
+      continue;
+    }
+    const auto fine = fine_.middleRows(Eigen::Index{cell} * each, each);
+    E[cell] = solid_angle(cell) * (fine * normal).array().max(0.0).mean();
   }
   return E;
 }

@@ -41,8 +41,8 @@ class SkyPatches {
     return neighbours_[static_cast<std::size_t>(cell)];
   }
   /// The irradiance that each cell of radiance 1 gives an unobstructed point: int cos dw over its
-  /// part above the horizon of a unit normal, sr. Relative error about 1e-3 of a cell that the
-  /// horizon of an inclined normal cuts, 1e-4 otherwise.
+  /// part above the horizon of a unit normal, sr. Exact but for cells that the horizon cuts, whose
+  /// relative error is about 1e-3.
   Eigen::ArrayXd irradiances(const Eigen::Vector3d& normal) const;
 
  private:
@@ -54,6 +54,7 @@ class SkyPatches {
   };
   void add_row(int row, int count, double low, double high);
   void find_neighbours();
+  void find_sums();
   Eigen::Vector3d direction(const Cell& cell, double u, double v) const;
 
   double row_height_;  // radians; the cap about the zenith is as wide as a row is high
@@ -61,7 +62,10 @@ class SkyPatches {
   std::vector<Cell> cells_{};        // the dome's, then those below the horizon in the same order
   std::vector<int> first_of_row_{};  // of the dome, and the number of its cells
   std::vector<std::vector<int>> neighbours_{};
-  Eigen::MatrixX3d fine_{};  // directions all over each cell, cell after cell
+  Eigen::MatrixX3d fine_{};     // directions all over each cell, cell after cell
+  Eigen::MatrixX3d sums_{};     // int w dw over each cell
+  Eigen::MatrixX3d middles_{};  // directions to the middle of each cell
+  Eigen::ArrayXd reaches_{};  // sine of the angle from there to the cell's farthest point, at least
 };
 
 }  // namespace lightwell

@@ -42,7 +42,7 @@ Scene without_group(Scene scene, const WindowGroup& group) {
 // Direct sunlight of the sensors, lx, sensors x hours.
 Eigen::ArrayXXf sunlight_of_hours(const DaylightModel& model, std::span<const SkyHour> hours) {
   std::vector<SunDisc> suns;
-  for (const SkyHour& hour : hours) suns.push_back({.direction = hour.sun});
+  for (const SkyHour& hour : hours) suns.emplace_back(model.sky(), hour.sun);
   Eigen::ArrayXXf lux = model.direct_sun(suns);
   for (std::size_t h = 0; h < hours.size(); ++h) {
     lux.col(static_cast<Eigen::Index>(h)) *= static_cast<float>(hours[h].sun_lux);

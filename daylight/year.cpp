@@ -24,7 +24,7 @@ void simulate_year(const DaylightModel& model, const SkyCoefficients& sky,
     std::vector<Eigen::Index> hour_of_sun;
     for (std::size_t h = 0; h < block.hours.size(); ++h) {
       if (!(block.hours[h].sun_lux > 0.0)) continue;
-      suns.push_back({.direction = block.hours[h].sun});
+      suns.emplace_back(model.sky(), block.hours[h].sun);
       hour_of_sun.push_back(static_cast<Eigen::Index>(h));
     }
     const SensorLight sun = model.sun_coefficients(suns);

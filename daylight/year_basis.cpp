@@ -99,10 +99,10 @@ BandArray dome_at(const DaylightModel& model, const DomeOfVertices& dome,
 }
 
 // A year's light of sample vertices, a row for each vertex and band and a column for each hour,
-// and of all patches.
+// and what arrives at all patches.
 struct SampledYear {
   Eigen::MatrixXd samples{};
-  BandArray patches{};  // radiosity, patches x (hours x bands)
+  BandArray arriving{};  // E0, patches x (hours x bands)
 };
 
 SampledYear light_of_year(const DaylightModel& model, const DomeOfVertices& seen,
@@ -110,27 +110,17 @@ SampledYear light_of_year(const DaylightModel& model, const DomeOfVertices& seen
                           double ground_reflectance) {
   const Eigen::Index bands = model.scene().bands.count(),
                      count = static_cast<Eigen::Index>(hours.size());
-  const PatchMesh& mesh = model.mesh();
   SampledYear year{.samples = Eigen::MatrixXd(samples.size() * bands, count),
-                   .patches = BandArray(mesh.patch_count(), count * bands)};
+                   .arriving = model.hourly_arriving(hours, ground_reflectance)};
   const BandArray dome =
       dome_at(model, seen, samples, hour_luminances(seen.sky, hours, ground_reflectance));
-  // Memory of a block: 128 MB at vertices, and no more hours than rows are solved for at once.
-  const Eigen::Index step =
-      std::clamp<Eigen::Index>((Eigen::Index{1} << 25) / (mesh.vertex_count() * bands), 16, 512);
-  for (Eigen::Index first = 0; first < count; first += step) {
-    const Eigen::Index n = std::min(step, count - first);
-    const BandArray B = model.hourly_radiosity(
-        hours.subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(n)),
-        ground_reflectance);
-    year.patches.middleCols(first * bands, n * bands) = B;
-    const BandArray E = model.gather(B, samples.points(), model.options().gather_rays);
-    for (Eigen::Index i = 0; i < samples.size(); ++i) {
-      for (Eigen::Index b = 0; b < bands; ++b) {
-        for (Eigen::Index h = 0; h < n; ++h) {
-          year.samples(i * bands + b, first + h) =
-              double{E(i, h * bands + b)} + double{dome(i, (first + h) * bands + b)};
-        }
+  const BandArray E = reflected_by_importance(
+      model.importance(samples.points(), model.options().gather_rays), year.arriving, bands);
+  for (Eigen::Index i = 0; i < samples.size(); ++i) {
+    for (Eigen::Index b = 0; b < bands; ++b) {
+      for (Eigen::Index h = 0; h < count; ++h) {
+        year.samples(i * bands + b, h) =
+            double{E(i, h * bands + b)} + double{dome(i, h * bands + b)};
       }
     }
   }
@@ -285,7 +275,9 @@ YearBasis find_year_basis(const DaylightModel& model, std::span<const SkyHour> h
   basis.weight = (vectors.leftCols(terms).array().colwise() * brightness).cast<float>();
   const Eigen::MatrixXf factors =
       (vectors.leftCols(terms).array().colwise() / brightness).cast<float>().matrix();
-  const BandArray B = in_terms(year.patches, factors, bands);
+  // Terms may be below 0, which no light is; light is linear.
+  const BandArray E0 = in_terms(year.arriving, factors, bands);
+  const BandArray B = model.radiosity(E0.max(0.0f)) - model.radiosity((-E0).max(0.0f));
   year = {};
   const BandArray luminance =
       (hour_luminances(seen.sky, hours, ground_reflectance).matrix() * factors).array();

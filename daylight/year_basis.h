@@ -19,7 +19,7 @@ struct YearBasisOptions {
   DomeEffort view{.search = 2, .rays = 1024};  ///< of a vertex towards the dome
   int rays = 4096;  ///< of a vertex, for light that surfaces reflect; sample vertices have fewer
   int most_vertices = 400'000;
-  double most_memory = 3e9;  ///< bytes, of the radiosity of all patches in all hours
+  double most_memory = 3e9;  ///< bytes, of the light that arrives at all patches in all hours
   double most_bytes = 48e6;  ///< of the light in 16 bits; there are fewer terms rather than more
 };
 

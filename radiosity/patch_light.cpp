@@ -21,6 +21,16 @@ BandArray without_owned_emission(const PatchMesh& mesh, const DirectLight& direc
   return B;
 }
 
+// Area of the elements at each vertex, m^2; above 0 everywhere.
+Eigen::ArrayXf area_around_vertices(const PatchMesh& mesh) {
+  Eigen::ArrayXf sum = Eigen::ArrayXf::Zero(mesh.vertex_count());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto area = static_cast<float>(mesh.element_area[e]);
+    for (int c = 0; c < mesh.corner_count(e); ++c) sum[mesh.corners[e][c]] += area;
+  }
+  return sum.max(1e-30f);
+}
+
 }  // namespace
 
 BandArray unscaled_radiosity(const RadiositySolution& solution) {
@@ -30,15 +40,25 @@ BandArray unscaled_radiosity(const RadiositySolution& solution) {
 
 BandArray to_vertices(const PatchMesh& mesh, const BandArray& of_patches) {
   BandArray sum = BandArray::Zero(mesh.vertex_count(), of_patches.cols());
-  Eigen::ArrayXf weight = Eigen::ArrayXf::Zero(mesh.vertex_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
     const auto area = static_cast<float>(mesh.element_area[e]);
     for (int c = 0; c < mesh.corner_count(e); ++c) {
       sum.row(mesh.corners[e][c]) += area * of_patches.row(mesh.patch[e]);
-      weight[mesh.corners[e][c]] += area;
     }
   }
-  return sum.colwise() / weight.max(1e-30f);
+  return sum.colwise() / area_around_vertices(mesh);
+}
+
+BandArray shares_of_patches(const PatchMesh& mesh, const BandArray& shares) {
+  const BandArray by_area = shares.colwise() / area_around_vertices(mesh);
+  BandArray sum = BandArray::Zero(mesh.patch_count(), shares.cols());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const auto area = static_cast<float>(mesh.element_area[e]);
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      sum.row(mesh.patch[e]) += area * by_area.row(mesh.corners[e][c]);
+    }
+  }
+  return sum;
 }
 
 BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,

@@ -13,6 +13,13 @@ BandArray unscaled_radiosity(const RadiositySolution& solution);
 /// vertices x columns of `of_patches`.
 BandArray to_vertices(const PatchMesh& mesh, const BandArray& of_patches);
 
+/// Shares of patches from shares of vertices, the adjoint of to_vertices():
+///
+///     sum_v shares_v to_vertices(B)_v = sum_p result_p B_p    for every B.
+///
+/// `shares` are vertices x columns, the result is patches x columns.
+BandArray shares_of_patches(const PatchMesh& mesh, const BandArray& shares);
+
 /// The radiosity that the first gather reads, W/m^2, vertices x columns: that of patches, smoothed
 /// to vertices, without the emission that `direct_light` owns.
 BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,

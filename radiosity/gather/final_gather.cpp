@@ -161,6 +161,23 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
   return result;
 }
 
+BandArray gather_shares(const LitScene& lit, const GatherPoints& points,
+                        const GatherOptions& options) {
+  const HemisphereGather hemisphere(lit, options, points);
+  BandArray shares(points.size(),
+                   Eigen::Index{lit.mesh().vertex_count()} * lit.scene.bands.count());
+  const JournalPhase phase(options.run.journal, "shares", [&](Fingerprint& print) {
+    add_gather_inputs(print, lit.mesh(), points, options);
+  });
+  const auto values = [&](int begin, int size) { return std::tuple(rows_of(shares, begin, size)); };
+  for_each_point(points, options, phase, values,
+                 [&](int i, const GatherPoint& at, std::uint64_t key) {
+                   float variance = 0.0f;
+                   hemisphere.gather(at, key, shares.row(i).data(), variance);
+                 });
+  return shares;
+}
+
 namespace {
 
 // Gains of coated bases, vertices x channels: the direct light that a base gets beyond its

@@ -102,6 +102,13 @@ BandArray gather_direct(const LitScene& lit, const GatherPoints& points,
 GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosity,
                                    const GatherPoints& points, const GatherOptions& options);
 
+/// Shares of vertices in the light that gather_indirect() finds: the irradiance of each point by
+/// radiosity 1 of one band at one vertex alone, points x (vertices x bands), the bands of a vertex
+/// side by side. No rays are aimed at bright patches, which are not known. Throws Interrupted when
+/// progress says stop.
+BandArray gather_shares(const LitScene& lit, const GatherPoints& points,
+                        const GatherOptions& options);
+
 /// The radiosity that gather_irradiance reads, W/m^2: rho E, plus the emission of patches that
 /// `direct_light` does not own. `irradiance` E, its part `direct` straight from the lights, and the
 /// result are vertices x columns. Coated surfaces reflect direct light by its angle (see

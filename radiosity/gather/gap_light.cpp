@@ -149,24 +149,16 @@ void GapLight::add_direct(const ElementCaster& caster, const LightQuery& query,
 void GapLight::add_end(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                        std::uint64_t key, const Spectrum& share, Eigen::ArrayXd& sum) const {
   if (hit.facet < 0) return;
-  const PatchMesh& mesh = lit_.mesh();
-  const Eigen::Index bands = share.size();
-  const auto read = [&](const ElementHit& end, const Spectrum& throughput) {
-    for (int c = 0; c < mesh.corner_count(end.element); ++c) {
-      const auto row = radiosity_.row(mesh.corners[end.element][c]);
-      for (Eigen::Index k = 0; k < sum.size(); k += bands) {
-        const Spectrum value = end.weights[c] * row.segment(k, bands).transpose();
-        sum.segment(k, bands) += (throughput * value).cast<double>();
-      }
-    }
-  };
   if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
-    read(hit, static_cast<float>(paths_.base_factor(caster, ray, hit)) * share);
+    radiosity_.add(hit, Spectrum(static_cast<float>(paths_.base_factor(caster, ray, hit)) * share),
+                   sum);
   }
   if (!paths_.is_specular(hit.facet)) return;
   paths_.follow(caster, ray, hit, key, [&](const LightArrival& arrival) {
     if (arrival.hit.element < 0) return;
-    read(arrival.hit, static_cast<float>(arrival.base_factor) * share * arrival.throughput);
+    radiosity_.add(arrival.hit,
+                   Spectrum(static_cast<float>(arrival.base_factor) * share * arrival.throughput),
+                   sum);
   });
 }
 

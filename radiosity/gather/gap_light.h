@@ -10,6 +10,7 @@
 #include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/gather/gap_exits.h"
+#include "radiosity/gather/read_radiosity.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/solution.h"
@@ -38,8 +39,8 @@ struct GapAims {
 ///     B = rho (E_direct + B'),   B' at the end of one cosine-distributed ray
 class GapLight {
  public:
-  /// `radiosity` is that of gather_irradiance. Keeps references to all arguments.
-  GapLight(const LitScene& lit, const BandArray& radiosity, const LightPaths& paths)
+  /// `radiosity` is that of gather_irradiance(). Keeps references to the scene and the paths.
+  GapLight(const LitScene& lit, ReadRadiosity radiosity, const LightPaths& paths)
       : lit_(lit), radiosity_(radiosity), paths_(paths) {}
 
   /// True if a ray from a point of unit normal `normal` ends in a gap: on a surface that faces the
@@ -119,7 +120,7 @@ class GapLight {
   Eigen::Vector3d normal_towards(const Ray& ray, const ElementHit& hit) const;
 
   LitScene lit_;
-  const BandArray& radiosity_;
+  ReadRadiosity radiosity_;
   const LightPaths& paths_;
 };
 

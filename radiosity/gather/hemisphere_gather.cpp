@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <utility>
 
 #include "scene/random_purpose.h"
 
@@ -20,17 +21,28 @@ int ray_count(const GatherPoint& at, const GatherOptions& options) {
 
 HemisphereGather::HemisphereGather(const LitScene& lit, const BandArray& radiosity,
                                    const GatherOptions& options, const GatherPoints& points)
-    : mesh_(lit.mesh()),
-      caster_(lit.caster),
+    : HemisphereGather(lit, ReadRadiosity(lit.mesh(), radiosity),
+                       BrightPatches(lit.scene, lit.caster, radiosity), options, points) {}
+
+HemisphereGather::HemisphereGather(const LitScene& lit, const GatherOptions& options,
+                                   const GatherPoints& points)
+    : HemisphereGather(lit, ReadRadiosity(lit.mesh(), lit.scene.bands.count()), BrightPatches(),
+                       options, points) {}
+
+HemisphereGather::HemisphereGather(const LitScene& lit, ReadRadiosity radiosity,
+                                   BrightPatches bright, const GatherOptions& options,
+                                   const GatherPoints& points)
+    : caster_(lit.caster),
       radiosity_(radiosity),
       paths_(lit.scene, lit.caster, options.max_specular_depth),
       options_(options),
       bands_(lit.scene.bands.count()),
-      bright_(lit.scene, lit.caster, radiosity),
+      bright_(std::move(bright)),
       gaps_(lit, radiosity, paths_) {
   if (const FreeSource* dome = lit.direct_light.dome()) {
     dome_ = dome->light;
-    if (lit.direct_light.column_count() == radiosity.cols()) dome_column_ = dome->channel * bands_;
+    if (lit.direct_light.column_count() == radiosity.columns())
+      dome_column_ = dome->channel * bands_;
   }
   for (int i = 0; i < points.size(); ++i) {
     const int rays = ray_count(points[i], options);
@@ -46,7 +58,7 @@ HemisphereGather::HemisphereGather(const LitScene& lit, const BandArray& radiosi
 
 void HemisphereGather::gather(const GatherPoint& at, std::uint64_t key, float* irradiance,
                               float& variance) const {
-  const Eigen::Index columns = radiosity_.cols();
+  const Eigen::Index columns = radiosity_.columns();
   Sums sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
   const HemisphereSets& set = sets_.at(ray_count(at, options_));
   const HemisphereSets::Draw draw = set.draw(random_key(key, RandomPurpose::gather_rays));
@@ -125,7 +137,7 @@ void HemisphereGather::aim_at_bright(const Place& place, Sums& sum) const {
       const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
       const double share = bright_.share(place.bright, at.normal.dot(ray[r].direction), place.rays,
                                          ray[r], hit[r], aimed_density(place, ray[r], hit[r]));
-      add_radiosity(hit[r], share * paths_.base_factor(ray[r], hit[r]), sum[is_first ? 0 : 1]);
+      radiosity_.add(hit[r], share * paths_.base_factor(ray[r], hit[r]), sum[is_first ? 0 : 1]);
     }
   }
 }
@@ -211,7 +223,7 @@ void HemisphereGather::add(const Place& place, const Ray& ray, const ElementHit&
                                 ? share
                                 : bright_.share(place.bright, at.normal.dot(ray.direction),
                                                 place.rays, ray, hit, aimed);
-    add_radiosity(hit, straight * paths_.base_factor(ray, hit), sum);
+    radiosity_.add(hit, straight * paths_.base_factor(ray, hit), sum);
   }
   if (paths_.is_specular(hit.facet)) {
     add_path(ray, hit, random_key(place.key, RandomPurpose::gather_paths, index), share, sum);
@@ -247,37 +259,11 @@ void HemisphereGather::add_path(const Ray& ray, const ElementHit& hit, std::uint
   const auto weight = static_cast<float>(share);
   const PathLosses losses =
       paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
-        add_throughput(end, weight * throughput, sum);
+        if (end.element >= 0) radiosity_.add(end, Spectrum(weight * throughput), sum);
       });
   if (losses.sky.size() == 0 || dome_.size() == 0) return;
   sum.segment(dome_column_, bands_) +=
       (std::numbers::pi_v<float> * weight * dome_ * losses.sky).cast<double>();
-}
-
-// `throughput` has bands, and the columns are those of one channel after the other.
-void HemisphereGather::add_throughput(const ElementHit& hit, const Spectrum& throughput,
-                                      Eigen::ArrayXd& sum) const {
-  if (hit.element < 0) return;
-  const Eigen::Index bands = throughput.size();
-  const auto& corners = mesh_.corners[hit.element];
-  for (Eigen::Index k = 0; k < sum.size(); k += bands) {
-    Spectrum B = Spectrum::Zero(bands);
-    for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
-      B += hit.weights[c] * radiosity_.row(corners[c]).segment(k, bands).transpose();
-    }
-    sum.segment(k, bands) += (throughput * B).cast<double>();
-  }
-}
-
-void HemisphereGather::add_radiosity(const ElementHit& hit, double share,
-                                     Eigen::ArrayXd& sum) const {
-  const auto& corners = mesh_.corners[hit.element];
-  for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
-    const float* B = radiosity_.data() + corners[c] * radiosity_.cols();
-    for (Eigen::Index k = 0; k < sum.size(); ++k) {
-      sum[k] += share * static_cast<double>(hit.weights[c] * B[k]);
-    }
-  }
 }
 
 // The square of half the difference between the halves' means.

@@ -9,6 +9,7 @@
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/gather/gap_light.h"
+#include "radiosity/gather/read_radiosity.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "scene/hemisphere_sets.h"
@@ -23,6 +24,8 @@ class HemisphereGather {
   /// `points` give the numbers of rays to prepare for. Keeps references to all but `points`.
   HemisphereGather(const LitScene& lit, const BandArray& radiosity, const GatherOptions& options,
                    const GatherPoints& points);
+  /// For shares of vertices in place of their light (see gather_shares()).
+  HemisphereGather(const LitScene& lit, const GatherOptions& options, const GatherPoints& points);
 
   /// E = (1/N) sum B over N cosine-distributed rays and, if there are bright patches or portals,
   /// rays aimed at them besides; B of all kinds is weighted by the balance heuristic. Writes the
@@ -31,6 +34,9 @@ class HemisphereGather {
   void gather(const GatherPoint& at, std::uint64_t key, float* irradiance, float& variance) const;
 
  private:
+  HemisphereGather(const LitScene& lit, ReadRadiosity radiosity, BrightPatches bright,
+                   const GatherOptions& options, const GatherPoints& points);
+
   // A gather point, and the bright patches, portals and exits of a gap that are seen from there.
   struct Place {
     const GatherPoint& at;
@@ -67,15 +73,10 @@ class HemisphereGather {
   void add_path(const Ray& ray, const ElementHit& hit, std::uint64_t key, double share,
                 Eigen::ArrayXd& sum) const;
 
-  void add_throughput(const ElementHit& hit, const Spectrum& throughput, Eigen::ArrayXd& sum) const;
-
-  void add_radiosity(const ElementHit& hit, double share, Eigen::ArrayXd& sum) const;
-
   float half_difference(const std::array<Eigen::ArrayXd, 2>& sum, int count) const;
 
-  const PatchMesh& mesh_;
   const ElementCaster& caster_;
-  const BandArray& radiosity_;
+  ReadRadiosity radiosity_;
   LightPaths paths_;
   const GatherOptions& options_;
   Eigen::Index bands_;

@@ -56,4 +56,14 @@ BandArray solve_columns(const PatchMesh& mesh, const FormFactors& form_factors,
   return B;
 }
 
+BandArray solve_importance(const PatchMesh& mesh, const FormFactors& form_factors,
+                           const BandArray& received, double tolerance, const Progress& progress) {
+  const Eigen::ArrayXf area = mesh.area.cast<float>();
+  BandArray sent = received;
+  sent.colwise() /= area;
+  BandArray importance = solve_columns(mesh, form_factors, sent, tolerance, progress);
+  importance.colwise() *= area;
+  return importance;
+}
+
 }  // namespace lightwell

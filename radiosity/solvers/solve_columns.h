@@ -14,4 +14,19 @@ namespace lightwell {
 BandArray solve_columns(const PatchMesh& mesh, const FormFactors& form_factors,
                         const BandArray& arriving, double tolerance, const Progress& progress = {});
 
+/// Importance of patches (Smits, Arvo & Salesin 1992): the weights w of arriving light in what a
+/// receiver gets of the radiosity that this light causes,
+///
+///     sum_p g_p B_p = sum_p w_p E0_p    for every E0, where B = rho (E0 + F B).
+///
+/// `received` is g, patches x columns, a receiver's bands in a column each; the result is w in the
+/// same columns. By reciprocity, A_i F_ij = A_j F_ji, importance is light that receivers send:
+///
+///     w = A B',   B' = rho (g / A + F B').
+///
+/// `tolerance` and what is thrown are those of solve_columns(), for B'.
+BandArray solve_importance(const PatchMesh& mesh, const FormFactors& form_factors,
+                           const BandArray& received, double tolerance,
+                           const Progress& progress = {});
+
 }  // namespace lightwell

@@ -17,8 +17,9 @@ struct Probe {
 };
 
 /// Reads probes from the columns x,y,z,nx,ny,nz of a CSV file, in the scene file's units. A header
-/// line names the columns; more columns are ignored. Throws InputError that names file, line and
-/// value.
+/// line names the columns; more columns are ignored. A file without header has the six numbers in
+/// this order, as RADIANCE's rtrace reads them; spaces serve as well as commas. Throws InputError
+/// that names file, line and value.
 std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_per_unit);
 
 /// Options of a solve for probe_irradiance alone: elements are not refined, and the error of their

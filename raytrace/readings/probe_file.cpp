@@ -30,6 +30,27 @@ struct FileLocation {
   }
 };
 
+// The fields of a line: between commas, or between spaces where there are none.
+std::vector<std::string_view> fields_of(std::string_view text) {
+  if (text.find(',') != std::string_view::npos) return comma_fields(text);
+  std::vector<std::string_view> fields;
+  constexpr std::string_view space = " \t";
+  for (auto begin = text.find_first_not_of(space); begin != std::string_view::npos;) {
+    const auto end = text.find_first_of(space, begin);
+    fields.push_back(text.substr(begin, end - begin));
+    begin = text.find_first_not_of(space, end);
+  }
+  return fields;
+}
+
+// True for a line that names no columns, as those of RADIANCE's files of points are.
+bool is_all_numbers(const std::vector<std::string_view>& cells) {
+  return std::ranges::all_of(cells, [](std::string_view cell) {
+    return cell.find_first_not_of("+-.0123456789eE") == std::string_view::npos &&
+           cell.find_first_of("0123456789") != std::string_view::npos;
+  });
+}
+
 Columns read_header(const std::vector<std::string_view>& cells, const FileLocation& location) {
   Columns columns{};
   for (std::size_t c = 0; c < column_names.size(); ++c) {
@@ -80,6 +101,7 @@ Probe read_row(const std::vector<std::string_view>& cells, const Columns& column
 }  // namespace
 
 std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_per_unit) {
+  constexpr Columns in_order = {0, 1, 2, 3, 4, 5};
   FileLocation location{.file = csv.string()};
   std::ifstream stream(csv);
   if (!stream || std::filesystem::is_directory(csv)) {
@@ -95,7 +117,8 @@ std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_p
     if (location.line == 1 && text.starts_with(byte_order_mark)) text.remove_prefix(3);
     text = trimmed(text);
     if (text.empty() || text.starts_with('#')) continue;
-    const auto cells = comma_fields(text);
+    const auto cells = fields_of(text);
+    if (!columns && is_all_numbers(cells)) columns = in_order;
     if (!columns) {
       columns = read_header(cells, location);
     } else {

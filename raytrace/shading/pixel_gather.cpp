@@ -42,7 +42,7 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
     : paths_(scene, caster, max_specular_depth),
       radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution)),
       bright_(scene, caster, radiosity_),
-      gaps_({scene, caster, direct_light}, radiosity_, paths_),
+      gaps_({scene, caster, direct_light}, {caster.mesh(), radiosity_}, paths_),
       aims_(std::max(BrightPatches::aimed(most_rays), Portals::aimed(most_rays))),
       exit_aims_(GapExits::aimed(most_rays)),
       portals_(find_portals(scene, caster, brightness_of_vertices(caster.mesh(), radiosity_))) {

@@ -101,13 +101,37 @@ TEST(DaylightModel, OneBandGivesWhatThreeDo) {
   }
 }
 
+// Where sensors are fewer than the sources of a year, reflected light is found by importance, else
+// by a solve for each patch; the sensor's rays are the same. Both solves leave 1e-6 / (1 - rho) of
+// their largest values: for the floor before the window some ten times the light at the desk.
+TEST(DaylightModel, ImportanceGivesTheLightOfColumns) {
+  Scene room = test::room_with_window(test::diffuse(Bands(rgb_bands()), 0.5f));
+  room.materials[0].reflectance[0] = 0.6f;
+  DaylightOptions options = few_patches();
+  options.sky_subdivision = 1;
+  options.gather_rays = 64;
+  DaylightModel model(room, Vector3d::UnitZ(), Vector3d::UnitY(), options);
+  std::vector<GatherPoint> desks = test::desks();
+  const auto few = static_cast<Eigen::Index>(desks.size());
+  model.set_sensors(desks);
+  const Eigen::ArrayXXf by_importance = model.sky_coefficients().reflected;
+  desks.resize(static_cast<std::size_t>(model.sky().column_count() + 4401), desks.front());
+  model.set_sensors(desks);
+  const Eigen::ArrayXXf by_columns = model.sky_coefficients().reflected.topRows(few);
+  for (Eigen::Index i = 0; i < few; ++i) {
+    const float all = by_columns.row(i).sum();
+    EXPECT_GT(all, 0.0f);
+    EXPECT_LT((by_importance.row(i) - by_columns.row(i)).abs().sum(), 2e-5f * all) << "desk " << i;
+  }
+}
+
 TEST(DaylightModel, SunIsDirectAndReflected) {
   const Scene room = test::room_with_window(test::diffuse(Bands(rgb_bands()), 0.5f));
   DaylightModel model(room, Vector3d::UnitZ(), Vector3d::UnitY(), few_patches());
   model.set_sensors(test::desks());
   // Suns 45 degrees high: the southern one reaches the first desk alone, the northern one none.
-  const std::vector<SunDisc> suns = {{Vector3d(0.0, -1.0, 1.0).normalized()},
-                                     {Vector3d(0.0, 1.0, 1.0).normalized()}};
+  const std::vector<SunDisc> suns = {{model.sky(), Vector3d(0.0, -1.0, 1.0).normalized()},
+                                     {model.sky(), Vector3d(0.0, 1.0, 1.0).normalized()}};
   const SensorLight light = model.sun_coefficients(suns);
   // Cosines vary over the disc by half its radius, 0.0047, times sin 45; four errors of 16 rays.
   EXPECT_NEAR(double{light.direct(0, 0)}, std::sqrt(0.5), 4.0 * 0.5 * 0.0047 * 0.71 / 4.0);

@@ -80,7 +80,7 @@ TEST(SkyPatches, EvenSkyGivesPi) {
   const SkyPatches sky = patches(2);
   const auto below = [&](const Eigen::ArrayXd& E) { return E.tail(sky.dome_count()).sum(); };
   const Eigen::ArrayXd level = sky.irradiances(Vector3d::UnitZ());
-  EXPECT_NEAR(level.sum(), pi, 1e-4);
+  EXPECT_NEAR(level.sum(), pi, 1e-12);
   EXPECT_NEAR(below(level), 0.0, 1e-12);
   const Eigen::ArrayXd wall = sky.irradiances(Vector3d::UnitX());
   EXPECT_NEAR(wall.sum(), pi, 3e-4);

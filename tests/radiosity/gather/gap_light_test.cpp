@@ -60,7 +60,8 @@ TEST(GapLight, IsNotLookedForBetweenPlatesFarApart) {
   plates.caster.closest_hits({&ray, 1}, {&hit, 1});
   ASSERT_GE(hit.element, 0);
   const LightPaths paths(plates.scene, plates.caster, 8);
-  const GapLight gaps({plates.scene, plates.caster, plates.light}, plates.radiosity, paths);
+  const GapLight gaps({plates.scene, plates.caster, plates.light},
+                      {plates.caster.mesh(), plates.radiosity}, paths);
   EXPECT_NEAR(std::sqrt(plates.mesh.element_area[hit.element]), 0.447, 0.001);
   EXPECT_FALSE(gaps.is_gap(Vector3d::UnitZ(), ray, hit));
   // Seen from nearer it would be a gap; walls that stand on the plate never are.

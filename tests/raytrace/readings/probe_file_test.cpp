@@ -48,6 +48,19 @@ TEST_F(ReadProbes, PositionsBecomeMetresAndNormalsUnitLength) {
   EXPECT_LT((probes[0].normal - Eigen::Vector3d(0.6, 0, 0.8)).norm(), 1e-15);
 }
 
+// As RADIANCE's rtrace reads points.
+TEST_F(ReadProbes, SixNumbersALineNeedNoNames) {
+  for (const char* text :
+       {"1 2 -3e-1 0 0\t1\n\n  4 5 6 0 1 0 \r\n", "1,2,-0.3,0,0,1\n4, 5, 6, 0, 1, 0"}) {
+    const auto probes = read(text);
+    ASSERT_EQ(probes.size(), 2u) << text;
+    EXPECT_EQ(probes[0].position, Eigen::Vector3d(1, 2, -0.3));
+    EXPECT_EQ(probes[1].normal, Eigen::Vector3d(0, 1, 0));
+  }
+  EXPECT_TRUE(says(refusal("1 2 3\n"), "p.csv:1: has 3 values"));
+  EXPECT_TRUE(says(refusal("1 2 3 0 0 1\n1 2 3 0 0 up\n"), "p.csv:2: nz is 'up'"));
+}
+
 TEST_F(ReadProbes, ErrorsNameFileLineAndValue) {
   const std::string header = "x,y,z,nx,ny,nz\n";
   EXPECT_TRUE(says(refusal("x,y,z,nx,ny\n"), "p.csv:1: no column is named 'nz'"));

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "mesh/elements/element_caster.h"
+#include "radiosity/solution/solution.h"
+
+namespace lightwell {
+
+/// The radiosity that rays of a gather read where they end, by columns: that of a solution, or 1 at
+/// a single vertex in each column, which gives the share of each vertex in what a point gathers.
+class ReadRadiosity {
+ public:
+  /// `values` are vertices x columns, W/m^2; keeps references.
+  ReadRadiosity(const PatchMesh& mesh, const BandArray& values)
+      : mesh_(mesh), values_(&values), columns_(values.cols()) {}
+  /// A column for each vertex and band, the bands of a vertex side by side. Keeps a reference.
+  ReadRadiosity(const PatchMesh& mesh, Eigen::Index bands)
+      : mesh_(mesh), columns_(mesh.vertex_count() * bands), bands_(bands) {}
+
+  Eigen::Index columns() const { return columns_; }
+
+  /// Adds `share` times the radiosity at an element's point.
+  void add(const ElementHit& hit, double share, Eigen::ArrayXd& sum) const {
+    const auto& corners = mesh_.corners[hit.element];
+    for (int c = 0; c < mesh_.corner_count(hit.element); ++c) {
+      if (!values_) {
+        sum.segment(corners[c] * bands_, bands_) += share * double{hit.weights[c]};
+        continue;
+      }
+      const float* B = values_->data() + corners[c] * columns_;
+      for (Eigen::Index k = 0; k < columns_; ++k) {
+        sum[k] += share * static_cast<double>(hit.weights[c] * B[k]);
+      }
+    }
+  }
+
+  /// Adds the radiosity at an element's point times the share of each band.
+  void add(const ElementHit& hit, const Spectrum& share, Eigen::ArrayXd& sum) const {
+    const Eigen::Index bands = share.size();
+    const auto& corners = mesh_.corners[hit.element];
+    const int count = mesh_.corner_count(hit.element);
+    if (!values_) {
+      for (int c = 0; c < count; ++c) {
+        sum.segment(corners[c] * bands, bands) += (hit.weights[c] * share).cast<double>();
+      }
+      return;
+    }
+    for (Eigen::Index k = 0; k < columns_; k += bands) {
+      Spectrum B = Spectrum::Zero(bands);
+      for (int c = 0; c < count; ++c) {
+        B += hit.weights[c] * values_->row(corners[c]).segment(k, bands).transpose();
+      }
+      sum.segment(k, bands) += (share * B).cast<double>();
+    }
+  }
+
+ private:
+  const PatchMesh& mesh_;
+  const BandArray* values_ = nullptr;  // null: 1 at a single vertex
+  Eigen::Index columns_ = 0, bands_ = 0;
+};
+
+}  // namespace lightwell
