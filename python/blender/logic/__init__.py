@@ -1,0 +1,1 @@
+"""Conversions of the Blender add-on that need no Blender: light, materials, cameras, files, colours."""

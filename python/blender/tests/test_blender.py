@@ -1,0 +1,233 @@
+"""The add-on in Blender without a window: the same lux as a scene by hand, and sentences for bad input."""
+
+import math
+import os
+import re
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+
+import bpy  # noqa: E402
+import numpy as np  # noqa: E402
+from mathutils import Vector  # noqa: E402
+from rooms import add_box, add_light, add_mesh, addon, cube_room, empty_scene, matt, three_rooms  # noqa: E402
+
+PROGRAM = os.environ["LIGHTWELL_PROGRAM"]
+
+# The cube of cube_room() with Blender's order of corners, and its light as a panel that shines down.
+CUBE_BY_HAND = """
+[materials.walls]
+reflectance = 0.5
+[materials.panel]
+reflectance = 0
+power = [10, 10, 10]
+sides = "one"
+[[surfaces]]
+name = "Cube"
+material = "walls"
+polygons = [
+  [[-1, -1, 0], [-1, -1, 2], [-1, 1, 2], [-1, 1, 0]],
+  [[-1, 1, 0], [-1, 1, 2], [1, 1, 2], [1, 1, 0]],
+  [[1, 1, 0], [1, 1, 2], [1, -1, 2], [1, -1, 0]],
+  [[1, -1, 0], [1, -1, 2], [-1, -1, 2], [-1, -1, 0]],
+  [[-1, 1, 0], [1, 1, 0], [1, -1, 0], [-1, -1, 0]],
+  [[1, 1, 2], [-1, 1, 2], [-1, -1, 2], [1, -1, 2]],
+]
+[[surfaces]]
+name = "Area"
+material = "panel"
+polygon = [[-0.25, -0.25, 1.75], [-0.25, 0.25, 1.75], [0.25, 0.25, 1.75], [0.25, -0.25, 1.75]]
+"""
+
+
+def solve(scene):
+    """Solves in place; returns the message, or that of the error."""
+    try:
+        bpy.ops.lightwell.solve()
+    except RuntimeError as error:
+        return str(error)
+    return scene.lightwell.message
+
+
+def lux_at(scene, place):
+    """Lux on the first front below a place."""
+    reader = addon.overlay.Reader(addon.show.light_object(scene))
+    return reader.at(Vector(place), Vector((0, 0, -1)))[0]
+
+
+def notes():
+    return bpy.data.texts[addon.solve.NOTES].as_string()
+
+
+class Room(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def save(self):
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(self.folder, "room.blend"))
+
+    def test_cube_has_the_lux_of_the_room_written_by_hand(self):
+        scene = cube_room()
+        self.save()
+        self.assertRegex(solve(scene), r"^\d+ elements in")
+        by_hand = os.path.join(self.folder, "by-hand.toml")
+        with open(by_hand, "w", encoding="utf-8") as file:
+            file.write(CUBE_BY_HAND)
+        solution = os.path.join(self.folder, "by-hand.vtp")
+        arguments = [PROGRAM, "solve", by_hand, "-o", solution, "--channels", "Area=Area"]
+        subprocess.run(arguments, check=True, capture_output=True)
+        ours = addon.show.solution_of(scene)
+        theirs = addon.show.read_solution(solution)
+        # The light's corners are float32 in Blender: exact, as all numbers of this room are.
+        np.testing.assert_array_equal(ours.points, theirs.points)
+        np.testing.assert_allclose(ours.lux([1.0]), theirs.lux([1.0]), rtol=1e-6)
+        self.assertAlmostEqual(ours.flux[0], 6830.0, delta=6830 * 1e-6)
+
+    def test_dimming_is_linear_and_a_reading_is_that_of_the_program(self):
+        scene = cube_room()
+        add_light("Point", "POINT", (0.5, 0.5, 1.0), 3.0, shadow_soft_size=0.0)
+        self.save()
+        solve(scene)
+        place = (0.31, -0.17, 1.0)
+        both = lux_at(scene, place)
+        points = os.path.join(self.folder, "points.csv")
+        with open(points, "w", encoding="utf-8") as file:
+            file.write(f"x,y,z,nx,ny,nz\n{place[0]},{place[1]},0,0,0,1\n")
+        folder = os.path.join(self.folder, "room-lightwell")
+        out = os.path.join(self.folder, "lux.csv")
+        files = [os.path.join(folder, name) for name in ("scene.toml", "solution.vtp")]
+        command = [PROGRAM, "probe", *files, "--points", points, "-o", out, "--interpolate"]
+        subprocess.run(command, check=True, capture_output=True)
+        with open(out, encoding="utf-8") as file:
+            head, row = (line.split(",") for line in file.read().splitlines()[:2])
+        # Weights and values are floats of 24 bits in Blender; a sum of four keeps 1e-6.
+        self.assertAlmostEqual(both / float(row[head.index("lux")]), 1.0, delta=1e-5)
+        scene.lightwell.channels["Point"].level = 0.0
+        area = lux_at(scene, place)
+        scene.lightwell.channels["Point"].level = 0.5
+        self.assertAlmostEqual(lux_at(scene, place) / (0.5 * (area + both)), 1.0, delta=1e-5)
+
+    def test_three_rooms_with_doors_are_solved_and_shown(self):
+        scene = three_rooms()
+        self.save()
+        begin = time.monotonic()
+        said = solve(scene)
+        print(f"three rooms: {said}; {time.monotonic() - begin:.1f} s from the click to the lux")
+        # A wall keeps the lamp of its room out of the next but one: only light through two doors arrives.
+        for channel in scene.lightwell.channels:
+            channel.level = 1.0 if channel.name == "lamp 3" else 0.0
+        self.assertGreater(lux_at(scene, (10.4, 2, 1)), 100 * lux_at(scene, (2, 2, 1)))
+        self.assertGreater(lux_at(scene, (2, 2, 1)), 0.0)
+        self.assertIn("2 objects hidden in renders", notes())
+
+    def test_feet_are_metres_in_the_scene_and_feet_in_the_view(self):
+        scene = cube_room()
+        self.save()
+        solve(scene)
+        metres = lux_at(scene, (0.3, 0.2, 1.0))
+        scene.unit_settings.system = "IMPERIAL"
+        scene.unit_settings.scale_length = 0.3048
+        solve(scene)
+        feet = lux_at(scene, (0.3, 0.2, 1.0))
+        # The same watts in a room 0.3048 times as large; the room's own noise of rays is scaled alike,
+        # and rounds otherwise.
+        self.assertAlmostEqual(feet * 0.3048**2 / metres, 1.0, delta=1e-3)
+        self.assertIn("0.3048 m", notes())
+
+    def test_lightmaps_come_back_with_a_picture(self):
+        scene = cube_room()
+        self.save()
+        solve(scene)
+        scene.lightwell.channels[0].level = 0.5
+        bpy.ops.lightwell.lightmaps(size=128)
+        found = [o for o in scene.objects if o.get(addon.read_scene.OWN) == addon.lightmaps.NAME]
+        meshes = [o for o in found if o.type == "MESH"]
+        self.assertTrue(meshes, scene.lightwell.message)
+        nodes = meshes[0].data.materials[0].node_tree.nodes
+        self.assertTrue(any(node.type == "TEX_IMAGE" and node.image.size[0] == 128 for node in nodes))
+        solve(scene)
+        self.assertNotIn("left out", notes())  # models of the light are no part of the scene
+
+
+class BadInput(unittest.TestCase):
+    """Each is a sentence, and Blender goes on."""
+
+    def test_no_light(self):
+        scene = empty_scene()
+        add_box("box", (0, 0, 0), (1, 1, 1))
+        self.assertIn("nothing shines in the scene", solve(scene))
+
+    def test_no_faces_and_hidden_objects(self):
+        scene = empty_scene()
+        add_light("lamp", "POINT", (0, 0, 1), 5.0)
+        self.assertIn("no visible object has faces", solve(scene))
+        add_box("box", (0, 0, 0), (1, 1, 1)).hide_set(True)
+        self.assertIn("no visible object has faces", solve(scene))
+
+    def test_damaged_meshes_and_values(self):
+        scene = empty_scene()
+        points = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0.5, 0.5, 1), (0.5, 0.5, 1)]
+        add_mesh("fan", points, [(0, 1, 4), (0, 1, 2, 3), (1, 0, 5), (0, 4, 5)], matt("m", (1.5, 1, 1)))
+        add_mesh("star", [(0, 0, 2), (1, 1, 2), (1, 0, 2), (0, 1, 2)], [(0, 1, 2, 3)])
+        add_mesh("far", [(math.nan, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)])
+        add_light("negative", "POINT", (0, 0, 1), -5.0)
+        add_light("lamp", "POINT", (0.2, 0.3, 3), 5.0)
+        self.assertRegex(solve(scene), r"^\d+ elements in")
+        for said in ("not finite (far)", "negative has negative watts", "not saved", "base colour above 1"):
+            self.assertIn(said, notes())
+
+    def test_photometric_file_that_is_missing_or_wrong(self):
+        scene = cube_room()
+        scene.objects["Area"].data["lightwell_ies"] = "/nowhere/lamp.ies"
+        self.assertRegex(solve(scene), r"^\d+ elements in")
+        self.assertIn("/nowhere/lamp.ies (No such file or directory)", notes())
+        with tempfile.NamedTemporaryFile("w", suffix=".ies") as file:
+            file.write("no luminaire")
+            file.flush()
+            scene.objects["Area"].data["lightwell_ies"] = file.name
+            self.assertIn("luminaires/", solve(scene))
+
+    def test_program_of_another_version_or_none(self):
+        scene = cube_room()
+        with tempfile.TemporaryDirectory() as folder:
+            fake = os.path.join(folder, "lightwell")
+            with open(fake, "w", encoding="utf-8") as file:
+                file.write("#!/bin/sh\necho lightwell 9.3.0\n")
+            os.chmod(fake, 0o755)
+            for program, said in ((fake, "is Lightwell 9.3"), ("/bin/ls", "is not Lightwell"), ("/no", "no program")):
+                os.environ["LIGHTWELL_PROGRAM"] = program
+                self.addCleanup(os.environ.__setitem__, "LIGHTWELL_PROGRAM", PROGRAM)
+                self.assertIn(said, solve(scene))
+
+    def test_scene_file_of_somebody_else(self):
+        scene = cube_room()
+        with tempfile.TemporaryDirectory() as folder:
+            with open(os.path.join(folder, "scene.toml"), "w", encoding="utf-8") as file:
+                file.write("# mine\n")
+            scene.lightwell.folder = folder
+            self.assertIn("was not written by this add-on", solve(scene))
+
+    def test_cancelled_run_keeps_earlier_light(self):
+        scene = cube_room()
+        solve(scene)
+        before = lux_at(scene, (0.3, 0.2, 1.0))
+        scene.lightwell.effort = "ACCURACY"
+        exported, folder = addon.solve.export(bpy.context)
+        arguments = addon.solve.solve_arguments(PROGRAM, scene.lightwell, folder, exported.emitters)
+        job = addon.solve.Job(arguments, folder)
+        job.cancel()
+        addon.solve.start(bpy.context, job, addon.solve.take_light)
+        self.assertIn("stopped", scene.lightwell.message)
+        self.assertEqual(lux_at(scene, (0.3, 0.2, 1.0)), before)
+        self.assertFalse([name for name in os.listdir(folder) if re.search(r"\.part$", name)])
+
+
+if __name__ == "__main__":
+    addon.register()
+    unittest.main()
