@@ -1,5 +1,6 @@
 """The legend of the false colours in the 3D view, and lux under the cursor."""
 
+from dataclasses import dataclass
 from typing import List, Optional, Tuple
 
 import blf
@@ -14,11 +15,21 @@ from mathutils.bvhtree import BVHTree
 from . import show
 from .logic.colours import Scale, bilinear, false_colours, lux_text
 
-MARK = "lightwell_reading"
 WIDTH, HEIGHT, MARGIN = 18, 220, 28  # of the legend, in pixels at the usual size of the interface
 
 _handle: Optional[object] = None
 _reading: Optional[Tuple[Tuple[int, int], str]] = None  # beside the cursor: where, and what
+
+
+@dataclass(frozen=True)
+class Reading:
+    """Lux at a place, and the vertices of the light's object that it lies between."""
+
+    lux: float
+    place: Vector
+    normal: Vector
+    corners: Tuple[int, ...]
+    weights: Tuple[float, ...]
 
 
 class Reader:
@@ -31,23 +42,24 @@ class Reader:
         self.tree = BVHTree.FromPolygons(self.points, self.elements)
         self.mesh = mesh
 
-    def at(self, origin: Vector, direction: Vector) -> Optional[Tuple[float, Vector, Vector]]:
-        """Lux, place and normal of the first front that a ray meets; None if it meets none."""
+    def at(self, origin: Vector, direction: Vector) -> Optional[Reading]:
+        """The first front that a ray meets; None if it meets none."""
         way = direction.normalized()
         for _ in range(1000):
             place, normal, element, _ = self.tree.ray_cast(origin, way)
             if place is None:
                 return None
             if normal.dot(way) < 0.0:
-                return self._lux(element, place), place, normal
+                return self._reading(element, place, normal)
             origin = place + 1e-5 * way  # backs are not drawn
         return None
 
-    def _lux(self, element: int, place: Vector) -> float:
+    def _reading(self, element: int, place: Vector, normal: Vector) -> Reading:
         corners = self.elements[element]
         values = self.mesh.attributes[show.LUX].data
         weights = bilinear(np.array([self.points[c] for c in corners], float), np.array(place, float))
-        return float(sum(w * values[c].value for w, c in zip(weights, corners)))
+        lux = float(sum(w * values[c].value for w, c in zip(weights, corners)))
+        return Reading(lux, place, normal, corners, tuple(float(w) for w in weights))
 
 
 def draw() -> None:
@@ -71,7 +83,7 @@ def draw() -> None:
 
 def kept_readings(scene: bpy.types.Scene) -> List[Tuple[str, Vector]]:
     """Readings that a click has kept: empties with their lux."""
-    return [(found[MARK], found.matrix_world.translation) for found in scene.objects if MARK in found]
+    return [(found[show.MARK], found.matrix_world.translation) for found in scene.objects if show.MARK in found]
 
 
 def legend_triangles(scale: Scale, size: float) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -141,10 +153,10 @@ class LIGHTWELL_OT_read(bpy.types.Operator):
         if region is None or event.type not in {"MOUSEMOVE", "LEFTMOUSE"}:
             return {"PASS_THROUGH"}
         hit, place = self._look(*region, event)
-        _reading = (place, lux_text(hit[0])) if hit else None
+        _reading = (place, lux_text(hit.lux)) if hit else None
         _redraw_views(context)
         if event.type == "LEFTMOUSE" and event.value == "PRESS" and hit:
-            keep_reading(context.scene, *hit)
+            keep_reading(context.scene, hit)
         return {"RUNNING_MODAL"} if event.type == "LEFTMOUSE" else {"PASS_THROUGH"}
 
     def _look(self, region, space, event):
@@ -171,17 +183,23 @@ def _view_region(context: bpy.types.Context, event: bpy.types.Event):
     return None
 
 
-def keep_reading(scene: bpy.types.Scene, lux: float, place: Vector, normal: Vector) -> bpy.types.Object:
+def keep_reading(scene: bpy.types.Scene, reading: Reading) -> bpy.types.Object:
     """Marks a place with its lux."""
-    found = bpy.data.objects.new(lux_text(lux), None)
+    found = bpy.data.objects.new("lux", None)
     found.empty_display_type = "SINGLE_ARROW"
     found.empty_display_size = 0.2 / show.metres_of(scene)
-    found.location = place
+    found.location = reading.place
     found.rotation_mode = "QUATERNION"
-    found.rotation_quaternion = normal.to_track_quat("Z", "Y")
-    found[MARK] = lux_text(lux)
+    found.rotation_quaternion = reading.normal.to_track_quat("Z", "Y")
+    _set_mark(found, reading)
     show.collection_of(scene, "Lightwell").objects.link(found)
     return found
+
+
+def _set_mark(found: bpy.types.Object, reading: Optional[Reading]) -> None:
+    found[show.MARK] = lux_text(reading.lux) if reading else "no light here"
+    found[show.CORNERS] = list(reading.corners) if reading else [2**31 - 1]
+    found[show.WEIGHTS] = list(reading.weights) if reading else [0.0]
 
 
 class LIGHTWELL_OT_clear_readings(bpy.types.Operator):
@@ -192,23 +210,21 @@ class LIGHTWELL_OT_clear_readings(bpy.types.Operator):
     bl_options = {"UNDO"}
 
     def execute(self, context: bpy.types.Context):
-        for found in [found for found in context.scene.objects if MARK in found]:
+        for found in [found for found in context.scene.objects if show.MARK in found]:
             bpy.data.objects.remove(found)
         return {"FINISHED"}
 
 
 def refresh_readings(scene: bpy.types.Scene) -> None:
-    """Reads kept places again, after the light has changed."""
-    found = show.light_object(scene)
-    marks = [mark for mark in scene.objects if MARK in mark]
-    if found is None or not marks:
+    """Finds kept places again on the elements of another solve."""
+    marks = [mark for mark in scene.objects if show.MARK in mark]
+    if not marks:
         return
-    reader = Reader(found)
+    reader = Reader(show.light_object(scene))
     for mark in marks:
         normal = mark.rotation_quaternion @ Vector((0.0, 0.0, 1.0))
-        reach = 1e-3 / show.metres_of(scene)
-        hit = reader.at(mark.location + reach * normal, -normal)
-        mark[MARK] = lux_text(hit[0]) if hit else "no light here"
+        reach = 0.01 / show.metres_of(scene)
+        _set_mark(mark, reader.at(mark.location + reach * normal, -normal))
 
 
 def _redraw_views(context: bpy.types.Context) -> None:

@@ -7,6 +7,7 @@ import numpy as np
 from mathutils import Matrix
 
 from .logic.cameras import metres_per_unit
+from .logic.materials import depends_on_closure
 from .logic.meshes import Polygons, is_closed, part_of, turned_over
 from .logic.scene_folder import Scene, Surface, counted
 from .read_lights import read_camera, read_light, read_world
@@ -117,13 +118,15 @@ class _Reader:
         mesh.polygons.foreach_get("material_index", of_polygon)
         slots = [slot.material for slot in found.material_slots] or [None]
         of_polygon = np.clip(of_polygon, 0, len(slots) - 1)
-        closed = is_closed(polygons)
         parts = np.unique(of_polygon)
+        keys = {k: self._material(slots[k].original if slots[k] else None) for k in parts}
+        needs_closure = any(depends_on_closure(self.scene.materials[key]) for key in keys.values())
+        closed = needs_closure and is_closed(polygons)
         for k in parts:
-            material = slots[k].original if slots[k] else None
+            material = slots[k]
             name = found.name if len(parts) == 1 else f"{found.name}/{material.name if material else 'none'}"
             part = polygons if len(parts) == 1 else part_of(polygons, of_polygon == k)
-            key = self._material(material)
+            key = keys[k]
             shader = self.scene.materials[key]
             if not (shader.base_picture or shader.mask or shader.emission_picture):
                 part.uv = None  # polygons that coordinates bend are cut into triangles

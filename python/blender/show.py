@@ -7,11 +7,13 @@ import numpy as np
 
 from . import properties
 from .logic.cameras import metres_per_unit
-from .logic.colours import Scale, false_colours, light_colours, linear, scale_of
+from .logic.colours import Scale, false_colours, light_colours, linear, lux_text, scale_of
 from .logic.solution import Solution, SolutionError, read_solution
 from .read_scene import OWN
 
 NAME = "Lightwell light"
+MARK, CORNERS, WEIGHTS = "lightwell_reading", "lightwell_corners", "lightwell_weights"
+"""Custom properties of a kept reading: its words, the vertices that it lies between, and their weights."""
 LUX, LIGHT_COLOURS, LUX_COLOURS = "lux", "light", "false colours"
 
 _solutions: Dict[str, Solution] = {}  # by path; what is shown, for dimming
@@ -60,6 +62,10 @@ def show(scene: bpy.types.Scene, path: str, solution: Solution) -> None:
         channel.lumens = lumens
         channel.level = before.get(name, 1.0)
     settings.solution = bpy.path.relpath(path) if bpy.data.filepath else path
+    # Readings lie between vertices of the mesh that goes.
+    for mark in scene.objects:
+        if MARK in mark:
+            mark[CORNERS] = [2**31 - 1]
     _make_object(scene, solution)
     recolour(scene)
     look(bpy.context)
@@ -154,6 +160,14 @@ def recolour(scene: bpy.types.Scene) -> None:
     mesh.attributes.active_color_name = LUX_COLOURS if settings.view == "LUX" else LIGHT_COLOURS
     mesh.attributes.render_color_index = mesh.color_attributes.find(mesh.attributes.active_color_name)
     mesh.update()
+    update_readings(scene, lux)
+
+
+def update_readings(scene: bpy.types.Scene, lux: np.ndarray) -> None:
+    """The readings that clicks have kept, in other light on the same elements."""
+    for mark in scene.objects:
+        if MARK in mark and CORNERS in mark and max(mark[CORNERS]) < len(lux):
+            mark[MARK] = lux_text(float(np.dot(mark[WEIGHTS], lux[list(mark[CORNERS])])))
 
 
 def _set_colours(mesh: bpy.types.Mesh, name: str, colours: np.ndarray) -> None:
@@ -163,15 +177,15 @@ def _set_colours(mesh: bpy.types.Mesh, name: str, colours: np.ndarray) -> None:
 
 
 def look(context: bpy.types.Context) -> None:
-    """Sets the 3D views that show solid objects to the colours at vertices, without shading."""
-    screen = context.screen
-    for area in screen.areas if screen else []:
-        if area.type == "VIEW_3D":
-            shading = area.spaces.active.shading
-            shading.type = "SOLID"
-            shading.light = "FLAT"
-            shading.color_type = "VERTEX"
-            shading.show_backface_culling = True
+    """Sets the 3D views to solid objects in the colours at their vertices, without shading."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                shading = area.spaces.active.shading
+                shading.type = "SOLID"
+                shading.light = "FLAT"
+                shading.color_type = "VERTEX"
+                shading.show_backface_culling = True
 
 
 CLASSES = ()

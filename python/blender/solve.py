@@ -10,7 +10,7 @@ from typing import List, Optional
 
 import bpy
 
-from . import properties, show
+from . import overlay, properties, show
 from .logic.program import Job, ProgramError
 from .logic.scene_folder import (
     SCENE_FILE,
@@ -141,6 +141,7 @@ def take_light(scene: bpy.types.Scene, run: Run, code: int) -> None:
         scene.lightwell.message = str(error)
         return
     show.show(scene, path, solution)
+    overlay.refresh_readings(scene)
     seconds = time.monotonic() - run.begin
     said = f"{len(solution.first) - 1} elements in {seconds:.1f} s"
     if solution.error > 0.0:

@@ -51,12 +51,12 @@ class Scale:
 
 
 def scale_of(lux: np.ndarray) -> Scale:
-    """A scale for these values: round ends, over the brightest 0.5 %, at most three decades."""
+    """A scale for these values: round ends, without the brightest 0.5 % and the darkest 2 %, three decades at most."""
     lit = np.sort(lux[(lux > 0) & np.isfinite(lux)])
     if len(lit) == 0:
         return Scale(0.0, 1.0)
     high = _round_up(float(lit[int(0.995 * (len(lit) - 1))]))
-    low = 1.0 / _round_up(1.0 / max(float(lit[0]), high / 1000.0))
+    low = 1.0 / _round_up(1.0 / max(float(lit[int(0.02 * (len(lit) - 1))]), high / 1000.0))
     return Scale(low if low < high else high / 10.0, high)
 
 

@@ -64,8 +64,7 @@ def is_closed(mesh: Polygons) -> bool:
     following = np.arange(len(mesh.corners)) + 1
     following[mesh.first[1:] - 1] = mesh.first[:-1]
     # Points in one place are one point, since programs split them along seams.
-    _, place = np.unique(mesh.points.round(9), axis=0, return_inverse=True)
-    place = place.reshape(-1)
+    _, place = distinct_rows(mesh.points.round(9) + 0.0)
     begin, end = place[mesh.corners].astype(np.int64), place[mesh.corners[following]].astype(np.int64)
     count = np.int64(len(mesh.points))
     ahead, back = begin * count + end, end * count + begin
@@ -103,12 +102,28 @@ def ply_bytes(mesh: Polygons) -> bytes:
     if len(columns) == 1:
         rows, corners = mesh.points, mesh.corners
     else:
-        rows, corners = np.unique(np.hstack(columns), axis=0, return_inverse=True)
-        corners = corners.reshape(-1)
+        rows, corners = distinct_rows(np.hstack(columns))
     header: List[str] = ["ply", "format binary_little_endian 1.0", f"element vertex {len(rows)}"]
     header += [f"property double {name}" for name in names]
     header += [f"element face {len(mesh)}", "property list uint uint vertex_indices", "end_header", ""]
     return "\n".join(header).encode() + rows.astype("<f8").tobytes() + _face_records(corners, mesh.first)
+
+
+def distinct_rows(rows: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
+    """The rows of float64 that differ, and for each row its number among them.
+
+    By a sum of products modulo 2^64 for each row, which sorts in a tenth of the time of rows.
+    """
+    bits = np.ascontiguousarray(rows, float).view(np.uint64)
+    factors = np.random.default_rng(1).integers(1, 2**63, bits.shape[1], np.uint64) * np.uint64(2) + np.uint64(1)
+    mixed = bits ^ (bits >> np.uint64(29))
+    _, first, place = np.unique((mixed * factors).sum(axis=1), return_index=True, return_inverse=True)
+    place = place.reshape(-1)
+    if np.array_equal(bits[first][place], bits):
+        return rows[first], place
+    # Two rows have one sum by chance.
+    found, place = np.unique(rows, axis=0, return_inverse=True)
+    return found, place.reshape(-1)
 
 
 def _face_records(corners: np.ndarray, first: np.ndarray) -> bytes:

@@ -13,6 +13,8 @@ TYPES = {
     "Int64": "<i8", "UInt64": "<u8", "Float32": "<f4", "Float64": "<f8", "String": "<u1",
 }  # fmt: skip
 
+DARK = 1e-3
+"""Share of the mean light below which an element is outside of rooms, within bodies or below walls."""
 SIDE_STEP = 0.0005  # metres between a side and its place where both sides are lit; as `lightwell export`
 
 
@@ -57,7 +59,7 @@ def _sum(levels: Sequence[float], values: np.ndarray) -> np.ndarray:
 
 
 def read_solution(path: str) -> Solution:
-    """Reads a solution as `lightwell solve` writes it; sides that are dark before a lit one are left out.
+    """Reads a solution as `lightwell solve` writes it; sides that are dark are left out.
 
     Raises SolutionError for other files, and for scenes of spectral bands.
     """
@@ -184,15 +186,14 @@ class _Light:
 
 
 def _shown(solution: Solution, twin: np.ndarray) -> Solution:
-    """The sides that are worth looking at: of the two sides in one place, those that are lit or shine;
-    the front if neither is. Where both are, each is moved a little along its normal."""
+    """The sides that are lit or shine, so that one can look into a closed room from outside. Where both
+    sides of one place are, each is moved a little along its normal."""
     sizes = np.diff(solution.first)
     bright = (solution.irradiance.sum(axis=0) + solution.radiosity.sum(axis=0)).max(axis=1)
-    of_element = np.maximum.reduceat(bright[solution.corners], solution.first[:-1])
-    lit = of_element > 1e-4 * np.mean(of_element)
-    other = np.where(twin >= 0, lit[twin], False)
-    keep = lit | (~other & ((twin < 0) | (np.arange(len(twin)) < twin)))
-    both = lit & other
+    of_element = np.add.reduceat(bright[solution.corners], solution.first[:-1]) / sizes
+    lit = of_element[of_element > 1e-2 * DARK * np.mean(of_element)]
+    keep = of_element >= DARK * (np.mean(lit) if len(lit) else 0.0)
+    both = keep & np.where(twin >= 0, keep[twin], False)
     moved = np.zeros(len(solution.points), bool)
     moved[solution.corners[np.repeat(both, sizes)]] = True
     points = solution.points + SIDE_STEP * moved[:, None] * solution.normals

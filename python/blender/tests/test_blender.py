@@ -8,12 +8,13 @@ import sys
 import tempfile
 import time
 import unittest
+from types import SimpleNamespace
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
-from mathutils import Vector  # noqa: E402
+from mathutils import Matrix, Vector  # noqa: E402
 from rooms import add_box, add_light, add_mesh, addon, cube_room, empty_scene, matt, three_rooms  # noqa: E402
 
 PROGRAM = os.environ["LIGHTWELL_PROGRAM"]
@@ -56,7 +57,7 @@ def solve(scene):
 def lux_at(scene, place):
     """Lux on the first front below a place."""
     reader = addon.overlay.Reader(addon.show.light_object(scene))
-    return reader.at(Vector(place), Vector((0, 0, -1)))[0]
+    return reader.at(Vector(place), Vector((0, 0, -1))).lux
 
 
 def notes():
@@ -153,6 +154,83 @@ class Room(unittest.TestCase):
         self.assertTrue(any(node.type == "TEX_IMAGE" and node.image.size[0] == 128 for node in nodes))
         solve(scene)
         self.assertNotIn("left out", notes())  # models of the light are no part of the scene
+
+
+class Interface(unittest.TestCase):
+    """What the mouse and the panel call, without a window."""
+
+    def test_cursor_reads_and_keeps_lux(self):
+        scene = cube_room()
+        solve(scene)
+        found = addon.show.light_object(scene)
+        region = SimpleNamespace(type="WINDOW", x=100, y=50, width=400, height=400)
+        # From 1.5 m above the floor, half a metre to each side.
+        matrix = Matrix.Translation((0, 0, -1.5))
+        view = SimpleNamespace(
+            view_matrix=matrix,
+            perspective_matrix=Matrix.Diagonal((2, 2, -0.1, 1)) @ matrix,
+            is_perspective=False,
+            view_perspective="ORTHO",
+        )
+        space = SimpleNamespace(region_3d=view)
+        seen = SimpleNamespace(type="VIEW_3D", regions=[region], spaces=SimpleNamespace(active=space), tag_redraw=int)
+        window = SimpleNamespace(cursor_modal_restore=lambda: None)
+        context = SimpleNamespace(scene=scene, screen=SimpleNamespace(areas=[seen]), window=window)
+        operator = SimpleNamespace(reader=addon.overlay.Reader(found))
+        kind = addon.overlay.LIGHTWELL_OT_read
+        operator._look = lambda *args: kind._look(operator, *args)
+        event = SimpleNamespace(type="LEFTMOUSE", value="PRESS", mouse_x=300, mouse_y=250)
+        self.assertEqual(kind.modal(operator, context, event), {"RUNNING_MODAL"})
+        words = addon.overlay.kept_readings(scene)
+        self.assertEqual(len(words), 1)
+        lux = lux_at(scene, (words[0][1].x, words[0][1].y, 1.0))
+        self.assertEqual(words[0][0], addon.show.lux_text(lux))
+        scene.lightwell.channels[0].level = 0.5
+        self.assertEqual(addon.overlay.kept_readings(scene)[0][0], addon.show.lux_text(lux / 2))
+        scene.lightwell.effort, scene.lightwell.accuracy = "ACCURACY", 20.0
+        solve(scene)
+        again = float(addon.overlay.kept_readings(scene)[0][0].split()[0])
+        self.assertAlmostEqual(again / (lux / 2), 1.0, delta=0.4)  # errors of 20 % each
+        escape = SimpleNamespace(type="ESC", value="PRESS", mouse_x=300, mouse_y=250)
+        self.assertEqual(kind.modal(operator, context, escape), {"CANCELLED"})
+
+    def test_panel_names_what_there_is(self):
+        scene = cube_room()
+        solve(scene)
+        bpy.context.view_layer.objects.active = scene.objects["Area"]
+        layout = Layout(self)
+        for panel in addon.panel.CLASSES:
+            if getattr(panel, "poll", lambda _: True)(bpy.context):
+                panel.draw(SimpleNamespace(layout=layout), bpy.context)
+        for name in ("solve", "read", "lightmaps", "export"):
+            self.assertIn(f"lightwell.{name}", layout.said)
+        self.assertIn("Area: 10 W radiant are 6830 lm", layout.said)
+        self.assertIn("Area  6830 lm", layout.said)
+
+
+class Layout:
+    """Stands for a panel's layout: holds that properties and operators exist, and keeps the words."""
+
+    def __init__(self, test):
+        self.test = test
+        self.said = []
+
+    def row(self, **_):
+        return self
+
+    column = row
+
+    def prop(self, data, name, text="", **_):
+        self.test.assertIn(name, data.bl_rna.properties)
+        self.said.append(text)
+
+    def operator(self, name, **_):
+        room, short = name.split(".")
+        self.test.assertTrue(hasattr(bpy.types, f"{room.upper()}_OT_{short}"))
+        self.said.append(name)
+
+    def label(self, text):
+        self.said.append(text)
 
 
 class BadInput(unittest.TestCase):
