@@ -3,14 +3,18 @@
 import os
 from typing import List, Optional
 
+import bmesh
 import bpy
+import numpy as np
 
 from . import properties, show, solve
 from .logic.program import Job, ProgramError
 from .logic.scene_folder import SCENE_FILE, SOLUTION_FILE
+from .logic.solution import DARK
 from .read_scene import OWN
 
 NAME = "Lightwell lightmaps"
+LUX = "_ILLUMINANCE"  # of the vertices of the model
 MODEL, RELIT = "lightmaps.glb", "relit.vtp"
 
 
@@ -53,7 +57,9 @@ def take_model(scene: bpy.types.Scene, run: solve.Run, code: int) -> None:
     except (RuntimeError, AttributeError) as error:
         scene.lightwell.message = f"{path} was written, but Blender's glTF import failed ({error})"[:400]
         return
-    for found in set(bpy.data.objects) - before:
+    imported = set(bpy.data.objects) - before
+    drop_dark([found.data for found in imported if found.type == "MESH"])
+    for found in imported:
         for other in list(found.users_collection):
             other.objects.unlink(found)
         if found.type not in ("MESH", "EMPTY"):
@@ -66,6 +72,26 @@ def take_model(scene: bpy.types.Scene, run: solve.Run, code: int) -> None:
             found.scale = [c / show.metres_of(scene) for c in found.scale]
             found.location = found.location / show.metres_of(scene)
     scene.lightwell.message = f"{path}: lightmaps in the collection '{NAME}', and as .exr files beside it"[:400]
+
+
+def drop_dark(meshes: List[bpy.types.Mesh]) -> None:
+    """Removes faces without light, such as the outsides of walls, so that one can look into rooms."""
+    meshes = [mesh for mesh in meshes if LUX in mesh.attributes]
+    lux = []
+    for mesh in meshes:
+        values = np.empty(len(mesh.vertices), np.float32)
+        mesh.attributes[LUX].data.foreach_get("value", values)
+        lux.append(values)
+    every = np.concatenate(lux) if lux else np.zeros(0)
+    lit = every[every > 0.0]
+    limit = DARK * float(lit.mean()) if len(lit) else 0.0
+    for mesh, values in zip(meshes, lux):
+        edited = bmesh.new()
+        edited.from_mesh(mesh)
+        dark = [face for face in edited.faces if max(values[v.index] for v in face.verts) < limit]
+        bmesh.ops.delete(edited, geom=dark, context="FACES")
+        edited.to_mesh(mesh)
+        edited.free()
 
 
 class LIGHTWELL_OT_lightmaps(bpy.types.Operator):

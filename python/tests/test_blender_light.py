@@ -1,6 +1,7 @@
 """The light of a solve in the Blender add-on, without Blender: arrays, dimming, colours, the program."""
 
 import os
+import signal
 import sys
 import time
 import unittest
@@ -126,6 +127,14 @@ class Program(unittest.TestCase):
         self.assertNotEqual(code, 0)
         self.assertIn("stopped", job.failure(code))
         self.assertEqual(os.listdir(folder), [])
+
+    def test_run_that_the_system_ends_is_said(self):
+        folder = scratch(self)
+        job = program.Job([PROGRAM, "solve", ROOM, "-o", "s.vtp", "--accuracy", "0.1%"], folder)
+        while job.poll() is None and job.share is None:
+            time.sleep(0.01)
+        os.kill(job._process.pid, signal.SIGKILL)
+        self.assertIn("ended by signal 9 of the system", job.failure(job.wait()))
 
     def test_error_of_the_program_is_the_message(self):
         folder = scratch(self)

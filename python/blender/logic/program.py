@@ -130,7 +130,7 @@ class Job:
         if code in (0, 4):
             return ""
         if code < 0:
-            return f"the program was ended by signal {-code} of the system; without a cause of yours, memory is short"
+            return f"the program was ended by signal {-code} of the system, which happens where memory is short"
         errors = [line for line in self.notes if not line.startswith("note: ")]
         return errors[-1] if errors else f"the program ended with exit code {code} and no message"
 

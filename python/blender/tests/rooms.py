@@ -56,11 +56,12 @@ def add_box(name: str, low: Place, high: Place, material=None) -> bpy.types.Obje
 
 
 def add_light(name: str, kind: str, place: Place, watts: float, **values: object) -> bpy.types.Object:
-    """A light that shines down."""
+    """A light that shines down; what this version of Blender does not know is left as it is."""
     data = bpy.data.lights.new(name, kind)
     data.energy = watts
     for key, value in values.items():
-        setattr(data, key, value)
+        if hasattr(data, key):
+            setattr(data, key, value)
     found = bpy.data.objects.new(name, data)
     found.location = place
     bpy.context.scene.collection.objects.link(found)

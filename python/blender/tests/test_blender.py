@@ -1,5 +1,6 @@
 """The add-on in Blender without a window: the same lux as a scene by hand, and sentences for bad input."""
 
+import json
 import math
 import os
 import re
@@ -140,6 +141,27 @@ class Room(unittest.TestCase):
         # and rounds otherwise.
         self.assertAlmostEqual(feet * 0.3048**2 / metres, 1.0, delta=1e-3)
         self.assertIn("0.3048 m", notes())
+
+    def test_photometric_files_give_their_own_lumens(self):
+        file = os.path.join(os.path.dirname(__file__), *[".."] * 3, "docs", "luminaires", "downlight.ies")
+        info = subprocess.run([PROGRAM, "info", file, "--json"], check=True, capture_output=True, text=True)
+        lumens = json.loads(info.stdout)["lumens"]
+        scene = cube_room()
+        scene.objects["Area"].data["lightwell_ies"] = file
+        scene.objects["Area"].data["lightwell_factor"] = 0.5
+        text = bpy.data.texts.new("lamp.ies")
+        with open(file, encoding="latin-1") as source:
+            text.write(source.read())
+        data = add_light("nodes", "POINT", (0.4, 0, 1.5), 10.0).data
+        data.use_nodes = True
+        node = data.node_tree.nodes.new("ShaderNodeTexIES")
+        node.ies = text
+        solve(scene)
+        found = {channel.name: channel.lumens for channel in scene.lightwell.channels}
+        # Fluxes are sums of floats over the bands.
+        self.assertAlmostEqual(found["Area"] / lumens, 0.5, delta=1e-5)
+        self.assertAlmostEqual(found["nodes"] / lumens, 1.0, delta=1e-5)
+        self.assertIn("its watts do not count", notes())
 
     def test_lightmaps_come_back_with_a_picture(self):
         scene = cube_room()

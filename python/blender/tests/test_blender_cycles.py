@@ -79,7 +79,8 @@ class Cycles(unittest.TestCase):
         self.agree(EXACT)
 
     def test_spot_in_its_soft_rim(self):
-        spot = add_light("s", "SPOT", (0, 0, 1), 100.0, shadow_soft_size=0.0, spot_size=math.radians(60), spot_blend=0.6)
+        cone = {"spot_size": math.radians(60), "spot_blend": 0.6}
+        spot = add_light("s", "SPOT", (0, 0, 1), 100.0, shadow_soft_size=0.0, **cone)
         spot.rotation_euler.x = math.radians(24)
         self.agree(EXACT)
 
@@ -89,14 +90,15 @@ class Cycles(unittest.TestCase):
         self.agree(EXACT)
 
     def test_rectangle_of_a_colour_temperature(self):
-        light = add_light("a", "AREA", (0.4, 0, 0.8), 100.0, shape="RECTANGLE", size=0.6, size_y=0.3)
-        light.data.use_temperature, light.data.temperature = True, 3000.0
+        warm = {"use_temperature": True, "temperature": 3000.0}
+        light = add_light("a", "AREA", (0.4, 0, 0.8), 100.0, shape="RECTANGLE", size=0.6, size_y=0.3, **warm)
         light.rotation_euler = (0.2, 0.3, 0)
         light.scale = (1.0, 1.5, 1.0)
         self.agree(SAMPLED)
 
     def test_narrowed_disc_of_watts_a_square_metre(self):
-        light = add_light("a", "AREA", (0, 0.2, 1), 100.0, shape="DISK", size=0.1, spread=math.radians(90), normalize=False)
+        narrow = {"spread": math.radians(90), "normalize": False}
+        light = add_light("a", "AREA", (0, 0.2, 1), 100.0, shape="DISK", size=0.1, **narrow)
         light.rotation_euler.x = math.radians(5)
         self.agree(SAMPLED)
 
