@@ -14,6 +14,8 @@ from .read_lights import read_camera, read_light, read_world
 from .read_materials import Pictures, read_material
 
 WITH_FACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
+AS_INSTANCES = WITH_FACES - {"MESH"}
+"""Kinds whose faces come as instances of the kind MESH, besides the object itself."""
 WITHOUT_LIGHT = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 
 OWN = "lightwell_light"
@@ -60,9 +62,9 @@ class _Reader:
             self._take_light(instance)
         elif found.type == "CAMERA":
             self._take_camera(instance)
-        elif found.type in WITH_FACES:
+        elif found.type == "MESH":
             self._take_faces(instance)
-        elif found.type not in WITHOUT_LIGHT:
+        elif found.type not in WITHOUT_LIGHT | AS_INSTANCES:
             self._leave_out(f"objects of the kind {found.type.lower()}", found.name)
 
     def say_left_out(self) -> None:

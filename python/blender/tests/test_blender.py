@@ -142,6 +142,35 @@ class Room(unittest.TestCase):
         self.assertAlmostEqual(feet * 0.3048**2 / metres, 1.0, delta=1e-3)
         self.assertIn("0.3048 m", notes())
 
+    def test_all_that_is_visible_is_exported_once(self):
+        scene = empty_scene()
+        bpy.ops.object.text_add()
+        bpy.context.object.data.materials.append(matt("ink", (0.1, 0.1, 0.1)))
+        bpy.ops.curve.primitive_bezier_circle_add()
+        bpy.context.object.data.bevel_depth = 0.1
+        bpy.ops.object.metaball_add()
+        add_light("lamp", "POINT", (0, 0, 3), 5.0)
+        library = bpy.data.collections.new("library")
+        box = add_box("box", (0, 0, 0), (1, 1, 1))
+        box.modifiers.new("fine", "SUBSURF").levels = 1
+        scene.collection.objects.unlink(box)
+        library.objects.link(box)
+        for number in range(2):
+            place = bpy.data.objects.new("place", None)
+            place.instance_type, place.instance_collection = "COLLECTION", library
+            place.location = (5 * number, 0, 0)
+            place.scale = (1, 2, -1)
+            scene.collection.objects.link(place)
+        bpy.context.view_layer.update()
+        exported = addon.read_scene.read_scene(bpy.context)
+        names = sorted(surface.name for surface in exported.surfaces)
+        self.assertEqual(names, ["BézierCircle", "Mball", "Text", "box", "box"])
+        self.assertEqual({s.name: s.material for s in exported.surfaces}["Text"], "ink")
+        boxes = [s.mesh for s in exported.surfaces if s.name == "box"]
+        self.assertEqual([len(mesh) for mesh in boxes], [24, 24])
+        # A mirrored body keeps its fronts outside.
+        self.assertTrue(all(addon.read_scene.is_closed(mesh) for mesh in boxes))
+
     def test_photometric_files_give_their_own_lumens(self):
         file = os.path.join(os.path.dirname(__file__), *[".."] * 3, "docs", "luminaires", "downlight.ies")
         info = subprocess.run([PROGRAM, "info", file, "--json"], check=True, capture_output=True, text=True)
