@@ -290,26 +290,47 @@ BandArray DaylightModel::hourly_arriving(std::span<const SkyHour> hours,
     hour_of_sun.push_back(h);
   }
   BandArray arriving(mesh_.patch_count(), count * bands);
-  for_each_index(mesh_.patch_count(), "hours at patches", options_.progress, [&](int p) {
-    const DomeView& view = patch_views_[static_cast<std::size_t>(p)];
-    // Bands x hours: as the columns of a row of `arriving`.
-    Eigen::ArrayXXf E0 = Eigen::ArrayXXf::Zero(bands, count);
-    for (Eigen::Index c = 0; c < luminance.rows(); ++c) {
-      if (!(view.coefficient.row(c) > 0.0f).any()) continue;
-      for (Eigen::Index b = 0; b < bands; ++b) {
-        E0.row(b) += view.coefficient(c, b) * luminance.row(c);
-      }
-    }
+  for_each_index(mesh_.patch_count(), "sun at patches", options_.progress, [&](int p) {
+    arriving.row(p).setZero();
     const Eigen::ArrayXXf sun = sun_at_patch(p, suns);
     for (Eigen::Index s = 0; s < sun.rows(); ++s) {
       const Eigen::Index h = hour_of_sun[static_cast<std::size_t>(s)];
       const auto lux = static_cast<float>(hours[static_cast<std::size_t>(h)].sun_lux);
-      E0.col(h) += lux * sun.row(s).transpose();
+      arriving.row(p).segment(h * bands, bands) = lux * sun.row(s);
     }
-    arriving.row(p) =
-        Eigen::Map<const Eigen::Array<float, 1, Eigen::Dynamic>>(E0.data(), E0.size());
   });
+  add_dome(luminance, arriving);
   return arriving;
+}
+
+// Adds the light straight from dome and ground, patches x (hours x bands), whose luminances are
+// columns of the sky x hours.
+void DaylightModel::add_dome(const BandArray& luminance, BandArray& arriving) const {
+  const Eigen::Index bands = scene_.bands.count(), count = luminance.cols();
+  // Luminances of so many hours stay in a processor's cache from patch to patch of a block.
+  constexpr Eigen::Index width = 128;
+  constexpr int block = 32;
+  const int patches = mesh_.patch_count();
+  const auto add = [&](int p, Eigen::Index first, Eigen::Index n) {
+    const Eigen::ArrayXXf& D = patch_views_[static_cast<std::size_t>(p)].coefficient;
+    BandArray E0 = BandArray::Zero(bands, n);
+    for (Eigen::Index c = 0; c < luminance.rows(); ++c) {
+      if (!(D.row(c) > 0.0f).any()) continue;
+      for (Eigen::Index b = 0; b < bands; ++b) {
+        E0.row(b) += D(c, b) * luminance.row(c).segment(first, n);
+      }
+    }
+    for (Eigen::Index h = 0; h < n; ++h) {
+      arriving.row(p).segment((first + h) * bands, bands) += E0.col(h).transpose();
+    }
+  };
+  for_each_index((patches + block - 1) / block, "sky at patches", options_.progress, [&](int i) {
+    for (Eigen::Index first = 0; first < count; first += width) {
+      for (int p = i * block; p < std::min((i + 1) * block, patches); ++p) {
+        add(p, first, std::min(width, count - first));
+      }
+    }
+  });
 }
 
 }  // namespace lightwell

@@ -119,6 +119,7 @@ class DaylightModel {
   Eigen::ArrayXf luminous_sum(const Eigen::Ref<const Eigen::ArrayXXf>& bands) const;
   std::vector<SurfacePoint> points_of_patch(int patch) const;
   void view_patches();
+  void add_dome(const BandArray& luminance, BandArray& arriving) const;
   Eigen::ArrayXXf sun_at_patch(int patch, std::span<const SunDisc> suns) const;
   BandArray shares_in_gather(const GatherPoints& points, int rays) const;
   Eigen::ArrayXXf reflected(const BandArray& arriving) const;
