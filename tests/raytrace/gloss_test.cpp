@@ -142,8 +142,12 @@ TEST(Gloss, NeitherTakesNorGivesLightInTheFirstPass) {
                                  {0, 0, 0}, {2, 2, 2}, true)
                             .sphere(paint, {1.1, 0.9, 0.8}, 0.6)
                             .build();
+    // All rays bring the same, so that few do.
     const SolvedScene solved =
-        solve_scene(scene, {.mesh = {.max_patch_size = 0.5}, .refine = {.tolerance = 0.0}});
+        solve_scene(scene, {.mesh = {.max_patch_size = 0.5},
+                            .form_factors = {.rays_per_patch = 64, .rays_per_emitter = 4096},
+                            .refine = {.tolerance = 0.0},
+                            .gather = {.rays = 64}});
     const BandArray irradiance = solved.solution.irradiance();
     for (int p = 0; p < solved.mesh.patch_count(); ++p) {
       if (!(solved.mesh.emission(p, 0) > 0.0f)) continue;

@@ -237,7 +237,8 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
                            const Progress& progress) {
   const auto& [scene, names] = of;
   LightingReport made = report_of(plan, scene, solved);
-  made.luminaires = luminaires(scene, solved.mesh, DirectLight(scene, solved.mesh), plan.design);
+  const DirectLight lights(scene, solved.mesh);
+  made.luminaires = luminaires(scene, solved.mesh, lights, plan.design);
   set_watts(made.luminaires, plan.request.watts, scene);
   Measurements what;
   what.eyes = plan.eyes;
@@ -254,7 +255,7 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   std::vector<LuxGrid> grids =
       requested_grids(plan.request.grids, plan.design.grids, apart, caster, up);
   const std::vector<DesignArea> areas = areas_of(plan, grids);
-  require_lamps_alone(areas, light_content(scene, solved));
+  require_lamps_alone(areas, light_content(scene, solved, lights));
   std::optional<LuxGrid> floor;
   if (plan.design.use) floor = lux_grid(apart, plan.design.use->surface, up);
   const std::vector<AreaGrids> of_areas =
@@ -265,7 +266,7 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   for (LuxGrid& grid : grids) {
     what.grids.push_back(without_buried_points(caster, std::move(grid)));
   }
-  measure(scene, solved, what, made);
+  measure(scene, solved, lights, what, made);
   if (floor) made.energy = energy_of(plan.design, made, *floor);
   made.requirements = judge_areas(areas, plan.tables, of_areas, up, made);
   made.picture = picture_of(plan.request, scene, solved, progress);

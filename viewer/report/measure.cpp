@@ -126,8 +126,8 @@ void set_eye_light(const Bands& bands, const std::vector<EyeReading>& readings,
 
 }  // namespace
 
-LightContent light_content(const Scene& scene, const SolvedScene& solved) {
-  const DirectLight lights(scene, solved.mesh);
+LightContent light_content(const Scene& scene, const SolvedScene& solved,
+                           const DirectLight& lights) {
   const Kinds all = kinds_of(scene, solved, lights, -1);
   if (!all.daylight) return LightContent::electric;
   if (!all.electric) return LightContent::daylight;
@@ -139,14 +139,13 @@ LightContent light_content(const Scene& scene, const SolvedScene& solved) {
   return count == 0 ? LightContent::together : LightContent::apart;
 }
 
-void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
-             LightingReport& report) {
+void measure(const Scene& scene, SolvedScene& solved, const DirectLight& lights,
+             const Measurements& what, LightingReport& report) {
   const ElementCaster caster(solved.mesh);
-  const DirectLight tables(scene, solved.mesh);
   const auto lit = [&] {
-    return MeasurableScene{scene, solved, caster, {scene, solved.mesh, {}, &tables}};
+    return MeasurableScene{scene, solved, caster, {scene, solved.mesh, {}, &lights}};
   };
-  report.content = light_content(scene, solved);
+  report.content = light_content(scene, solved, lights);
   report.surfaces = std::vector<CalculationSurface>(what.grids.size());
   for (std::size_t i = 0; i < what.grids.size(); ++i) {
     report.surfaces[i].grid = what.grids[i];
@@ -167,7 +166,7 @@ void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
   const auto alone = [&](bool daylight) {
     std::vector<Spectrum> some = scales;
     for (std::size_t c = 0; c < some.size(); ++c) {
-      const Kinds kinds = kinds_of(scene, solved, tables, static_cast<int>(c));
+      const Kinds kinds = kinds_of(scene, solved, lights, static_cast<int>(c));
       if (kinds.daylight != daylight) some[c].setZero();
     }
     return some;

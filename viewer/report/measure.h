@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "radiosity/direct_light/direct_light.h"
 #include "radiosity/solve.h"
 #include "viewer/report/lighting_report.h"
 
@@ -26,14 +27,15 @@ struct Measurements {
 };
 
 /// The light that figures of this solution contain: whether the channels of the solution tell sky
-/// and sun from lamps and emitting surfaces.
-LightContent light_content(const Scene& scene, const SolvedScene& solved);
+/// and sun from lamps and emitting surfaces. `lights` are those of scene and mesh.
+LightContent light_content(const Scene& scene, const SolvedScene& solved,
+                           const DirectLight& lights);
 
 /// Measures into `report`: content, surfaces and observers. Where electric light and daylight are
 /// kept apart, each is measured by itself, glare is that of electric light alone, and the
 /// maintenance factor multiplies electric light alone. `solved` is relit meanwhile, and is
-/// afterwards as before.
-void measure(const Scene& scene, SolvedScene& solved, const Measurements& what,
-             LightingReport& report);
+/// afterwards as before. `lights` are those of scene and mesh.
+void measure(const Scene& scene, SolvedScene& solved, const DirectLight& lights,
+             const Measurements& what, LightingReport& report);
 
 }  // namespace lightwell
