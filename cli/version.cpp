@@ -15,10 +15,11 @@ struct Library {
 
 constexpr std::string_view jpeg_turbo = LIGHTWELL_JPEG_TURBO;
 
-constexpr std::array<Library, 22> libraries = {
+constexpr std::array<Library, 23> libraries = {
     {{"Embree", LIGHTWELL_EMBREE},
      {"oneTBB", LIGHTWELL_TBB},
      {"CGAL", LIGHTWELL_CGAL},
+     {"CDT", LIGHTWELL_CDT},
      {"OpenMesh", LIGHTWELL_OPENMESH},
      {"Eigen", LIGHTWELL_EIGEN},
      {"VTK", LIGHTWELL_VTK},

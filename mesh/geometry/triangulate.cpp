@@ -1,32 +1,17 @@
 #include "mesh/geometry/triangulate.h"
 
-#include <CGAL/Constrained_Delaunay_triangulation_2.h>
-#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
-#include <CGAL/Triangulation_face_base_with_info_2.h>
-#include <CGAL/Triangulation_vertex_base_with_info_2.h>
-
 #include <algorithm>
 #include <numeric>
-#include <set>
+
+#include "mesh/geometry/triangulation_backend.h"
 
 namespace lightwell {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<int, Kernel>;
-using FaceBase =
-    CGAL::Triangulation_face_base_with_info_2<int, Kernel,
-                                              CGAL::Constrained_triangulation_face_base_2<Kernel>>;
-using Structure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
-using Delaunay =
-    CGAL::Constrained_Delaunay_triangulation_2<Kernel, Structure, CGAL::Exact_predicates_tag>;
-
-constexpr int unnumbered = -1;
-
-// Makes the triangulation of cocircular points unique. Four points on a circle have two Delaunay
-// triangulations, and the choice of CGAL depends on where in memory its faces lie. Flips keep the
-// diagonal that ends in the lowest-numbered of the four points, so all points on a circle are
-// joined as a fan from the lowest.
+// Makes the triangulation unique. Four points on a circle have two Delaunay triangulations, and
+// the choice of a library depends on the order of its work or on where in memory its faces lie.
+// Flips keep the diagonal that ends in the lowest-numbered of the four points, so all points on a
+// circle are joined as a fan from the lowest.
 class CocircularFans {
  public:
   explicit CocircularFans(PlanarTriangulation& mesh) : mesh_(mesh) {}
@@ -56,11 +41,8 @@ class CocircularFans {
     const int a = mesh_.triangles[t][i], b = mesh_.triangles[t][(i + 1) % 3],
               c = mesh_.triangles[t][(i + 2) % 3], d = mesh_.triangles[u][opposite(u, t)];
     if (std::min(b, c) < std::min(a, d)) return false;
-    const auto point = [&](int v) {
-      return Kernel::Point_2(mesh_.points[v].x(), mesh_.points[v].y());
-    };
-    return CGAL::side_of_oriented_circle(point(a), point(b), point(c), point(d)) ==
-           CGAL::ON_ORIENTED_BOUNDARY;
+    return backend::side_of_circle(mesh_.points[a], mesh_.points[b], mesh_.points[c],
+                                   mesh_.points[d]) == 0;
   }
 
   // Flips the edge b-c: (a, b, c) and (d, c, b) become (a, b, d) and (a, d, c).
@@ -118,47 +100,7 @@ void put_in_order(PlanarTriangulation& mesh) {
 
 PlanarTriangulation triangulate(const std::vector<Eigen::Vector2d>& points,
                                 const std::vector<std::array<int, 2>>& constraints) {
-  Delaunay delaunay;
-  std::vector<Delaunay::Vertex_handle> handles;
-  handles.reserve(points.size());
-  Delaunay::Face_handle hint{};
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const int before = static_cast<int>(delaunay.number_of_vertices());
-    const auto vertex = delaunay.insert(Kernel::Point_2(points[i].x(), points[i].y()), hint);
-    if (static_cast<int>(delaunay.number_of_vertices()) > before) {
-      vertex->info() = static_cast<int>(i);
-    }
-    hint = vertex->face();
-    handles.push_back(vertex);
-  }
-  const std::size_t given = delaunay.number_of_vertices();
-  for (const auto& [a, b] : constraints) {
-    if (handles[a] != handles[b]) delaunay.insert_constraint(handles[a], handles[b]);
-  }
-
-  PlanarTriangulation result{.points = points};
-  result.is_as_given = delaunay.number_of_vertices() == points.size();
-  if (delaunay.number_of_vertices() > given) {
-    const std::set<Delaunay::Vertex_handle> known(handles.begin(), handles.end());
-    for (const auto& vertex : delaunay.finite_vertex_handles()) {
-      if (known.contains(vertex)) continue;
-      vertex->info() = static_cast<int>(result.points.size());
-      result.points.emplace_back(vertex->point().x(), vertex->point().y());
-    }
-  }
-  int count = 0;
-  for (const auto& face : delaunay.all_face_handles()) face->info() = unnumbered;
-  for (const auto& face : delaunay.finite_face_handles()) face->info() = count++;
-  for (const auto& face : delaunay.finite_face_handles()) {
-    auto& triangle = result.triangles.emplace_back();
-    auto& neighbor = result.neighbor.emplace_back();
-    auto& constrained = result.constrained.emplace_back();
-    for (int i = 0; i < 3; ++i) {
-      triangle[i] = face->vertex(i)->info();
-      neighbor[i] = face->neighbor(i)->info();
-      constrained[i] = face->is_constrained(i);
-    }
-  }
+  PlanarTriangulation result = backend::delaunay(points, constraints);
   CocircularFans(result).settle();
   put_in_order(result);
   return result;
