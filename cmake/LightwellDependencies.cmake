@@ -53,15 +53,17 @@ if(LIGHTWELL_PDF AND NOT lightwell_pdf_FOUND)
                       "On Debian: apt install pkgconf libcairo2-dev libpango1.0-dev librsvg2-dev")
 endif()
 
-set(vtk_components CommonCore CommonDataModel IOCore IOXML)
+# The window; the tests read files with VTK, too, where there is a window.
+set(vtk_components "")
+set(VTK_VERSION "")
 if(LIGHTWELL_VIEWER)
-  list(APPEND vtk_components CommonTransforms CommonExecutionModel FiltersCore FiltersGeneral IOImage
-       InteractionStyle RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI)
+  set(vtk_components CommonCore CommonDataModel CommonTransforms CommonExecutionModel FiltersCore FiltersGeneral IOCore
+      IOImage IOXML InteractionStyle RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI)
+  find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_components})
 endif()
-find_package(VTK 9.1 REQUIRED COMPONENTS ${vtk_components})
 
 # Some of these targets carry no "::": a missing one would turn into a bare -lname at link time.
-foreach(target embree OpenMeshCore Eigen3::Eigen TBB::tbb ${triangulation_target} VTK::IOXML fmt::fmt)
+foreach(target embree OpenMeshCore Eigen3::Eigen TBB::tbb ${triangulation_target} fmt::fmt)
   if(NOT TARGET ${target})
     message(FATAL_ERROR "The package that should define the CMake target '${target}' was found, but does not define it.")
   endif()

@@ -20,7 +20,8 @@ struct PlanarTriangulation {
 };
 
 /// The constrained Delaunay triangulation of the convex hull of `points` that has every constraint
-/// (a pair of point numbers) as an edge. Predicates are exact (CGAL). Equal points become one.
+/// (a pair of point numbers) as an edge. Predicates are exact (CGAL or CDT). Equal points become
+/// one.
 ///
 /// Equal input gives equal triangles: cocircular points are joined as a fan from the
 /// lowest-numbered one, and triangles are sorted by their corners.

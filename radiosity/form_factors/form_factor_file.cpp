@@ -1,25 +1,16 @@
 #include "radiosity/form_factors/form_factor_file.h"
 
 #include <fmt/format.h>
-#include <vtkCellData.h>
-#include <vtkNew.h>
-#include <vtkPolyData.h>
-#include <vtkXMLPolyDataWriter.h>
 
 #include <iterator>
-#include <stdexcept>
+#include <utility>
 
-#include "radiosity/solution/vtk_output.h"
+#include "radiosity/solution/poly_data.h"
 #include "scene/atomic_file.h"
 #include "scene/errors.h"
 
 namespace lightwell {
 namespace {
-
-[[noreturn]] void fail_form_factor_write(const std::filesystem::path& path,
-                                         const std::string& reason) {
-  throw std::runtime_error(fmt::format("{}: could not be written: {}", path.string(), reason));
-}
 
 /// Text output in large pieces, to a temporary file.
 class TextOutput {
@@ -125,20 +116,15 @@ void write_row(const std::filesystem::path& path, const PatchMesh& mesh,
     is_row[e] = j == i ? 1 : 0;
     area[e] = view_factors.area[static_cast<std::size_t>(j)];
   }
-  vtkNew<vtkPolyData> poly;
-  set_element_polygons(poly, mesh);
-  vtkCellData* cells = poly->GetCellData();
+  PolyData data;
+  set_element_polygons(data, mesh);
+  std::vector<DataArray>& cells = data.of_polygons;
   add_values(cells, "view_factor", factor.data(), mesh.element_count());
   add_values(cells, "row", row.data(), mesh.element_count());
   add_values(cells, "is_row", is_row.data(), mesh.element_count());
   add_values(cells, "area", area.data(), mesh.element_count());
-  cells->SetActiveScalars("view_factor");
-
-  AtomicFile file(path);
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  const std::string failure = write_appended(writer, poly, file.temporary());
-  if (!failure.empty()) fail_form_factor_write(path, failure);
-  file.commit();
+  data.polygon_scalars = "view_factor";
+  write_pieces(path, poly_data_text(std::move(data)));
 }
 
 }  // namespace lightwell

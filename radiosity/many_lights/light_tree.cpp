@@ -15,14 +15,14 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr int steps = static_cast<int>(IntensityByAngle{}.size());
-constexpr double angle_step = pi / steps;
+constexpr int angle_steps = static_cast<int>(IntensityByAngle{}.size());
+constexpr double angle_step = pi / angle_steps;
 
 // The step of an angle, by its cosine: the number of steps whose ends are smaller angles.
 int step_of_cosine(double cosine) {
-  static const std::array<double, steps - 1> ends = [] {
-    std::array<double, steps - 1> cosines{};
-    for (int k = 1; k < steps; ++k)
+  static const std::array<double, angle_steps - 1> ends = [] {
+    std::array<double, angle_steps - 1> cosines{};
+    for (int k = 1; k < angle_steps; ++k)
       cosines[static_cast<std::size_t>(k) - 1] = std::cos(k * angle_step);
     return cosines;
   }();
@@ -39,7 +39,7 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
 template <class Shape>
 IntensityByAngle falling(double scale, Shape shape) {
   IntensityByAngle result;
-  for (int k = 0; k < steps; ++k) {
+  for (int k = 0; k < angle_steps; ++k) {
     result[static_cast<std::size_t>(k)] = static_cast<float>(scale * shape(k * angle_step));
   }
   return result;
@@ -55,7 +55,7 @@ IntensityByAngle greatest_of_web(const PhotometricWeb& web) {
     float& greatest = result[static_cast<std::size_t>(k)];
     greatest = std::max(greatest, static_cast<float>(value));
   };
-  for (int k = 0; k < steps; ++k) {
+  for (int k = 0; k < angle_steps; ++k) {
     const double first = k * angle_step * degrees, last = (k + 1) * angle_step * degrees;
     for (std::size_t g = 0; g < gammas.size(); ++g) {
       if (gammas[g] >= first && gammas[g] <= last) add(k, web.values().col(g).maxCoeff());
@@ -89,7 +89,7 @@ LightBound bound_of(const VirtualLight& light, int number, float flux) {
 // Bands of a colour rise with each of its red, green and blue.
 IntensityByAngle greatest_of_picture(const ProjectedPicture& picture, const Spectrum& light) {
   IntensityByAngle result{};
-  const std::vector<Eigen::Array3d> greatest = picture.greatest_by_angle(steps);
+  const std::vector<Eigen::Array3d> greatest = picture.greatest_by_angle(angle_steps);
   for (std::size_t k = 0; k < result.size(); ++k) {
     result[k] = (light * picture.in_bands(greatest[k])).mean();
   }
@@ -123,7 +123,7 @@ struct Steps {
 // node's middle and from another of its points, by their sines and cosines. `to`: from the point to
 // the node's middle.
 Steps steps_to(const LightNode& node, const Vector3d& to, double distance) {
-  constexpr int end = steps - 1;
+  constexpr int end = angle_steps - 1;
   if (!(distance > node.radius)) return {.last = end};
   const double cos_at = -node.axis.dot(to) / distance,
                sin_at = std::sqrt(std::max(0.0, 1.0 - cos_at * cos_at));
@@ -171,8 +171,8 @@ std::vector<LightBound> bounds_of(std::span<const Emitter> emitters) {
       // only single lights are near enough for.
       bound.intensity = falling(M * emitter.area / pi, cosine);
       if (emitter.emits_both_sides) {
-        for (int k = 0; k < steps / 2; ++k) {
-          bound.intensity[static_cast<std::size_t>(steps - 1 - k)] =
+        for (int k = 0; k < angle_steps / 2; ++k) {
+          bound.intensity[static_cast<std::size_t>(angle_steps - 1 - k)] =
               bound.intensity[static_cast<std::size_t>(k)];
         }
       }

@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "radiosity/solution/emitter_channels.h"
+#include "radiosity/solution/poly_data.h"
 #include "radiosity/solution/solution_arrays.h"
-#include "radiosity/solution/vtk_output.h"
 
 namespace lightwell {
 namespace {
@@ -15,14 +15,14 @@ std::string array_name(std::size_t channel, const char* quantity) {
   return fmt::format("channel_{}_{}", channel, quantity);
 }
 
-void add_columns(vtkFieldData* data, const std::string& name, const BandArray& values) {
-  add_values(data, name, values.data(), values.rows(), static_cast<int>(values.cols()));
+void add_columns(std::vector<DataArray>& arrays, const std::string& name, const BandArray& values) {
+  add_values(arrays, name, values.data(), values.rows(), static_cast<int>(values.cols()));
 }
 
 // Finite irradiances and radiosities; their sums with finite scales are then finite, too.
-BandArray finite_bands(const SolutionArrays& in, vtkFieldData* data, const std::string& name,
-                       int rows, int bands) {
-  BandArray values = in.bands(data, name.c_str(), rows, bands);
+BandArray finite_bands(const SolutionArrays& in, SolutionArrays::Place place,
+                       const std::string& name, int rows, int bands) {
+  BandArray values = in.bands(place, name, rows, bands);
   in.require(values.allFinite(),
              fmt::format("its array '{}' holds a value that is not finite", name));
   return values;
@@ -59,7 +59,7 @@ void read_patch_channels(const SolutionArrays& in, const PatchMesh& mesh, Radios
 
 }  // namespace
 
-void add_channels(vtkPolyData* poly, const RadiositySolution& s) {
+void add_channels(PolyData& data, const RadiositySolution& s) {
   if (s.channels.empty()) return;
   const auto count = static_cast<std::ptrdiff_t>(s.channels.size());
   const int K = s.bands.count();
@@ -67,8 +67,7 @@ void add_channels(vtkPolyData* poly, const RadiositySolution& s) {
   std::vector<int> owner;
   std::vector<float> scale;
   std::vector<double> energy, free_energy;
-  vtkFieldData* const field = poly->GetFieldData();
-  vtkFieldData* const points = poly->GetPointData();
+  std::vector<DataArray>&field = data.field, &points = data.of_points;
   for (std::size_t c = 0; c < s.channels.size(); ++c) {
     const LightChannel& channel = s.channels[c];
     names.push_back(channel.name);
@@ -98,13 +97,13 @@ void add_channels(vtkPolyData* poly, const RadiositySolution& s) {
 }
 
 void read_channels(const SolutionArrays& in, const PatchMesh& mesh, RadiositySolution& s) {
-  if (!in.field()->GetAbstractArray("channel_names")) return;
+  if (!in.has(in.field(), "channel_names")) return;
   read_names(in, s);
   read_patch_channels(in, mesh, s);
   const int K = s.bands.count(), count = static_cast<int>(s.channels.size());
   const BandArray scale = finite_bands(in, in.field(), "channel_scale", count, K);
   in.require((scale >= 0.0f).all(), "its array 'channel_scale' holds a negative number");
-  s.source_channel = in.optional<int>(in.field(), "lamp_channel", 1).to_vector();
+  s.source_channel = in.optional<int>(in.field(), "lamp_channel", 1).values;
   for (const int channel : s.source_channel) {
     in.require(0 <= channel && channel < count, "a lamp is in no channel");
   }
@@ -116,15 +115,14 @@ void read_channels(const SolutionArrays& in, const PatchMesh& mesh, RadiositySol
       in.field(), "channel_energy_emitted_absorbed_escaped_unshot", count * K, 4);
   for (int c = 0; c < count; ++c) {
     LightChannel& channel = s.channels[static_cast<std::size_t>(c)];
-    const auto read = [&](vtkFieldData* data, const char* quantity, int rows) {
-      return finite_bands(in, data, array_name(static_cast<std::size_t>(c), quantity), rows, K);
+    const auto read = [&](SolutionArrays::Place place, const char* quantity, int rows) {
+      return finite_bands(in, place, array_name(static_cast<std::size_t>(c), quantity), rows, K);
     };
     channel.scale = scale.row(c).transpose();
-    channel.energy = Eigen::Map<const BandEnergy>(energy.data + std::ptrdiff_t{4} * K * c, 4, K);
+    channel.energy = Eigen::Map<const BandEnergy>(energy.row(K * c), 4, K);
     in.require(channel.energy.allFinite(), "the energy of a channel is not finite");
     if (free_energy.rows > 0) {
-      channel.free_energy =
-          Eigen::Map<const FreeEnergy>(free_energy.data + std::ptrdiff_t{2} * K * c, 2, K);
+      channel.free_energy = Eigen::Map<const FreeEnergy>(free_energy.row(K * c), 2, K);
       in.require(channel.free_energy.allFinite(), "the energy of a lamp is not finite");
     }
     channel.patch_radiosity = read(in.field(), "patch_radiosity", mesh.patch_count());

@@ -1,19 +1,14 @@
 #include "radiosity/solution/mesh_file.h"
 
 #include <fmt/format.h>
-#include <vtkCellData.h>
-#include <vtkNew.h>
-#include <vtkPolyData.h>
-#include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
+#include <utility>
 
 #include "mesh/patches/element_quality.h"
 #include "mesh/patches/patch_colors.h"
-#include "radiosity/solution/vtk_output.h"
-#include "scene/atomic_file.h"
+#include "radiosity/solution/poly_data.h"
 
 namespace lightwell {
 namespace {
@@ -28,7 +23,7 @@ std::vector<int> elements_of(const PatchMesh& mesh, MeshSides sides) {
 
 // Adds the column of value(e) over `elements`.
 template <class Value>
-void add_column(vtkFieldData* cells, const char* name, const std::vector<int>& elements,
+void add_column(std::vector<DataArray>& cells, const char* name, const std::vector<int>& elements,
                 Value&& value) {
   std::vector<decltype(value(0))> values;
   values.reserve(elements.size());
@@ -59,7 +54,8 @@ std::vector<unsigned char> palette_colors(const std::vector<int>& numbers) {
   return colors;
 }
 
-void add_cells(vtkCellData* cells, const PatchMesh& mesh, const std::vector<int>& elements) {
+void add_cells(std::vector<DataArray>& cells, const PatchMesh& mesh,
+               const std::vector<int>& elements) {
   const auto add = [&](const char* name, auto&& value) {
     add_column(cells, name, elements, value);
   };
@@ -79,7 +75,6 @@ void add_cells(vtkCellData* cells, const PatchMesh& mesh, const std::vector<int>
   for (const int e : elements) number.push_back(color[mesh.patch[e]]);
   add_values(cells, "patch_rgb", palette_colors(number).data(),
              static_cast<std::ptrdiff_t>(elements.size()), 3);
-  cells->SetActiveScalars("patch_rgb");
 }
 
 }  // namespace
@@ -87,22 +82,15 @@ void add_cells(vtkCellData* cells, const PatchMesh& mesh, const std::vector<int>
 void write_mesh(const std::filesystem::path& path, const PatchMesh& mesh, MeshSides sides,
                 const Provenance& provenance) {
   const std::vector<int> elements = elements_of(mesh, sides);
-  vtkNew<vtkPolyData> poly;
-  set_element_polygons(poly, mesh, elements);
-  add_cells(poly->GetCellData(), mesh, elements);
-  vtkFieldData* const made = poly->GetFieldData();
-  add_strings(made, "version", {provenance.version});
-  add_strings(made, "scene_file", {provenance.scene_file});
-  add_strings(made, "scene_hash", {fmt::format("{:016x}", provenance.scene_hash)});
-  add_strings(made, "options", {provenance.options});
-
-  AtomicFile file(path);
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  const std::string failure = write_appended(writer, poly, file.temporary());
-  if (!failure.empty()) {
-    throw std::runtime_error(fmt::format("{}: could not be written: {}", path.string(), failure));
-  }
-  file.commit();
+  PolyData data;
+  set_element_polygons(data, mesh, elements);
+  add_cells(data.of_polygons, mesh, elements);
+  data.polygon_scalars = "patch_rgb";
+  add_strings(data.field, "version", {provenance.version});
+  add_strings(data.field, "scene_file", {provenance.scene_file});
+  add_strings(data.field, "scene_hash", {fmt::format("{:016x}", provenance.scene_hash)});
+  add_strings(data.field, "options", {provenance.options});
+  write_pieces(path, poly_data_text(std::move(data)));
 }
 
 }  // namespace lightwell

@@ -1,8 +1,4 @@
 #include <fmt/format.h>
-#include <vtkCellArray.h>
-#include <vtkNew.h>
-#include <vtkPoints.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <algorithm>
 #include <charconv>
@@ -14,8 +10,6 @@
 #include "radiosity/solution/solution_arrays.h"
 #include "radiosity/solution/solution_file.h"
 #include "radiosity/solution/solution_seal.h"
-#include "radiosity/solution/solution_structure.h"
-#include "radiosity/solution/vtk_messages.h"
 
 namespace lightwell {
 namespace {
@@ -27,56 +21,44 @@ Bands read_bands(const SolutionArrays& in) {
   bands.names = in.strings("band_names");
   in.require(1 <= bands.count() && bands.count() <= max_bands,
              fmt::format("it has {} bands; 1 to {} are possible", bands.count(), max_bands));
-  bands.wavelengths_nm = in.optional<double>(in.field(), "band_wavelengths_nm", 1).to_vector();
+  bands.wavelengths_nm = in.optional<double>(in.field(), "band_wavelengths_nm", 1).values;
   in.require(bands.wavelengths_nm.empty() || bands.wavelengths_nm.size() == bands.names.size(),
              "it does not have one wavelength per band");
   const auto xyz = in.required<float>(in.field(), "band_xyz", bands.count(), 3);
-  bands.xyz = Eigen::Map<const Eigen::Array<float, 3, Eigen::Dynamic>>(xyz.data, 3, xyz.rows);
+  bands.xyz = Eigen::Map<const Eigen::Array<float, 3, Eigen::Dynamic>>(xyz.row(0), 3, xyz.rows);
   bands.lumens_per_watt = in.number("lumens_per_watt");
   return bands;
 }
 
 std::vector<Eigen::Vector3d> read_points(const SolutionArrays& in) {
-  const auto* array =
-      in.poly()->GetPoints()
-          ? vtkAOSDataArrayTemplate<double>::FastDownCast(in.poly()->GetPoints()->GetData())
-          : nullptr;
-  in.require(array && array->GetNumberOfTuples() > 0, "it has no points in double precision");
-  in.require(array->GetNumberOfTuples() < no_limit, "it has too many points");
-  std::vector<Eigen::Vector3d> points(static_cast<std::size_t>(array->GetNumberOfTuples()));
+  const std::vector<double> coordinates = in.file().points();
+  in.require(coordinates.size() / 3 < no_limit, "it has too many points");
+  std::vector<Eigen::Vector3d> points(coordinates.size() / 3);
   for (std::size_t v = 0; v < points.size(); ++v) {
-    for (int c = 0; c < 3; ++c) {
-      points[v][c] = array->GetTypedComponent(static_cast<vtkIdType>(v), c);
-    }
+    points[v] = Eigen::Map<const Eigen::Vector3d>(coordinates.data() + 3 * v);
     in.require(points[v].allFinite(), fmt::format("point {} is not finite", v));
   }
   return points;
 }
 
 std::vector<std::array<int, 4>> read_corners(const SolutionArrays& in, int vertex_count) {
-  vtkCellArray* polygons = in.poly()->GetPolys();
-  vtkDataArray* offsets = polygons->GetOffsetsArray();
-  vtkDataArray* connectivity = polygons->GetConnectivityArray();
-  const vtkIdType element_count = in.poly()->GetNumberOfPolys();
-  in.require(0 < element_count && element_count < no_limit &&
-                 in.poly()->GetNumberOfCells() == element_count &&
-                 offsets->GetNumberOfTuples() == element_count + 1,
-             "it has no polygons, or other cells beside them");
-  std::vector<std::array<int, 4>> corners(static_cast<std::size_t>(element_count), {0, 0, 0, -1});
-  for (vtkIdType e = 0; e < element_count; ++e) {
-    const auto begin = static_cast<vtkIdType>(offsets->GetComponent(e, 0));
-    const auto end = static_cast<vtkIdType>(offsets->GetComponent(e + 1, 0));
-    in.require(0 <= begin && end <= connectivity->GetNumberOfTuples() &&
+  const std::vector<std::int64_t> points = in.file().corners(), ends = in.file().ends();
+  in.require(!ends.empty() && ends.size() < no_limit, "it has no polygons");
+  in.require(ends.back() == std::ssize(points),
+             "its polygons have another number of corners than they say");
+  std::vector<std::array<int, 4>> corners(ends.size(), {0, 0, 0, -1});
+  for (std::size_t e = 0; e < corners.size(); ++e) {
+    const std::int64_t begin = e == 0 ? 0 : ends[e - 1], end = ends[e];
+    in.require(0 <= begin && begin < end && end <= std::ssize(points) &&
                    (end - begin == 3 || end - begin == 4),
                fmt::format("polygon {} has neither 3 nor 4 corners", e));
-    for (vtkIdType c = begin; c < end; ++c) {
-      const double vertex = connectivity->GetComponent(c, 0);
+    for (std::int64_t c = begin; c < end; ++c) {
+      const std::int64_t vertex = points[static_cast<std::size_t>(c)];
       in.require(0 <= vertex && vertex < vertex_count,
                  fmt::format("polygon {} names point {} of {}", e, vertex, vertex_count));
-      corners[static_cast<std::size_t>(e)][static_cast<std::size_t>(c - begin)] =
-          static_cast<int>(vertex);
+      corners[e][static_cast<std::size_t>(c - begin)] = static_cast<int>(vertex);
     }
-    auto sorted = corners[static_cast<std::size_t>(e)];
+    auto sorted = corners[e];
     std::sort(sorted.begin(), sorted.end());
     in.require(std::adjacent_find(sorted.begin(), sorted.end()) == sorted.end(),
                fmt::format("polygon {} names a point twice", e));
@@ -86,7 +68,7 @@ std::vector<std::array<int, 4>> read_corners(const SolutionArrays& in, int verte
 
 void read_patches(const SolutionArrays& in, int band_count, PatchMesh& mesh) {
   const int element_count = static_cast<int>(mesh.corners.size());
-  mesh.first_element = in.optional<int>(in.field(), "patch_first_element", 1).to_vector();
+  mesh.first_element = in.optional<int>(in.field(), "patch_first_element", 1).values;
   const auto& first = mesh.first_element;
   in.require(first.size() >= 2 && first.front() == 0 && first.back() == element_count &&
                  std::is_sorted(first.begin(), first.end()),
@@ -95,8 +77,8 @@ void read_patches(const SolutionArrays& in, int band_count, PatchMesh& mesh) {
   mesh.area = in.areas(in.field(), "patch_area", n);
   mesh.surface = in.integers(in.field(), "patch_surface", n, 0, no_limit);
   mesh.material = in.integers(in.field(), "patch_material", n, 0, no_limit);
-  const auto is_back = in.required<unsigned char>(in.field(), "patch_is_back", n);
-  mesh.is_back.assign(is_back.data, is_back.data + n);
+  const auto is_back = in.required<unsigned char>(in.field(), "patch_is_back", n).values;
+  mesh.is_back.assign(is_back.begin(), is_back.end());
   mesh.reflectance = in.bands(in.field(), "patch_reflectance", n, band_count);
   if (in.optional<float>(in.field(), "patch_transmittance", band_count).rows > 0) {
     mesh.transmittance = in.bands(in.field(), "patch_transmittance", n, band_count);
@@ -139,8 +121,8 @@ void read_grids(const SolutionArrays& in, const std::string& name, const std::st
   const std::size_t first = mesh.round_grids.size();
   std::int64_t cells = 0;
   for (int g = 0; g < sizes.rows; ++g) {
-    const int* row = sizes.data + std::ptrdiff_t{3} * g;
-    const RoundShape shape = shape_of(values.data + std::ptrdiff_t{count} * g, Shape{});
+    const int* row = sizes.row(g);
+    const RoundShape shape = shape_of(values.row(g), Shape{});
     in.require(row[0] >= 0 && row[1] > 0 && row[2] > 0 && area(shape) > 0.0,
                fmt::format("{} grid {} has no rings, sectors or area", name, g));
     cells += std::int64_t{row[1]} * row[2];
@@ -178,7 +160,7 @@ PatchMesh read_mesh(const SolutionArrays& in, int band_count) {
   const auto normal = in.required<double>(in.points(), "normal", vertex_count, 3);
   mesh.vertex_normal.resize(positions.size());
   for (int v = 0; v < vertex_count; ++v) {
-    mesh.vertex_normal[v] = Eigen::Map<const Eigen::Vector3d>(normal.data + std::ptrdiff_t{3} * v);
+    mesh.vertex_normal[v] = Eigen::Map<const Eigen::Vector3d>(normal.row(v));
   }
   return mesh;
 }
@@ -188,13 +170,13 @@ void read_light(const SolutionArrays& in, const PatchMesh& mesh, RadiositySoluti
   s.patch_radiosity = in.bands(in.field(), "patch_radiosity", mesh.patch_count(), K);
   s.direct_irradiance = in.bands(in.points(), "direct_irradiance", mesh.vertex_count(), K);
   s.indirect_irradiance = in.bands(in.points(), "indirect_irradiance", mesh.vertex_count(), K);
-  if (in.points()->GetAbstractArray("caustic_irradiance")) {  // absent without mirrors and glass
+  if (in.has(in.points(), "caustic_irradiance")) {  // absent without mirrors and glass
     s.caustic_irradiance = in.bands(in.points(), "caustic_irradiance", mesh.vertex_count(), K);
   }
   const auto of_elements = [&](const char* name, Eigen::ArrayXf& values) {
-    if (!in.cells()->GetAbstractArray(name)) return;
+    if (!in.has(in.cells(), name)) return;
     const auto read = in.required<float>(in.cells(), name, mesh.element_count());
-    values = Eigen::Map<const Eigen::ArrayXf>(read.data, read.rows);
+    values = Eigen::Map<const Eigen::ArrayXf>(read.row(0), read.rows);
   };
   // Absent in solutions without an estimate.
   of_elements("interpolation_error", s.interpolation_error);
@@ -208,7 +190,7 @@ void read_parts(const SolutionArrays& in, RadiositySolution& s) {
   const auto count = static_cast<int>(names.size());
   const auto figures = in.required<double>(in.field(), "part_area_error_estimate", count, 2);
   for (int p = 0; p < count; ++p) {
-    const double* row = figures.data + std::ptrdiff_t{2} * p;
+    const double* row = figures.row(p);
     in.require(std::isfinite(row[0]) && std::isfinite(row[1]),
                fmt::format("part {} has an area or an error that is no number", p));
     s.parts.parts.push_back({.name = names[p], .area = row[0], .error_estimate = row[1]});
@@ -224,25 +206,25 @@ void read_record(const SolutionArrays& in, RadiositySolution& s) {
   s.relative_units = !light.empty() && light.front() == "relative";
   const auto history = in.optional<double>(in.field(), "history_residual_seconds", 2);
   for (int i = 0; i < history.rows; ++i) {
-    s.history.push_back({history.data[2 * i], history.data[2 * i + 1]});
+    s.history.push_back({history.row(i)[0], history.row(i)[1]});
   }
   const auto phases = in.strings("phase_names");
   const auto seconds = in.optional<double>(in.field(), "phase_seconds", 1);
   in.require(static_cast<int>(phases.size()) == seconds.rows,
              "it does not have one time per phase");
-  for (int i = 0; i < seconds.rows; ++i) s.seconds.push_back({phases[i], seconds.data[i]});
+  for (int i = 0; i < seconds.rows; ++i) s.seconds.push_back({phases[i], seconds.values[i]});
 
   s.outcome = static_cast<Outcome>(
       in.integers(in.field(), "outcome", 1, 0, static_cast<int>(Outcome::cut_short) + 1).front());
   s.residual = in.number("residual");
   s.error_estimate = in.number("error_estimate");
-  const double* energy =
-      in.required<double>(in.field(), "energy_emitted_absorbed_escaped_unshot", 1, 4).data;
+  const std::vector<double> energy =
+      in.required<double>(in.field(), "energy_emitted_absorbed_escaped_unshot", 1, 4).values;
   s.energy = {energy[0], energy[1], energy[2], energy[3]};
   const auto of_lamps = in.optional<double>(in.field(), "energy_from_lamps_missed", 2);
   if (of_lamps.rows > 0) {  // absent without lamps
-    s.energy.from_lamps = of_lamps.data[0];
-    s.energy.missed = of_lamps.data[1];
+    s.energy.from_lamps = of_lamps.values[0];
+    s.energy.missed = of_lamps.values[1];
   }
 
   read_parts(in, s);
@@ -261,14 +243,8 @@ void read_record(const SolutionArrays& in, RadiositySolution& s) {
 
 SolvedScene read_solution(const std::filesystem::path& path) {
   check_seal(path);
-  check_structure(path);
-  const VtkMessages messages;
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(path.c_str());
-  reader->Update();
-  const SolutionArrays in(path, reader->GetOutput());
-  in.require(reader->GetErrorCode() == 0 && !messages.any(), "VTK finds an error in its data");
-
+  PolyDataFile file(path);
+  const SolutionArrays in(file);
   SolvedScene solved;
   solved.solution.bands = read_bands(in);
   solved.mesh = read_mesh(in, solved.solution.bands.count());

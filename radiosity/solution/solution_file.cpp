@@ -2,12 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <vtkCellData.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPolyData.h>
-#include <vtkXMLPolyDataReader.h>
-#include <vtkXMLPolyDataWriter.h>
 
 #include <algorithm>
 #include <cmath>
@@ -16,35 +10,14 @@
 
 #include "mesh/patches/pictured_emission.h"
 #include "radiosity/solution/channel_arrays.h"
+#include "radiosity/solution/poly_data.h"
 #include "radiosity/solution/solution_seal.h"
-#include "radiosity/solution/vtk_messages.h"
-#include "radiosity/solution/vtk_output.h"
 #include "scene/atomic_file.h"
 #include "scene/errors.h"
 #include "scene/utf8.h"
 
 namespace lightwell {
 namespace {
-
-/// Writer that puts the preamble before the XML's root element.
-class SealedWriter : public vtkXMLPolyDataWriter {
- public:
-  static SealedWriter* New() {
-    auto* writer = new SealedWriter;
-    writer->InitializeObjectBase();
-    return writer;
-  }
-  void set_preamble(const std::string& text) { preamble_ = text; }
-
- protected:
-  int StartFile() override {
-    *this->Stream << preamble_;
-    return vtkXMLPolyDataWriter::StartFile();
-  }
-
- private:
-  std::string preamble_;
-};
 
 std::vector<double> numbers_of(const Sphere& sphere) {
   const Eigen::Vector3d& c = sphere.center;
@@ -68,7 +41,7 @@ std::vector<double> numbers_of(const Frustum& frustum) {
 // Adds the grids of one kind of round shape: arrays NAME_facet_rings_sectors, NAME_<numbers> and
 // NAME_element. Kinds that are not met are left out, but for spheres.
 template <class Shape>
-void add_grids(vtkFieldData* data, const PatchMesh& mesh, const std::string& name,
+void add_grids(std::vector<DataArray>& data, const PatchMesh& mesh, const std::string& name,
                const std::string& numbers) {
   std::vector<int> sizes, element;
   std::vector<double> shapes;
@@ -83,35 +56,34 @@ void add_grids(vtkFieldData* data, const PatchMesh& mesh, const std::string& nam
     element.insert(element.end(), grid.element.begin(), grid.element.end());
   }
   if (grids == 0 && !std::is_same_v<Shape, Sphere>) return;
-  add_values(data, (name + "_facet_rings_sectors").c_str(), sizes.data(), grids, 3);
-  add_values(data, (name + "_" + numbers).c_str(), shapes.data(), grids,
+  add_values(data, name + "_facet_rings_sectors", sizes.data(), grids, 3);
+  add_values(data, name + "_" + numbers, shapes.data(), grids,
              static_cast<int>(numbers_of(Shape{}).size()));
-  add_values(data, (name + "_element").c_str(), element.data(),
-             static_cast<std::ptrdiff_t>(element.size()));
+  add_values(data, name + "_element", element.data(), static_cast<std::ptrdiff_t>(element.size()));
 }
 
-void add_bands(vtkFieldData* data, const char* name, const BandArray& values, const Bands& bands) {
+void add_bands(std::vector<DataArray>& data, const char* name, const BandArray& values,
+               const Bands& bands) {
   auto* array =
       add_values(data, name, values.data(), values.rows(), static_cast<int>(values.cols()));
   for (int k = 0; array && k < bands.count(); ++k) {
-    // VTK writes the label unescaped into an XML attribute. The true name is in 'band_names'.
-    std::string label = as_utf8(bands.names[k]);
+    // Programs show the label as it stands in the XML. The true name is in 'band_names'.
+    std::string& label = array->labels.emplace_back(as_utf8(bands.names[k]));
     std::replace_if(
         label.begin(), label.end(), [](char c) { return std::strchr("<>&\"'", c) != nullptr; },
         '_');
-    array->SetComponentName(k, label.c_str());
   }
 }
 
-void add_geometry(vtkPolyData* poly, const PatchMesh& mesh) {
-  set_element_polygons(poly, mesh);
+void add_geometry(PolyData& data, const PatchMesh& mesh) {
+  set_element_polygons(data, mesh);
   std::vector<double> normals;
   normals.reserve(3 * mesh.vertex_normal.size());
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     normals.insert(normals.end(), mesh.vertex_normal[v].data(), mesh.vertex_normal[v].data() + 3);
   }
-  poly->GetPointData()->SetNormals(
-      add_values(poly->GetPointData(), "normal", normals.data(), mesh.vertex_count(), 3));
+  add_values(data.of_points, "normal", normals.data(), mesh.vertex_count(), 3);
+  data.point_normals = "normal";
 }
 
 /// 8-bit sRGB of the tone curve x / (1 + x), where x = 1 is twice the mean luminance of the light
@@ -141,7 +113,7 @@ std::vector<unsigned char> display_colors(const PatchMesh& mesh, const BandArray
   return colors;
 }
 
-void add_vertex_light(vtkPointData* data, const SolvedScene& solved) {
+void add_vertex_light(std::vector<DataArray>& data, const SolvedScene& solved) {
   const RadiositySolution& s = solved.solution;
   const BandArray E = s.irradiance();
   const BandArray B = vertex_radiosity(solved.mesh, s);
@@ -155,11 +127,10 @@ void add_vertex_light(vtkPointData* data, const SolvedScene& solved) {
   add_bands(data, "caustic_irradiance", s.caustic_irradiance, s.bands);
   add_bands(data, "radiosity", B, s.bands);
   add_values(data, "illuminance_lux", lux.data(), E.rows());
-  data->SetScalars(
-      add_values(data, "rgb", display_colors(solved.mesh, B, s.bands).data(), E.rows(), 3));
+  add_values(data, "rgb", display_colors(solved.mesh, B, s.bands).data(), E.rows(), 3);
 }
 
-void add_elements(vtkCellData* data, const PatchMesh& mesh, const RadiositySolution& s) {
+void add_elements(std::vector<DataArray>& data, const PatchMesh& mesh, const RadiositySolution& s) {
   const int n = mesh.element_count();
   const auto of_patch = [&](const char* name, const std::vector<int>& per_patch) {
     std::vector<int> values(n);
@@ -177,7 +148,7 @@ void add_elements(vtkCellData* data, const PatchMesh& mesh, const RadiositySolut
   add_values(data, "gather_noise", s.gather_noise.data(), s.gather_noise.size());
 }
 
-void add_patches(vtkFieldData* data, const PatchMesh& mesh, const RadiositySolution& s) {
+void add_patches(std::vector<DataArray>& data, const PatchMesh& mesh, const RadiositySolution& s) {
   const int n = mesh.patch_count();
   const std::vector<unsigned char> is_back(mesh.is_back.begin(), mesh.is_back.end());
   add_values(data, "patch_first_element", mesh.first_element.data(), n + 1);
@@ -198,7 +169,7 @@ void add_patches(vtkFieldData* data, const PatchMesh& mesh, const RadiositySolut
   add_grids<Frustum>(data, mesh, "frustum", "base_axis_height_radii_inward");
 }
 
-void add_record(vtkFieldData* data, const RadiositySolution& s) {
+void add_record(std::vector<DataArray>& data, const RadiositySolution& s) {
   add_strings(data, "band_names", s.bands.names);
   add_values(data, "band_wavelengths_nm", s.bands.wavelengths_nm.data(),
              static_cast<std::ptrdiff_t>(s.bands.wavelengths_nm.size()));
@@ -237,7 +208,7 @@ void add_record(vtkFieldData* data, const RadiositySolution& s) {
   if (!s.provenance.looked_from.empty()) add_strings(data, "looked_from", s.provenance.looked_from);
 }
 
-void add_parts(vtkFieldData* data, const SceneParts& parts) {
+void add_parts(std::vector<DataArray>& data, const SceneParts& parts) {
   if (parts.count() == 0) return;
   std::vector<std::string> names;
   std::vector<double> figures;
@@ -310,44 +281,23 @@ std::string summary(const SolvedScene& solved) {
       total);
 }
 
-[[noreturn]] void fail_solution_write(const std::filesystem::path& path,
-                                      const std::string& reason) {
-  throw std::runtime_error(
-      fmt::format("cannot write the solution '{}': {}", path.string(), reason));
-}
-
-// True if VTK's parser accepts the text of the file. The arrays, which are most of the file, are
-// not read.
-bool can_be_parsed(const std::filesystem::path& path) {
-  const VtkMessages messages;
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(path.c_str());
-  reader->UpdateInformation();
-  return reader->GetErrorCode() == 0 && !messages.any();
-}
-
 }  // namespace
 
 void write_solution(const std::filesystem::path& path, const SolvedScene& solved) {
-  vtkNew<vtkPolyData> poly;
-  add_geometry(poly, solved.mesh);
-  add_vertex_light(poly->GetPointData(), solved);
-  add_elements(poly->GetCellData(), solved.mesh, solved.solution);
-  add_patches(poly->GetFieldData(), solved.mesh, solved.solution);
-  add_record(poly->GetFieldData(), solved.solution);
-  add_parts(poly->GetFieldData(), solved.solution.parts);
-  add_channels(poly, solved.solution);
+  PolyData data;
+  add_geometry(data, solved.mesh);
+  add_vertex_light(data.of_points, solved);
+  data.point_scalars = "rgb";
+  add_elements(data.of_polygons, solved.mesh, solved.solution);
+  add_patches(data.field, solved.mesh, solved.solution);
+  add_record(data.field, solved.solution);
+  add_parts(data.field, solved.solution.parts);
+  add_channels(data, solved.solution);
 
-  AtomicFile file(path);
-  vtkNew<SealedWriter> writer;
-  writer->set_preamble(solution_preamble(summary(solved)));
-  const std::string failure = write_appended(writer, poly, file.temporary());
-  if (!failure.empty()) fail_solution_write(path, failure);
-  if (!can_be_parsed(file.temporary())) {
-    fail_solution_write(path, "what was written cannot be read back");
-  }
-  seal_solution(file.temporary());
-  file.commit();
+  std::vector<std::string> text = poly_data_text(std::move(data));
+  text.insert(text.begin(), solution_preamble(summary(solved)));
+  text.push_back(seal_of(text));
+  write_pieces(path, text);
 }
 
 void check_matches(const Scene& scene, const RadiositySolution& solution) {

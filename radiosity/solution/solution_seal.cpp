@@ -29,18 +29,24 @@ constexpr std::size_t seal_length = seal_start.size() + seal_digits + seal_end.s
   throw InputError(fmt::format("cannot read the solution '{}': {}", path.string(), reason));
 }
 
+constexpr std::uint64_t checksum_of_nothing = 0xcbf29ce484222325u;
+
+// FNV-1a of bytes that follow those of the checksum `hash`.
+std::uint64_t checksum_after(std::uint64_t hash, std::string_view bytes) {
+  for (const char byte : bytes) hash = (hash ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
+  return hash;
+}
+
 /// FNV-1a of the first `length` bytes; the file may turn out shorter.
 std::uint64_t checksum_of_start(std::ifstream& file, std::uint64_t length) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
+  std::uint64_t hash = checksum_of_nothing;
   std::vector<char> buffer(1 << 20);
   while (length > 0) {
     file.read(buffer.data(),
               static_cast<std::streamsize>(std::min<std::uint64_t>(length, 1 << 20)));
     const auto got = static_cast<std::size_t>(file.gcount());
     if (got == 0) break;
-    for (std::size_t i = 0; i < got; ++i) {
-      hash = (hash ^ static_cast<unsigned char>(buffer[i])) * 0x100000001b3u;
-    }
+    hash = checksum_after(hash, {buffer.data(), got});
     length -= got;
   }
   return hash;
@@ -93,6 +99,12 @@ std::uint64_t file_checksum(const std::filesystem::path& path) {
         fmt::format("cannot read '{}': {}", path.string(), std::strerror(errno)));
   }
   return checksum_of_start(file, std::numeric_limits<std::uint64_t>::max());
+}
+
+std::string seal_of(std::span<const std::string> pieces) {
+  std::uint64_t hash = checksum_of_nothing;
+  for (const std::string& piece : pieces) hash = checksum_after(hash, piece);
+  return seal_text(hash);
 }
 
 void seal_solution(const std::filesystem::path& path) {

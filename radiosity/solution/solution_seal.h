@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <string>
 
 namespace lightwell {
@@ -17,8 +18,10 @@ std::string solution_preamble(const std::string& summary);
 /// FNV-1a over all bytes (64 bits; Fowler, Noll & Vo). Throws std::runtime_error if unreadable.
 std::uint64_t file_checksum(const std::filesystem::path& path);
 
-/// Appends the last line, a processing instruction with the checksum of everything before it.
-/// Throws std::runtime_error naming the file.
+/// The last line of a file of these pieces: a processing instruction with the checksum of all.
+std::string seal_of(std::span<const std::string> pieces);
+
+/// Appends the last line, seal_of() what the file holds. Throws std::runtime_error naming the file.
 void seal_solution(const std::filesystem::path& path);
 
 /// Checks that the file is a complete solution file of this version. Throws InputError with the

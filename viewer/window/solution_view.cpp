@@ -13,9 +13,9 @@
 #include <stdexcept>
 
 #include "mesh/patches/mesh_bounds.h"
-#include "radiosity/solution/vtk_messages.h"
 #include "raytrace/display/display.h"
 #include "viewer/export/baked_channels.h"
+#include "viewer/window/vtk_messages.h"
 
 namespace lightwell {
 namespace {

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "radiosity/solution/relight.h"
-#include "radiosity/solution/vtk_messages.h"
 #include "raytrace/pictures/image.h"
 #include "scene/errors.h"
 #include "viewer/window/camera_path.h"
@@ -21,6 +20,7 @@
 #include "viewer/window/preparation.h"
 #include "viewer/window/preview.h"
 #include "viewer/window/solution_view.h"
+#include "viewer/window/vtk_messages.h"
 #include "viewer/window/waiting_window.h"
 #include "viewer/window/walk_window.h"
 #include "viewer/window/x_display.h"

@@ -11,7 +11,7 @@
 #include <chrono>
 #include <thread>
 
-#include "radiosity/solution/vtk_messages.h"
+#include "viewer/window/vtk_messages.h"
 #include "viewer/window/x_display.h"
 
 namespace lightwell {

@@ -11,8 +11,8 @@
 #include <numbers>
 #include <utility>
 
-#include "radiosity/solution/vtk_messages.h"
 #include "raytrace/pictures/image.h"
+#include "viewer/window/vtk_messages.h"
 #include "viewer/window/walk_style.h"
 #include "viewer/window/x_display.h"
 

@@ -1,17 +1,13 @@
 #include "radiosity/form_factors/form_factor_file.h"
 
 #include <gtest/gtest.h>
-#include <vtkCellData.h>
-#include <vtkDataArray.h>
-#include <vtkNew.h>
-#include <vtkPolyData.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <cmath>
 #include <fstream>
 #include <sstream>
 
 #include "mesh/build_patches.h"
+#include "radiosity/solution/poly_data_file.h"
 #include "scene/errors.h"
 #include "tests/temporary_folder.h"
 
@@ -206,18 +202,15 @@ TEST(RowPicture, HoldsTheRowsFactorsForEveryElement) {
   const ViewFactors F = view_factors({1.0, 1.0}, {{{1, 0.2f}}, {{0, 0.2f}}});
   write_row(folder / "row.vtp", two_squares(), {0, 1}, F, 1);
   EXPECT_EQ(folder.file_count(), 1);
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName((folder / "row.vtp").c_str());
-  reader->Update();
-  vtkCellData* const data = reader->GetOutput()->GetCellData();
-  ASSERT_EQ(reader->GetOutput()->GetNumberOfCells(), 2);
-  ASSERT_NE(data->GetScalars(), nullptr);
-  EXPECT_STREQ(data->GetScalars()->GetName(), "view_factor");
-  EXPECT_FLOAT_EQ(static_cast<float>(data->GetArray("view_factor")->GetTuple1(0)), 0.2f);
-  EXPECT_EQ(data->GetArray("view_factor")->GetTuple1(1), 0.0);
-  EXPECT_EQ(data->GetArray("row")->GetTuple1(1), 2.0);
-  EXPECT_EQ(data->GetArray("is_row")->GetTuple1(0), 0.0);
-  EXPECT_EQ(data->GetArray("is_row")->GetTuple1(1), 1.0);
+  PolyDataFile file(folder / "row.vtp");
+  ASSERT_EQ(file.polygon_count(), 2);
+  const auto column = [&]<class T>(const char* name, T /*kind*/) {
+    const StoredArray* array = file.find(PolyDataFile::Place::polygons, name);
+    return array ? file.values<T>(*array) : std::vector<T>();
+  };
+  EXPECT_EQ(column("view_factor", 0.0f), (std::vector<float>{0.2f, 0.0f}));
+  EXPECT_EQ(column("row", 0), (std::vector<int>{1, 2}));
+  EXPECT_EQ(column("is_row", 0), (std::vector<int>{0, 1}));
 }
 
 TEST(FormFactorFiles, AFailedWriteNamesTheFileAndLeavesNothing) {

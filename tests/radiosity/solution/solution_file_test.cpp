@@ -1,12 +1,6 @@
 #include "radiosity/solution/solution_file.h"
 
 #include <gtest/gtest.h>
-#include <vtkCellData.h>
-#include <vtkDataArray.h>
-#include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPolyData.h>
-#include <vtkXMLPolyDataReader.h>
 
 #include <bit>
 #include <cstring>
@@ -188,51 +182,6 @@ TEST_F(SolutionFile, RestoresASolutionWithoutHistoryOrSpheres) {
   expect_same_solution(solved.solution, again.solution);
 }
 
-TEST_F(SolutionFile, IsPolyDataThatAnyVtkReaderOpens) {
-  const SolvedScene solved = small_solution(3);
-  write_solution(file(), solved);
-  vtkNew<vtkXMLPolyDataReader> reader;
-  EXPECT_TRUE(reader->CanReadFile(file().c_str()));
-  reader->SetFileName(file().c_str());
-  reader->Update();
-  vtkPolyData* poly = reader->GetOutput();
-  EXPECT_EQ(poly->GetNumberOfPoints(), 9);
-  EXPECT_EQ(poly->GetNumberOfPolys(), 3);
-  vtkPointData* light = poly->GetPointData();
-  ASSERT_NE(light->GetScalars(), nullptr);
-  EXPECT_STREQ(light->GetScalars()->GetName(), "rgb");
-  EXPECT_EQ(light->GetScalars()->GetDataType(), VTK_UNSIGNED_CHAR);
-  for (const char* name : {"irradiance", "direct_irradiance", "indirect_irradiance", "radiosity"}) {
-    ASSERT_NE(light->GetArray(name), nullptr) << name;
-    EXPECT_EQ(light->GetArray(name)->GetNumberOfComponents(), 3) << name;
-    EXPECT_EQ(light->GetArray(name)->GetComponentName(0), std::string("__a_ _ _b__")) << name;
-    EXPECT_STREQ(light->GetArray(name)->GetComponentName(2), "b") << name;
-  }
-  for (const char* name : {"patch", "twin", "surface", "material", "facet", "area"}) {
-    EXPECT_NE(poly->GetCellData()->GetArray(name), nullptr) << name;
-  }
-}
-
-/// E = 100 W/m^2 in every RGB band is 100 * 683 lx, because the luminance weights sum to 1; and a
-/// grey vertex must look grey.
-TEST_F(SolutionFile, HoldsIlluminanceInLuxAndColorsForDisplay) {
-  SolvedScene solved = small_solution(3);
-  solved.solution.bands = rgb_bands();
-  solved.mesh.emission.setZero();
-  solved.solution.direct_irradiance.setConstant(75.0f);
-  solved.solution.indirect_irradiance.setConstant(25.0f);
-  write_solution(file(), solved);
-  vtkNew<vtkXMLPolyDataReader> reader;
-  reader->SetFileName(file().c_str());
-  reader->Update();
-  vtkPointData* light = reader->GetOutput()->GetPointData();
-  // The three weights are rounded to float, each to half a unit in the last place.
-  EXPECT_NEAR(light->GetArray("illuminance_lux")->GetComponent(0, 0), 68300.0, 68300.0 * 2e-7);
-  // Every surface at the mean: x = 1/2, so x/(1+x) = 1/3, in sRGB 1.055 (1/3)^(1/2.4) - 0.055 =
-  // 0.6125, and that is 156.2 of 255.
-  for (int c = 0; c < 3; ++c) EXPECT_EQ(light->GetScalars()->GetComponent(4, c), 156.0);
-}
-
 TEST_F(SolutionFile, BeginsWithTextForPeople) {
   write_solution(file(), small_solution(3));
   std::istringstream start(contents(file()).substr(0, 600));
@@ -261,7 +210,7 @@ TEST_F(SolutionFile, AFailedWriteNamesTheFileAndKeepsTheOldOne) {
     write_solution(folder_ / "absent" / "s.vtp", solved);
     FAIL() << "wrote into a folder that does not exist";
   } catch (const std::runtime_error& e) {
-    EXPECT_NE(std::string(e.what()).find("absent/s.vtp'"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find("absent/s.vtp"), std::string::npos) << e.what();
     EXPECT_NE(std::string(e.what()).find(std::strerror(ENOENT)), std::string::npos) << e.what();
   }
   fs::create_directories(file() / "occupied");

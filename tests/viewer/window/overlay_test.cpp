@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <sstream>
 
-#include "radiosity/solution/vtk_messages.h"
+#include "viewer/window/vtk_messages.h"
 #include "viewer/window/walk_window.h"
 #include "viewer/window/x_display.h"
 
