@@ -1,26 +1,20 @@
-# CDT, headers alone: the target lightwell_cdt and cdt_version. An installation (find_package(CDT), or CDT_INCLUDE_DIR)
-# serves if it has version 2; otherwise the headers come in the source archive of the Python package pythoncdt.
-find_package(CDT 2 QUIET CONFIG)
+# CDT, headers alone: the target lightwell_cdt and cdt_version. An installation serves if it has version 2 (CDT_INCLUDE_DIR);
+# otherwise the headers come in the source archive of the Python package pythoncdt.
+find_path(CDT_INCLUDE_DIR CDT.h PATH_SUFFIXES CDT)
+mark_as_advanced(CDT_INCLUDE_DIR)
 set(cdt_folder "")
-if(CDT_FOUND)
-  get_target_property(cdt_folder CDT::CDT INTERFACE_INCLUDE_DIRECTORIES)
-  set(cdt_version ${CDT_VERSION})
-else()
-  find_path(CDT_INCLUDE_DIR CDT.h PATH_SUFFIXES CDT)
-  mark_as_advanced(CDT_INCLUDE_DIR)
-  # Version 1 has no such message.
-  if(CDT_INCLUDE_DIR AND EXISTS ${CDT_INCLUDE_DIR}/Triangulation.h)
-    file(STRINGS ${CDT_INCLUDE_DIR}/Triangulation.h cdt_line REGEX "class CDT_EXPORT InvalidEdgeSplitVertex")
-    if(cdt_line)
-      set(cdt_folder ${CDT_INCLUDE_DIR})
-      set(cdt_version 2)
-    endif()
+# The installation names no version. Version 1 has no such message.
+if(CDT_INCLUDE_DIR AND EXISTS ${CDT_INCLUDE_DIR}/Triangulation.h)
+  file(STRINGS ${CDT_INCLUDE_DIR}/Triangulation.h cdt_line REGEX "class CDT_EXPORT InvalidEdgeSplitVertex")
+  if(cdt_line)
+    set(cdt_folder ${CDT_INCLUDE_DIR})
+    set(cdt_version 2)
   endif()
 endif()
 if(NOT cdt_folder)
   set(cdt_version 2.0.2)
   include(FetchContent)
-  # The archive has no CMake files of its own at SOURCE_SUBDIR, so nothing but its headers is used.
+  # SOURCE_SUBDIR names a folder that is not there, so that nothing but the headers is used.
   FetchContent_Declare(cdt
     URL https://files.pythonhosted.org/packages/0b/08/21a9533f8349de75025251592a0e54759044f7124dbb27f5d47fc9c83f9a/pythoncdt-${cdt_version}.tar.gz
     URL_HASH SHA256=303832cae14a5ce90bb4bc696274c8add0f1f0b9bd4edb943e24fd10417036c4

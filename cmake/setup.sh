@@ -44,7 +44,7 @@ die() { printf 'error: %s\n' "$*" >&2; exit 1; }
 need_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     say "This is not Debian, so nothing is installed for you. What is needed: a C++20 compiler, CMake 3.25,"
-    say "Ninja, Eigen 3.4, oneTBB, fmt, Embree 3.13 or 4, CGAL 5.5, OpenMesh, VTK 9.1, toml++,"
+    say "Ninja, Eigen 3.4, oneTBB, fmt, Embree 3.13 or 4, CGAL 5.5 (or CDT 2), OpenMesh, toml++, for the window VTK 9.1,"
     say "assimp, Draco, meshoptimizer, pugixml, muParser, GLPK, libjpeg, OpenEXR, libpng, zlib, CLI11, nlohmann-json, GoogleTest; for reports in PDF cairo, Pango, librsvg"
     say "and the font DejaVu Sans; for the tests Xvfb, Chromium, Firefox, node and poppler-utils."
     return 0

@@ -15,36 +15,11 @@
 
 #include "radiosity/solution/solution_file.h"
 #include "radiosity/solution/solution_seal.h"
-#include "scene/errors.h"
+#include "tests/radiosity/refused_solution.h"
 #include "tests/radiosity/small_solution.h"
 
 namespace lightwell::poly_data_file_test {
 namespace {
-
-void put(const fs::path& path, const std::string& text) {
-  std::ofstream(path, std::ios::binary) << text;
-}
-
-/// Message of read_solution for a file that must be refused. Also checks that nothing else prints.
-std::string refusal(const fs::path& path) {
-  testing::internal::CaptureStderr();
-  std::string message;
-  try {
-    read_solution(path);
-  } catch (const InputError& e) {
-    message = e.what();
-  }
-  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
-  if (!message.empty()) {
-    EXPECT_NE(message.find(path.string()), std::string::npos) << message;
-  }
-  return message;
-}
-
-void expect_refused(const fs::path& path, const std::string& reason) {
-  const std::string message = refusal(path);
-  EXPECT_NE(message.find(reason), std::string::npos) << "message: '" << message << "'";
-}
 
 /// Files changed and sealed again: values are checked in spite of a valid seal.
 class VtkSolution : public SolutionFile {
