@@ -46,9 +46,10 @@ class PolyDataFile {
   std::vector<std::string> strings(const StoredArray& array);
   /// x, y and z of each point.
   std::vector<double> points();
-  /// The numbers of the points of all polygons, and for each polygon the place after its last. No
-  /// value is checked.
-  std::vector<std::int64_t> corners(), ends();
+  /// Numbers of points, of one polygon after another. No value is checked.
+  std::vector<std::int64_t> corners();
+  /// For each polygon the place in corners() after its last corner. No value is checked.
+  std::vector<std::int64_t> ends();
 
  private:
   struct Xml;
