@@ -146,8 +146,8 @@ TEST(Gloss, NeitherTakesNorGivesLightInTheFirstPass) {
     const SolvedScene solved =
         solve_scene(scene, {.mesh = {.max_patch_size = 0.5},
                             .form_factors = {.rays_per_patch = 64, .rays_per_emitter = 4096},
-                            .refine = {.tolerance = 0.0},
-                            .gather = {.rays = 64}});
+                            .gather = {.rays = 64},
+                            .refine = {.tolerance = 0.0}});
     const BandArray irradiance = solved.solution.irradiance();
     for (int p = 0; p < solved.mesh.patch_count(); ++p) {
       if (!(solved.mesh.emission(p, 0) > 0.0f)) continue;

@@ -126,7 +126,7 @@ TEST_P(InBrowser, ThePageShowsEveryMomentOfAYear) {
       ++lit;
       const GatherPoint point{.position = at + 1e-6 * normal, .normal = normal};
       room.model.set_sensors({&point, 1});
-      const std::vector<SunDisc> sun = {{.direction = sky.sun}};
+      const std::vector<SunDisc> sun = {{room.model.sky(), sky.sun}};
       const double wanted = sky.sun_lux * double{room.model.direct_sun(sun)(0, 0)};
       // The disc has 16 rays, whose cosines differ by up to 0.0047: four of their errors.
       EXPECT_NEAR(sunlight, wanted, (0.0047 / std::sqrt(3.0) + 3e-4) * sky.sun_lux);
