@@ -64,7 +64,10 @@ void lay_coat(Material& material, double index, double alpha, const Spectrum& sp
 
 void lay_simple_coat(Material& material, double index, double alpha, const Spectrum& specular) {
   set_coat(material, index, alpha, specular);
-  const auto passed = static_cast<float>(1.0 - CoatedBase(material).mean_mirrored());
+  // A coat of less than all of Fresnel's share takes as much less from the base, at every angle.
+  const float most = specular.size() > 0 ? specular.maxCoeff() : 0.0f;
+  material.coat->cover = most;
+  const float passed = 1.0f - most * static_cast<float>(CoatedBase(material).mean_mirrored());
   material.reflectance *= passed;
   material.transmittance *= passed;
   material.regular_transmittance *= passed;

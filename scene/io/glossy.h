@@ -33,8 +33,9 @@ void set_coat(Material& material, double index, double alpha, const Spectrum& sp
 void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
               bool saturating = true);
 
-/// Lays a coat as lay_coat(), but light does not go to and fro below it: rho = (1 - F_o) base, as
-/// in glTF's materials.
+/// Lays a coat as lay_coat(), but light does not go to and fro below it: rho = (1 - s F_o) base, s
+/// the largest of `specular`, as in glTF's materials (fresnel_mix in appendix B of glTF 2.0,
+/// KHR_materials_specular, KHR_materials_clearcoat).
 void lay_simple_coat(Material& material, double index, double alpha, const Spectrum& specular);
 
 /// GGX width of Phong's highlight cos^n, sqrt(2 / (n + 2)) (Walter et al. 2007).

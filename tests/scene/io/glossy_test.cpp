@@ -30,11 +30,13 @@ TEST(Glossy, GlassReflectsNinePercentOfDiffuseLight) {
   EXPECT_NEAR(diffuse_fresnel(1.5), 0.0918, 5e-5);
 }
 
-// With a base of reflectance b: b (1 - F_o) where light does not go to and fro below the coat.
+// With a base of reflectance b: b (1 - s F_o) where light does not go to and fro below a coat that
+// mirrors the share s of F_o.
 TEST(Glossy, CoatsAreLaidOverBasesAndTheirPictures) {
   Material lacquer{.reflectance = grey(0.5f), .specular = grey(0.0f), .emission = grey(0.0f)};
   lay_simple_coat(lacquer, 1.5, 0.2, grey(0.5f));
-  EXPECT_NEAR(lacquer.reflectance[0], 0.5 * (1.0 - CoatedBase(lacquer).mean_mirrored()), 1e-6);
+  EXPECT_NEAR(lacquer.reflectance[0], 0.5 * (1.0 - 0.5 * CoatedBase(lacquer).mean_mirrored()),
+              1e-6);
   EXPECT_FLOAT_EQ(lacquer.specular[1], 0.5f);
   EXPECT_FLOAT_EQ(lacquer.specular_roughness, 0.2f);
   ASSERT_TRUE(lacquer.coat);

@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <numbers>
 
 #include "scene/coat.h"
+#include "scene/optics.h"
 #include "tests/scene/gltf_text.h"
 #include "tests/scene/scene_file_test.h"
 #include "tests/scene/scene_questions.h"
@@ -132,7 +134,7 @@ TEST_F(Gltf, DielectricsHaveACoatUnlessTheyAreRough) {
   EXPECT_FLOAT_EQ(tile.coat->index_of_refraction, 1.4f);
   EXPECT_FLOAT_EQ(tile.specular[0], 0.5f);
   EXPECT_FLOAT_EQ(tile.specular_roughness, 0.09f);
-  EXPECT_NEAR(tile.reflectance[0], 0.5 * (1.0 - CoatedBase(tile).mean_mirrored()), 1e-6);
+  EXPECT_NEAR(tile.reflectance[0], 0.5 * (1.0 - 0.5 * CoatedBase(tile).mean_mirrored()), 1e-6);
   const Material plaster = material(base + "0.9}}");
   EXPECT_FALSE(plaster.coat);
   EXPECT_FLOAT_EQ(plaster.reflectance[0], 0.5f);
@@ -140,6 +142,28 @@ TEST_F(Gltf, DielectricsHaveACoatUnlessTheyAreRough) {
       {"clearcoatFactor":1,"clearcoatRoughnessFactor":0.1}}})");
   ASSERT_TRUE(lacquer.coat);
   EXPECT_FLOAT_EQ(lacquer.specular_roughness, 0.01f);
+}
+
+// glTF 2.0, B.3.5 and KHR_materials_specular: f = (1 - s F) base / pi + s F at the mirror's angle,
+// so that the albedo for light from one direction is base + s F (1 - base), F by Fresnel's
+// equations of a smooth surface. Spectra are floats.
+TEST_F(Gltf, AlbedosOfDielectricsAreThoseOfTheSpecification) {
+  for (const float s : {1.0f, 0.3f}) {
+    const Material tile = material(R"({"pbrMetallicRoughness":{"baseColorFactor":[0.5,1,0.1,1],
+        "metallicFactor":0,"roughnessFactor":0},"extensions":{"KHR_materials_specular":
+        {"specularFactor":)" + std::to_string(s) +
+                                   "}}}");
+    const CoatedBase coated(tile);
+    for (const double cosine : {1.0, 0.6, 0.1}) {
+      const double F = fresnel_reflectance(cosine, 1.5);
+      for (const int band : {0, 1, 2}) {
+        const double base = std::array{0.5, 1.0, 0.1}[static_cast<std::size_t>(band)];
+        const double albedo = double{tile.reflectance[band]} * coated.factor(cosine) +
+                              double{tile.specular[band]} * F;
+        EXPECT_NEAR(albedo, base + double{s} * F * (1.0 - base), 1e-6) << s << " " << cosine;
+      }
+    }
+  }
 }
 
 TEST_F(Gltf, SheetsShineToBothSidesWhereTheyAreDoubleSided) {
