@@ -38,6 +38,7 @@ Action add_road(CLI::App& command);
 Action add_daylight(CLI::App& command);
 Action add_form_factors(CLI::App& command);
 Action add_radiation(CLI::App& command);
+Action add_shortwave(CLI::App& command);
 Action add_info(CLI::App& command);
 Action add_demo(CLI::App& command);
 Action add_completion(CLI::App& command);

@@ -8,6 +8,7 @@
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
+#include "cli/compass.h"
 #include "cli/daylight_year.h"
 #include "scene/io/dashed_pair.h"
 
@@ -152,12 +153,7 @@ Action add_daylight(CLI::App& command) {
                   "sensors: CSV with columns x,y,z,nx,ny,nz in the scene file's unit")
       ->type_name("FILE");
   arguments->grids.add_to(command);
-  command
-      .add_option("--north", arguments->north_degrees,
-                  "turns north clockwise, seen from above, from that of the scene's sky (without a "
-                  "sky: +y, or -z where y is up)")
-      ->type_name("DEGREES")
-      ->check(CLI::Range(-360.0, 360.0).description(""));
+  add_north(command, arguments->north_degrees);
   command
       .add_option("--ground", arguments->ground,
                   "reflectance of the ground outside of the scene (default 0.2)")

@@ -5,32 +5,23 @@
 #include <algorithm>
 #include <cmath>
 
+#include "cli/compass.h"
 #include "cli/outputs.h"
 #include "cli/steps.h"
 #include "mesh/cleaning/joined_surfaces.h"
 #include "raytrace/cameras/choose_camera.h"
 #include "scene/errors.h"
 #include "scene/io/text_file.h"
-#include "viewer/export/start_view.h"
 
 namespace lightwell {
 namespace {
 
 // Sets zenith and north of the scene: those of its sky, or those that its axes suggest.
 void set_compass(double north_degrees, DaylightInputs& inputs) {
-  Sky frame;
-  const Scene& scene = inputs.scene;
-  inputs.has_north = scene.sky.has_value();
-  if (scene.sky) {
-    frame = *scene.sky;
-  } else {
-    frame.up = guess_up_axis(scene.cameras, scene_bounds(scene));
-    // Drawings have north along +y; scenes with y up, along -z.
-    frame.north = std::abs(frame.up.y()) > 0.5 ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ())
-                                               : Eigen::Vector3d(Eigen::Vector3d::UnitY());
-  }
-  inputs.up = frame.up;
-  inputs.north = sky_direction(frame, north_degrees, 0.0);
+  const Sky compass = compass_of(inputs.scene, north_degrees);
+  inputs.has_north = inputs.scene.sky.has_value();
+  inputs.up = compass.up;
+  inputs.north = compass.north;
 }
 
 void add_room(YearRoom room, const std::vector<Probe>& points, DaylightSensors& sensors) {

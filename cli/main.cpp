@@ -54,6 +54,8 @@ constexpr const char* recipes =
   lightwell form-factors room.stl -o room.mtx            view factors between facets
   lightwell radiation room.stl --surfaces kelvin.csv -o heats.csv
                                                          radiant heat between surfaces
+  lightwell shortwave city.stl --albedo 0.2 --sun 45,180 --direct 800 -o k.csv
+                                                         sky view factors, sun on facets
   lightwell info room.toml                               what is in a scene, solution or picture
   lightwell validate                                     known answers, computed on this machine
 
@@ -67,7 +69,7 @@ struct NamedCommand {
   Action (*add)(CLI::App&);
   bool reads_scene = true;
 };
-constexpr std::array<NamedCommand, 20> commands = {{{"run", add_run},
+constexpr std::array<NamedCommand, 21> commands = {{{"run", add_run},
                                                     {"solve", add_solve},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight, false},
@@ -82,6 +84,7 @@ constexpr std::array<NamedCommand, 20> commands = {{{"run", add_run},
                                                     {"compare", add_compare, false},
                                                     {"form-factors", add_form_factors},
                                                     {"radiation", add_radiation},
+                                                    {"shortwave", add_shortwave},
                                                     {"info", add_info},
                                                     {"validate", add_validate, false},
                                                     {"demo", add_demo, false},

@@ -9,9 +9,11 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string_view>
 
 #include "cli/arguments.h"
+#include "radiosity/radiation/shortwave.h"
 #include "scene/errors.h"
 #include "scene/io/comma_fields.h"
 #include "scene/io/matches_glob.h"
@@ -21,8 +23,9 @@
 namespace lightwell {
 namespace {
 
-constexpr std::array<std::string_view, 5> known_columns{"surface", "emittance", "kelvin", "celsius",
-                                                        "heat"};
+constexpr std::array<std::string_view, 5> columns_of_exchange{"surface", "emittance", "kelvin",
+                                                              "celsius", "heat"};
+constexpr std::array<std::string_view, 2> columns_of_albedos{"surface", "albedo"};
 constexpr double zero_celsius = 273.15;  // K
 
 // Number of each named column.
@@ -33,9 +36,11 @@ struct SurfaceLine {
   std::string pattern{};
   std::optional<double> emittance{};
   RadiatingSurface surface{};
+  double albedo = 0.0;
 };
 
-Columns read_columns(const TextFile& file, int line, const std::vector<std::string_view>& cells) {
+Columns read_columns(const TextFile& file, int line, const std::vector<std::string_view>& cells,
+                     std::span<const std::string_view> known_columns) {
   Columns columns;
   for (std::size_t c = 0; c < cells.size(); ++c) {
     const std::string name(cells[c]);
@@ -65,19 +70,40 @@ std::optional<double> number_in(const TextFile& file, int line, const Columns& c
   return value;
 }
 
-SurfaceLine read_line(const TextFile& file, int line, const Columns& columns,
-                      const std::vector<std::string_view>& cells) {
-  const auto number = [&](std::string_view name) {
-    return number_in(file, line, columns, cells, name);
-  };
+// A line whose surfaces are known, and nothing else.
+SurfaceLine named_line(const TextFile& file, int line, const Columns& columns,
+                       const std::vector<std::string_view>& cells) {
   if (cells.size() > columns.size()) {
     file.fail(line, fmt::format("has {} values; the first line names {} columns", cells.size(),
                                 columns.size()));
   }
-  SurfaceLine read{.line = line, .emittance = number("emittance")};
+  SurfaceLine read{.line = line};
   const std::size_t name = columns.find("surface")->second;
   if (name < cells.size()) read.pattern = cells[name];
   if (read.pattern.empty()) file.fail(line, "has no surface");
+  return read;
+}
+
+SurfaceLine read_albedo_line(const TextFile& file, int line, const Columns& columns,
+                             const std::vector<std::string_view>& cells) {
+  SurfaceLine read = named_line(file, line, columns, cells);
+  const auto albedo = number_in(file, line, columns, cells, "albedo");
+  if (!albedo) file.fail(line, "has no albedo");
+  if (!(*albedo >= 0.0 && *albedo <= highest_albedo)) {
+    file.fail(line,
+              fmt::format("the albedo is {:g}; it lies from 0 to {:g}", *albedo, highest_albedo));
+  }
+  read.albedo = *albedo;
+  return read;
+}
+
+SurfaceLine read_exchange_line(const TextFile& file, int line, const Columns& columns,
+                               const std::vector<std::string_view>& cells) {
+  const auto number = [&](std::string_view name) {
+    return number_in(file, line, columns, cells, name);
+  };
+  SurfaceLine read = named_line(file, line, columns, cells);
+  read.emittance = number("emittance");
   const auto kelvin = number("kelvin"), celsius = number("celsius"), heat = number("heat");
   if (kelvin.has_value() + celsius.has_value() + heat.has_value() != 1) {
     file.fail(line, "needs one of kelvin, celsius and heat");
@@ -95,7 +121,11 @@ SurfaceLine read_line(const TextFile& file, int line, const Columns& columns,
   return read;
 }
 
-std::vector<SurfaceLine> read_lines(const TextFile& file) {
+using LineReader = SurfaceLine(const TextFile&, int, const Columns&,
+                               const std::vector<std::string_view>&);
+
+std::vector<SurfaceLine> read_lines(const TextFile& file, std::span<const std::string_view> known,
+                                    LineReader* read_line) {
   std::optional<Columns> columns;
   std::vector<SurfaceLine> lines;
   file.for_each_line([&](int line, std::string_view text) {
@@ -103,16 +133,16 @@ std::vector<SurfaceLine> read_lines(const TextFile& file) {
     if (text.empty() || text.starts_with('#')) return;
     const auto cells = comma_fields(text);
     if (!columns) {
-      columns = read_columns(file, line, cells);
+      columns = read_columns(file, line, cells, known);
     } else {
       lines.push_back(read_line(file, line, *columns, cells));
     }
   });
   if (lines.empty()) {
-    throw InputError(
-        fmt::format("{}: describes no surface; the first line names columns, such as "
-                    "surface,emittance,kelvin",
-                    file.path().string()));
+    throw InputError(fmt::format(
+        "{}: describes no surface; the first line names columns, such as "
+        "{}",
+        file.path().string(), fmt::join(known.first(std::min<std::size_t>(known.size(), 3)), ",")));
   }
   return lines;
 }
@@ -157,7 +187,7 @@ std::vector<RadiatingSurface> read_radiating_surfaces(const std::filesystem::pat
                                                       const ViewFactorRows& rows,
                                                       const std::vector<double>& area) {
   const TextFile file(csv);
-  const std::vector<SurfaceLine> lines = read_lines(file);
+  const auto lines = read_lines(file, columns_of_exchange, read_exchange_line);
   const std::vector<const SurfaceLine*> of_row = lines_of_rows(file, lines, rows);
   std::map<const SurfaceLine*, double> area_of;
   for (std::size_t i = 0; i < of_row.size(); ++i) area_of[of_row[i]] += area[i];
@@ -174,6 +204,15 @@ std::vector<RadiatingSurface> read_radiating_surfaces(const std::filesystem::pat
     surfaces.push_back(surface);
   }
   return surfaces;
+}
+
+Eigen::ArrayXd read_albedos(const std::filesystem::path& csv, const ViewFactorRows& rows) {
+  const TextFile file(csv);
+  const auto lines = read_lines(file, columns_of_albedos, read_albedo_line);
+  Eigen::ArrayXd albedo(rows.count());
+  Eigen::Index row = 0;
+  for (const SurfaceLine* line : lines_of_rows(file, lines, rows)) albedo[row++] = line->albedo;
+  return albedo;
 }
 
 }  // namespace lightwell

@@ -24,4 +24,8 @@ std::vector<RadiatingSurface> read_radiating_surfaces(const std::filesystem::pat
                                                       const ViewFactorRows& rows,
                                                       const std::vector<double>& area);
 
+/// The albedo of each row, 0 to highest_albedo, from a CSV file with the columns `surface`, as
+/// above, and `albedo`. Throws as read_radiating_surfaces().
+Eigen::ArrayXd read_albedos(const std::filesystem::path& csv, const ViewFactorRows& rows);
+
 }  // namespace lightwell

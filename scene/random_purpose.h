@@ -45,6 +45,9 @@ enum class RandomPurpose : std::uint64_t {
   sky_site_rays = 0x51e7,
   sky_rays = 0x51e8,
   sky_point_rays = 0x51e9,
+  // Rows of view factors; (patch, purpose).
+  sky_view_rays = 0x51ea,
+  sun_shadows = 0x5d40,
   // Light of sources that are no surface; (source, purpose) or (patch, purpose).
   free_source_rays = 0xf4ee1,
   free_source_paths = 0xf4ee2,
@@ -134,6 +137,8 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::sky_site_rays:
     case RandomPurpose::sky_rays:
     case RandomPurpose::sky_point_rays:
+    case RandomPurpose::sky_view_rays:
+    case RandomPurpose::sun_shadows:
     case RandomPurpose::free_source_rays:
     case RandomPurpose::free_source_paths:
     case RandomPurpose::free_source_points:

@@ -1,0 +1,33 @@
+#include "cli/compass.h"
+
+#include <cmath>
+
+#include "viewer/export/start_view.h"
+
+namespace lightwell {
+
+Sky compass_of(const Scene& scene, double north_degrees) {
+  Sky frame;
+  if (scene.sky) {
+    frame.up = scene.sky->up;
+    frame.north = scene.sky->north;
+  } else {
+    frame.up = guess_up_axis(scene.cameras, scene_bounds(scene));
+    // Drawings have north along +y; scenes with y up, along -z.
+    frame.north = std::abs(frame.up.y()) > 0.5 ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ())
+                                               : Eigen::Vector3d(Eigen::Vector3d::UnitY());
+  }
+  frame.north = sky_direction(frame, north_degrees, 0.0);
+  return frame;
+}
+
+void add_north(CLI::App& command, double& north_degrees) {
+  command
+      .add_option("--north", north_degrees,
+                  "turns north clockwise, seen from above, from that of the scene's sky (without a "
+                  "sky: +y, or -z where y is up)")
+      ->type_name("DEGREES")
+      ->check(CLI::Range(-360.0, 360.0).description(""));
+}
+
+}  // namespace lightwell

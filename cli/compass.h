@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "scene/scene.h"
+#include "scene/sky.h"
+
+namespace lightwell {
+
+/// Zenith and north of a scene in a sky without light: those of the scene's sky, or those that its
+/// axes suggest (north is +y, or -z where y is up). `north_degrees` turns north clockwise as seen
+/// from above.
+Sky compass_of(const Scene& scene, double north_degrees);
+
+/// Adds --north DEGREES.
+void add_north(CLI::App& command, double& north_degrees);
+
+}  // namespace lightwell

@@ -1,0 +1,145 @@
+#include "radiosity/radiation/sky_exposure.h"
+
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "mesh/elements/element_caster.h"
+#include "mesh/patches/patch_sampler.h"
+#include "scene/parallel.h"
+#include "scene/random_purpose.h"
+#include "scene/sampling.h"
+
+namespace lightwell {
+namespace {
+
+constexpr int fewest_exposure_rays = 1024, most_exposure_rays = 16384;
+constexpr std::size_t ray_batch = 64;
+
+using RayBatch = std::array<Ray, ray_batch>;
+
+// Means over rows of a value of each patch, by area.
+Eigen::ArrayXd means_of_rows(const FacetViewFactors& found,
+                             const std::function<double(int patch)>& of_patch) {
+  const PatchMesh& mesh = found.mesh;
+  std::vector<double> value(static_cast<std::size_t>(mesh.patch_count()), 0.0);
+  parallel_for(mesh.patch_count(), 1, [&](int begin, int end) {
+    for (int p = begin; p < end; ++p) {
+      const auto i = static_cast<std::size_t>(p);
+      if (found.rows.of_patch[i] >= 0) value[i] = of_patch(p);
+    }
+  });
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(found.rows.count()), area = sum;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const int row = found.rows.of_patch[static_cast<std::size_t>(p)];
+    if (row < 0) continue;
+    sum[row] += mesh.area[p] * value[static_cast<std::size_t>(p)];
+    area[row] += mesh.area[p];
+  }
+  return (area > 0.0).select(sum / area, 0.0);
+}
+
+// Rays of a patch that meet no row.
+struct LostRays {
+  int to_sky = 0, elsewhere = 0;
+};
+
+// Counts the rays from `begin` on, in the order of the points, that leave the rows.
+void count_lost(const FacetViewFactors& found, const Eigen::Vector3d& up, const RayBatch& rays,
+                std::span<const ElementHit> hits, LostRays& lost) {
+  for (std::size_t r = 0; r < hits.size(); ++r) {
+    const ElementHit& hit = hits[r];
+    if (hit.facet < 0 && rays[r].direction.dot(up) > 0.0) {
+      ++lost.to_sky;
+    } else if (hit.element < 0) {
+      ++lost.elsewhere;
+    } else {
+      const int patch = found.mesh.patch[static_cast<std::size_t>(hit.element)];
+      if (found.rows.of_patch[static_cast<std::size_t>(patch)] < 0) ++lost.elsewhere;
+    }
+  }
+}
+
+std::uint64_t key_of_patch(int patch, RandomPurpose purpose) {
+  return random_key(static_cast<std::uint64_t>(patch), purpose);
+}
+
+}  // namespace
+
+Eigen::ArrayXd sky_view_factors(const FacetViewFactors& found, const Eigen::Vector3d& up) {
+  const ElementCaster caster(found.mesh);
+  const SobolPoints sobol(most_exposure_rays);
+  // The share of the row's loss, not that of all rays, is what rays are for.
+  Eigen::ArrayXd to_sky = Eigen::ArrayXd::Zero(found.mesh.patch_count()), lost_share = to_sky;
+  static_cast<void>(means_of_rows(found, [&](int patch) {
+    const PatchSampler sampler(found.mesh, patch);
+    const std::uint64_t key = key_of_patch(patch, RandomPurpose::sky_view_rays);
+    RayBatch rays;
+    std::array<ElementHit, ray_batch> hits;
+    LostRays lost;
+    int count = 0;
+    for (int wanted = fewest_exposure_rays; count < wanted; count += static_cast<int>(ray_batch)) {
+      for (std::size_t r = 0; r < ray_batch; ++r) {
+        const Eigen::Array4f u = sobol.point(count + static_cast<int>(r), key);
+        rays[r] = cosine_ray(found.mesh, sampler.point(double{u[0]}, double{u[1]}), u[2], u[3]);
+      }
+      caster.closest_elements(rays, hits);
+      count_lost(found, up, rays, hits, lost);
+      const bool is_mixed = lost.to_sky > 0 && lost.elsewhere > 0;
+      if (is_mixed) wanted = most_exposure_rays;
+    }
+    to_sky[patch] = double(lost.to_sky) / count;
+    lost_share[patch] = double(lost.to_sky + lost.elsewhere) / count;
+    return 0.0;
+  }));
+  const Eigen::ArrayXd sky = means_of_rows(found, [&](int patch) { return to_sky[patch]; });
+  const Eigen::ArrayXd all = means_of_rows(found, [&](int patch) { return lost_share[patch]; });
+  Eigen::ArrayXd factors(found.rows.count());
+  for (int i = 0; i < found.rows.count(); ++i) {
+    const auto r = static_cast<std::size_t>(i);
+    const double open = found.factors.open[r] + found.factors.blocked[r];
+    // A gap that no ray found shows the sky.
+    const double part = all[i] > 0.0 ? sky[i] / all[i] : 1.0;
+    factors[i] = found.factors.area[r] > 0.0 ? std::clamp(open * part, 0.0, 1.0) : 0.0;
+  }
+  return factors;
+}
+
+Eigen::ArrayXd sun_factors(const FacetViewFactors& found, const Eigen::Vector3d& sun) {
+  const ElementCaster caster(found.mesh);
+  const SobolPoints sobol(most_exposure_rays);
+  return means_of_rows(found, [&](int patch) {
+    const PatchMesh& mesh = found.mesh;
+    const PatchSampler sampler(mesh, patch);
+    const std::uint64_t key = key_of_patch(patch, RandomPurpose::sun_shadows);
+    RayBatch rays;
+    std::array<double, ray_batch> cosines{};
+    std::array<std::uint8_t, ray_batch> blocked{};
+    double sum = 0.0;
+    int count = 0, dark = 0;
+    for (int wanted = fewest_exposure_rays; count < wanted; count += static_cast<int>(ray_batch)) {
+      for (std::size_t r = 0; r < ray_batch; ++r) {
+        const Eigen::Array4f u = sobol.point(count + static_cast<int>(r), key);
+        const PatchPoint from = sampler.point(double{u[0]}, double{u[1]});
+        cosines[r] = from.normal.dot(sun);
+        rays[r] = {.origin = from.position,
+                   .direction = sun,
+                   .origin_group = mesh.facet[static_cast<std::size_t>(from.element)]};
+      }
+      if (sampler.is_flat() && !(cosines[0] > 0.0)) return 0.0;
+      caster.occluded(rays, blocked);
+      for (std::size_t r = 0; r < ray_batch; ++r) {
+        const bool is_lit = blocked[r] == 0 && cosines[r] > 0.0;
+        sum += is_lit ? cosines[r] : 0.0;
+        dark += is_lit ? 0 : 1;
+      }
+      const int seen = count + static_cast<int>(ray_batch);
+      if (dark > 0 && dark < seen) wanted = most_exposure_rays;
+    }
+    return sum / count;
+  });
+}
+
+}  // namespace lightwell
