@@ -24,6 +24,7 @@ from ._lightwell import version as __version__
 from ._pictures import tone_map, write_picture
 from ._radiation import Radiation, radiation
 from ._scene import Camera, Material, Scene, read
+from ._shortwave import Shortwave, shortwave
 from ._solution import Readings, Solution
 from ._solve import load, solve
 from ._threads import thread_limit
@@ -38,12 +39,14 @@ __all__ = [
     "Radiation",
     "Readings",
     "Scene",
+    "Shortwave",
     "Solution",
     "__version__",
     "form_factors",
     "load",
     "radiation",
     "read",
+    "shortwave",
     "solve",
     "thread_count",
     "thread_limit",

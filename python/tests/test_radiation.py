@@ -13,6 +13,42 @@ SIGMA = 5.670374419e-8
 ROUNDING = 1e-13
 
 
+class Shortwave(unittest.TestCase):
+    def setUp(self):
+        vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [0, 1, 1]]
+        faces = [[0, 1, 2, 3], [0, 3, 5, 4]]  # ground, and a wall at x = 0
+        scene = lw.Scene.from_arrays(vertices, faces, names=["ground", "wall"])
+        self.factors = lw.form_factors(scene)
+
+    def test_a_wall_and_its_ground(self):
+        found = lw.shortwave(
+            self.factors, albedo={"ground": 0.2, "wall": 0.5}, sun=[2, 0, 2], direct=800, diffuse=100
+        )
+        F = 0.20004377607540316  # squares with a common edge: Howell's catalogue, C-14
+        self.assertAlmostEqual(found.sky_view_factor[0], 1 - F, delta=FLOAT)
+        np.testing.assert_allclose(found.direct, 800 * 0.5**0.5, rtol=1e-12)
+        np.testing.assert_allclose(found.diffuse, 100 * found.sky_view_factor, rtol=1e-15)
+        first = found.direct + found.diffuse
+        ground = (first[0] + F * 0.5 * first[1]) / (1 - F * F * 0.2 * 0.5)
+        # The factor's rounding times less than 1000 W/m^2.
+        self.assertAlmostEqual(found.net[0], 0.8 * ground, delta=1000 * FLOAT)
+        total = found.absorbed + found.escaped
+        self.assertAlmostEqual(total, found.arriving, delta=1e-6 * found.arriving)
+
+    def test_wrong_light_is_refused(self):
+        for change in (
+            {"albedo": 1.0},
+            {"albedo": {"ground": 0.2}},
+            {"direct": 1.0},
+            {"direct": 1.0, "sun": [0, 0, -1]},
+            {"direct": 1.0, "sun": [0, 0, 0]},
+            {"diffuse": -1.0},
+            {"up": [0, 0]},
+        ):
+            with self.assertRaises(lw.InputError, msg=change):
+                lw.shortwave(self.factors, **{"albedo": 0.2, **change})
+
+
 class ClosedForms(unittest.TestCase):
     def test_infinite_parallel_plates(self):
         found = lw.radiation(

@@ -41,12 +41,12 @@ Eigen::ArrayXd means_of_rows(const FacetViewFactors& found,
   return (area > 0.0).select(sum / area, 0.0);
 }
 
-// Rays of a patch that meet no row.
+// Rays of a patch, and those of them that meet no row.
 struct LostRays {
-  int to_sky = 0, elsewhere = 0;
+  int count = 0, to_sky = 0, elsewhere = 0;
 };
 
-// Counts the rays from `begin` on, in the order of the points, that leave the rows.
+// Adds the rays that leave the rows.
 void count_lost(const FacetViewFactors& found, const Eigen::Vector3d& up, const RayBatch& rays,
                 std::span<const ElementHit> hits, LostRays& lost) {
   for (std::size_t r = 0; r < hits.size(); ++r) {
@@ -66,36 +66,40 @@ std::uint64_t key_of_patch(int patch, RandomPurpose purpose) {
   return random_key(static_cast<std::uint64_t>(patch), purpose);
 }
 
+LostRays lost_rays(const FacetViewFactors& found, const ElementCaster& caster,
+                   const SobolPoints& sobol, const Eigen::Vector3d& up, int patch) {
+  const PatchSampler sampler(found.mesh, patch);
+  const std::uint64_t key = key_of_patch(patch, RandomPurpose::sky_view_rays);
+  RayBatch rays;
+  std::array<ElementHit, ray_batch> hits;
+  LostRays lost;
+  for (int wanted = fewest_exposure_rays; lost.count < wanted;) {
+    for (std::size_t r = 0; r < ray_batch; ++r) {
+      const Eigen::Array4f u = sobol.point(lost.count + static_cast<int>(r), key);
+      rays[r] = cosine_ray(found.mesh, sampler.point(double{u[0]}, double{u[1]}), u[2], u[3]);
+    }
+    caster.closest_elements(rays, hits);
+    count_lost(found, up, rays, hits, lost);
+    lost.count += static_cast<int>(ray_batch);
+    if (lost.to_sky > 0 && lost.elsewhere > 0) wanted = most_exposure_rays;
+  }
+  return lost;
+}
+
 }  // namespace
 
 Eigen::ArrayXd sky_view_factors(const FacetViewFactors& found, const Eigen::Vector3d& up) {
   const ElementCaster caster(found.mesh);
   const SobolPoints sobol(most_exposure_rays);
-  // The share of the row's loss, not that of all rays, is what rays are for.
-  Eigen::ArrayXd to_sky = Eigen::ArrayXd::Zero(found.mesh.patch_count()), lost_share = to_sky;
-  static_cast<void>(means_of_rows(found, [&](int patch) {
-    const PatchSampler sampler(found.mesh, patch);
-    const std::uint64_t key = key_of_patch(patch, RandomPurpose::sky_view_rays);
-    RayBatch rays;
-    std::array<ElementHit, ray_batch> hits;
-    LostRays lost;
-    int count = 0;
-    for (int wanted = fewest_exposure_rays; count < wanted; count += static_cast<int>(ray_batch)) {
-      for (std::size_t r = 0; r < ray_batch; ++r) {
-        const Eigen::Array4f u = sobol.point(count + static_cast<int>(r), key);
-        rays[r] = cosine_ray(found.mesh, sampler.point(double{u[0]}, double{u[1]}), u[2], u[3]);
-      }
-      caster.closest_elements(rays, hits);
-      count_lost(found, up, rays, hits, lost);
-      const bool is_mixed = lost.to_sky > 0 && lost.elsewhere > 0;
-      if (is_mixed) wanted = most_exposure_rays;
-    }
-    to_sky[patch] = double(lost.to_sky) / count;
-    lost_share[patch] = double(lost.to_sky + lost.elsewhere) / count;
-    return 0.0;
-  }));
-  const Eigen::ArrayXd sky = means_of_rows(found, [&](int patch) { return to_sky[patch]; });
-  const Eigen::ArrayXd all = means_of_rows(found, [&](int patch) { return lost_share[patch]; });
+  // The rays divide the share that meets no row; the share itself is known better.
+  Eigen::ArrayXd elsewhere = Eigen::ArrayXd::Zero(found.mesh.patch_count());
+  const Eigen::ArrayXd sky = means_of_rows(found, [&](int patch) {
+    const LostRays lost = lost_rays(found, caster, sobol, up, patch);
+    elsewhere[patch] = double(lost.elsewhere) / lost.count;
+    return double(lost.to_sky) / lost.count;
+  });
+  const Eigen::ArrayXd all =
+      sky + means_of_rows(found, [&](int patch) { return elsewhere[patch]; });
   Eigen::ArrayXd factors(found.rows.count());
   for (int i = 0; i < found.rows.count(); ++i) {
     const auto r = static_cast<std::size_t>(i);
