@@ -6,13 +6,14 @@
 
 namespace lightwell {
 
-Sky compass_of(const Scene& scene, double north_degrees) {
+Sky compass_of(const Scene& scene, double north_degrees, const std::string& up) {
   Sky frame;
-  if (scene.sky) {
+  if (scene.sky && up.empty()) {
     frame.up = scene.sky->up;
     frame.north = scene.sky->north;
   } else {
-    frame.up = guess_up_axis(scene.cameras, scene_bounds(scene));
+    frame.up = up.empty() ? guess_up_axis(scene.cameras, scene_bounds(scene))
+                          : Eigen::Vector3d(Eigen::Vector3d::Unit(up == "y" ? 1 : 2));
     // Drawings have north along +y; scenes with y up, along -z.
     frame.north = std::abs(frame.up.y()) > 0.5 ? Eigen::Vector3d(-Eigen::Vector3d::UnitZ())
                                                : Eigen::Vector3d(Eigen::Vector3d::UnitY());

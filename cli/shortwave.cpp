@@ -26,18 +26,21 @@ namespace lightwell {
 namespace {
 
 struct ShortwaveArguments {
-  std::string scene, surfaces, output, udales, number = "001";
+  std::string scene, surfaces, output, udales, number = "001", up;
   std::optional<double> albedo{};
   std::optional<std::pair<double, double>> sun{};  // altitude, azimuth, degrees
   double direct = 0.0, diffuse = 0.0;              // W/m^2
   double north_degrees = 0.0;
   double target_error = 1e-3;
 
+  // Models of uDALES have z up.
+  std::string zenith() const { return up.empty() && !udales.empty() ? "z" : up; }
   bool has_light() const { return direct > 0.0 || diffuse > 0.0; }
 };
 
 struct Shortwave {
   FacetViewFactors found;
+  Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   Eigen::ArrayXd albedo, sky_view, direct, diffuse;
   ShortwaveExchange exchange;
 };
@@ -87,7 +90,9 @@ Shortwave shortwave_of(const ShortwaveArguments& arguments, const FacetGeometry&
   of.found = facet_view_factors(geometry.numbered, geometry.check, options);
   console.finish_phase();
   stop_if_interrupted();
-  const Sky compass = compass_of(geometry.numbered.scene, arguments.north_degrees);
+  const Sky compass =
+      compass_of(geometry.numbered.scene, arguments.north_degrees, arguments.zenith());
+  of.up = compass.up;
   of.sky_view = sky_view_factors(of.found, compass.up);
   stop_if_interrupted();
   of.diffuse = arguments.diffuse * of.sky_view;
@@ -123,6 +128,7 @@ Json facts_of(const Shortwave& of) {
   const double all = A.sum();
   return {{"rows", of.found.rows.count()},
           {"area", all},
+          {"up", {of.up.x(), of.up.y(), of.up.z()}},
           {"mean_sky_view_factor", all > 0.0 ? Json((A * of.sky_view).sum() / all) : Json()},
           {"arriving", of.exchange.arriving},
           {"absorbed", of.exchange.absorbed},
@@ -134,8 +140,9 @@ std::string facts_text(const Json& facts) {
   const auto value = [&](const char* key) {
     return facts[key].is_number() ? fmt::format("{:.6g}", facts[key].get<double>()) : "-";
   };
-  std::string text = fmt::format("{} facets, mean sky view factor {}\n", facts["rows"].get<int>(),
-                                 value("mean_sky_view_factor"));
+  std::string text =
+      fmt::format("{} facets, up is {}, mean sky view factor {}\n", facts["rows"].get<int>(),
+                  facts["up"].dump(), value("mean_sky_view_factor"));
   text += fmt::format("from sun and sky {} W, absorbed {} W, reflected away {} W\n",
                       value("arriving"), value("absorbed"), value("escaped"));
   if (facts.contains("nnz")) text += fmt::format("nnz = {}\n", facts["nnz"].get<std::int64_t>());
@@ -199,6 +206,12 @@ void add_light(CLI::App& command, ShortwaveArguments& arguments) {
                   "irradiance of open level ground by an even sky (default 0)")
       ->type_name("W/m2")
       ->check(from_zero_to(brightest, "an irradiance"));
+  command
+      .add_option("--up", arguments.up,
+                  "axis that points to the zenith, y or z (default: that of the scene's sky or "
+                  "cameras, else z where the model is longer along y, else y; z with --udales)")
+      ->type_name("AXIS")
+      ->check(one_of("axis", {"y", "z"}));
   add_north(command, arguments.north_degrees);
 }
 

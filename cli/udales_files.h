@@ -10,8 +10,8 @@
 
 namespace lightwell {
 
-/// Radiation of the facets of an uDALES case (Suetzl et al. 2021; Owens et al. 2024), in the order
-/// of the facets.
+/// Radiation of the facets of an uDALES case (Suter et al. 2022, "uDALES 1.0: a large-eddy
+/// simulation model for urban environments"), in the order of the facets.
 struct UdalesRadiation {
   const ViewFactors& factors;
   const Eigen::ArrayXd& sky_view;  ///< [0, 1]

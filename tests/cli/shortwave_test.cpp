@@ -81,6 +81,18 @@ TEST_F(Shortwave, TheSunShinesFromItsAzimuthAndFilesOfUdalesHoldTheTable) {
   EXPECT_NEAR(F, 0.5 * (1.0 - rows[0][1]), 1e-6);  // six digits, and floats
 }
 
+// The facet faces +z, and the model is no longer along y than along z: y would be up.
+TEST_F(Shortwave, TheZenithIsThatOfTheOption) {
+  folder.write("street.obj",
+               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 9\no a\nf 1 2 3 4\no b\nf 1 2 5\n");
+  ASSERT_EQ(shortwave({"--up", "z"}).code, 0);
+  EXPECT_GT(table(5)[0][0], 0.5);
+  ASSERT_EQ(shortwave({"--udales", "case"}).code, 0);
+  EXPECT_GT(table(5)[0][0], 0.5);
+  ASSERT_EQ(shortwave({}).code, 0);
+  EXPECT_LE(table(5)[0][0], 0.5 + 0.016);  // four standard errors of 16384 rays
+}
+
 TEST_F(Shortwave, WrongOptionsAndTablesAreRefused) {
   struct Case {
     std::vector<std::string> options;
@@ -96,6 +108,7 @@ TEST_F(Shortwave, WrongOptionsAndTablesAreRefused) {
       {{"--sun", "45"}, 2, "'45' is no place of the sun"},
       {{"--albedo", "1"}, 2, "an albedo from 0 to 0.99 is needed, not '1'"},
       {{"--diffuse", "nan", "--albedo", "0"}, 2, "not 'nan'"},
+      {{"--up", "x"}, 2, "x"},
       {{"--udales", "case", "--case", "1"}, 2, "three digits are needed, not '1'"},
       {{"--surfaces", "white.csv"}, 3, "white.csv:2: the albedo is 1; it lies from 0 to 0.99"},
       {{"--surfaces", "empty.csv"}, 3, "empty.csv:2: has no albedo"}};

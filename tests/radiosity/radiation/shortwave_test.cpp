@@ -51,7 +51,7 @@ Eigen::Vector3d sun_over_second_wall(double altitude_degrees) {
 }
 
 // Factors of an endless street (Noilhan 1981; Masson 2000, "A physically-based scheme for the urban
-// energy budget in atmospheric models", eq. 12 and 13).
+// energy budget in atmospheric models").
 const double road_sky = std::hypot(height / width, 1.0) - height / width;
 const double wall_sky =
     0.5 * (height / width + 1.0 - std::hypot(height / width, 1.0)) * width / height;
