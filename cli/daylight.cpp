@@ -172,7 +172,8 @@ Action add_daylight(CLI::App& command) {
       ->check(whole_number(1, 8));
   command
       .add_option("--rays", arguments->rays,
-                  "gather rays per sensor, a power of two (default 1024)")
+                  fmt::format("gather rays per sensor, a power of two (default {})",
+                              DaylightOptions{}.gather_rays))
       ->type_name("N")
       ->check(power_of_two());
   command

@@ -79,7 +79,7 @@ DaylightInputs read_daylight_inputs(const DaylightArguments& arguments, Console&
   for (const std::string& name : arguments.observers) {
     inputs.eyes.push_back(choose_camera(inputs.scene, name));
   }
-  // Before the light, which takes long.
+  // Points are read before the light, which takes long.
   if (!arguments.points.empty()) {
     inputs.points = read_probes(arguments.points, inputs.scene.metres_per_unit);
   }

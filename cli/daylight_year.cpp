@@ -356,11 +356,9 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   const MetricFolders metric_folders(folder / metrics_folder, inputs.grids);
 
   Stopwatch watch;
-  DaylightOptions options = daylight_options(arguments, inputs.scene, console);
+  const DaylightOptions options = daylight_options(arguments, inputs.scene, console);
+  // Before form factors, which take long where the page is too large.
   if (!arguments.walk.empty()) {
-    // Noise of the sun at patches differs from hour to hour, which a short sum cannot follow.
-    options.sun_rays_of_patch = options.points_of_patch;
-    // Before form factors, which take long where the page is too large.
     constexpr int fewest_bands = 1;  // of a grey scene; find_year_basis() knows them
     check_year_basis(build_patches(inputs.scene, options.mesh), fewest_bands, hours);
   }

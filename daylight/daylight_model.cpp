@@ -1,6 +1,10 @@
 #include "daylight/daylight_model.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <bit>
+#include <stdexcept>
 #include <utility>
 
 #include "daylight/grey_scene.h"
@@ -15,6 +19,8 @@ namespace {
 
 // Owners of random keys.
 constexpr std::uint64_t of_patch = 0, of_sensor = 1;
+
+constexpr int some = 4;  // patches in a row on one thread
 
 // Share of each band in the illuminance of white light.
 Eigen::ArrayXf luminous_weights(const Bands& bands) {
@@ -31,11 +37,12 @@ SurfacePoint surface_point(const GatherPoint& at) {
   return {.position = at.position, .normal = at.normal, .facet = at.facet};
 }
 
-// Calls `body` for each index in parallel, in pieces between which progress is told.
+// Calls `body` for each index in parallel, `grain` of them in a row, in pieces between which
+// progress is told. A piece has work for many threads.
 template <class Body>
-void for_each_index(int count, const char* phase, const Progress& progress, Body body) {
-  constexpr int pieces = 64, grain = 4;
-  const int step = std::max(1, (count + pieces - 1) / pieces);
+void for_each_index(int count, int grain, const char* phase, const Progress& progress, Body body) {
+  constexpr int pieces = 64, most_threads = 64;
+  const int step = std::max(most_threads * grain, (count + pieces - 1) / pieces);
   for (int first = 0; first < count; first += step) {
     report(progress, phase, static_cast<double>(first) / count);
     const int n = std::min(step, count - first);
@@ -63,6 +70,15 @@ DaylightModel::DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen
       options_(options),
       sky_(options.sky_subdivision, up, north),
       mesh_(build_patches(scene_, options.mesh, options.progress)) {
+  for (const int number : {options.points_of_patch, options.sun_rays, options.sun_rays_of_patch}) {
+    if (number < 1 || !std::has_single_bit(static_cast<unsigned>(number))) {
+      throw std::invalid_argument(fmt::format(
+          "numbers of points and of rays to the sun must be powers of two, not {}", number));
+    }
+  }
+  if (options.points.stride < 1 || options.patches.stride < 1) {
+    throw std::invalid_argument("a search of the dome must have a stride of 1 at least");
+  }
   caster_.emplace(mesh_);
   direct_light_.emplace(scene_, mesh_);
   panes_.emplace(scene_);
@@ -111,7 +127,7 @@ std::vector<SurfacePoint> DaylightModel::points_of_patch(int patch) const {
 
 void DaylightModel::view_patches() {
   patch_views_.resize(static_cast<std::size_t>(mesh_.patch_count()));
-  for_each_index(mesh_.patch_count(), "sky at patches", options_.progress, [&](int p) {
+  for_each_index(mesh_.patch_count(), some, "sky at patches", options_.progress, [&](int p) {
     patch_views_[static_cast<std::size_t>(p)] =
         view_of_dome(around(), sky_, points_of_patch(p), options_.patches, patch_key(p));
   });
@@ -120,7 +136,7 @@ void DaylightModel::view_patches() {
 void DaylightModel::set_sensors(std::span<const GatherPoint> sensors) {
   sensors_.assign(sensors.begin(), sensors.end());
   sensor_views_.resize(sensors_.size());
-  for_each_index(sensor_count(), "sky at sensors", options_.progress, [&](int i) {
+  for_each_index(sensor_count(), 1, "sky at sensors", options_.progress, [&](int i) {
     const auto sensor = static_cast<std::size_t>(i);
     sensor_views_[sensor] = view_of(sky_, sensors_[sensor], options_.points, i);
   });
@@ -161,7 +177,7 @@ BandArray DaylightModel::radiosity(const BandArray& arriving) const {
 BandArray DaylightModel::shares_in_gather(const GatherPoints& points, int rays) const {
   const Eigen::Index bands = scene_.bands.count(), vertices = mesh_.vertex_count();
   BandArray shares(mesh_.patch_count(), points.size() * bands);
-  // Shares of vertices in a block of points take 128 MB.
+  // Shares of vertices in a block of points take 128 MB, three times over.
   const auto most =
       static_cast<int>(std::max<Eigen::Index>(1, (Eigen::Index{1} << 25) / (vertices * bands)));
   for (int first = 0; first < points.size(); first += most) {
@@ -195,21 +211,27 @@ BandArray reflected_by_importance(const BandArray& importance, const BandArray& 
                                   Eigen::Index bands) {
   const Eigen::Index points = importance.cols() / bands, sources = arriving.cols() / bands;
   BandArray E(points, arriving.cols());
-  using Column = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   for (Eigen::Index b = 0; b < bands; ++b) {
-    const auto of_band = [&](const BandArray& all, Eigen::Index count) -> Column {
+    const auto of_band = [&](const BandArray& all, Eigen::Index count) -> RowMajor {
       return all(Eigen::all, Eigen::seqN(b, count, bands)).matrix();
     };
-    const Column weights = of_band(importance, points), light = of_band(arriving, sources);
+    const RowMajor weights = of_band(importance, points), light = of_band(arriving, sources);
     constexpr int width = 64;
     parallel_for(static_cast<int>((sources + width - 1) / width), 1, [&](int begin, int end) {
       const Eigen::Index first = Eigen::Index{begin} * width,
                          n = std::min(Eigen::Index{end} * width, sources) - first;
-      const Column part = weights.transpose() * light.middleCols(first, n);
+      const RowMajor part = weights.transpose() * light.middleCols(first, n);
       E(Eigen::all, Eigen::seqN(first * bands + b, n, bands)) = part.array();
     });
   }
   return E;
+}
+
+// Rays of each of many sensors, which are cast again for each block of sources, and read all of
+// their columns.
+int DaylightModel::rays_of_many() const {
+  return std::max(1, options_.gather_rays / 4);
 }
 
 // The light that surfaces reflect to the sensors, sensors x sources, for E0 of patches x columns.
@@ -219,7 +241,7 @@ Eigen::ArrayXXf DaylightModel::reflected(const BandArray& arriving) const {
   if (sensors_.empty()) return lux;
   const BandArray E = importance_.size() > 0
                           ? reflected_by_importance(importance_, arriving, bands)
-                          : gather(radiosity(arriving), sensors_, options_.gather_rays);
+                          : gather(radiosity(arriving), sensors_, rays_of_many());
   for (Eigen::Index s = 0; s < sources; ++s) {
     lux.col(s) = (E.middleCols(s * bands, bands).matrix() * weights_.matrix()).array();
   }
@@ -247,7 +269,7 @@ SensorLight DaylightModel::sky_coefficients() const {
 
 Eigen::ArrayXXf DaylightModel::direct_sun(std::span<const SunDisc> suns) const {
   Eigen::ArrayXXf direct(sensor_count(), static_cast<Eigen::Index>(suns.size()));
-  for_each_index(sensor_count(), "sun at sensors", options_.progress, [&](int i) {
+  for_each_index(sensor_count(), 1, "sun at sensors", options_.progress, [&](int i) {
     const SurfacePoint point = surface_point(sensors_[static_cast<std::size_t>(i)]);
     direct.row(i) =
         luminous_sum(sunlight(around(), {&point, 1}, sensor_views_[static_cast<std::size_t>(i)],
@@ -258,9 +280,10 @@ Eigen::ArrayXXf DaylightModel::direct_sun(std::span<const SunDisc> suns) const {
 }
 
 // Irradiance of a patch straight from each sun, suns x bands.
-Eigen::ArrayXXf DaylightModel::sun_at_patch(int patch, std::span<const SunDisc> suns) const {
+Eigen::ArrayXXf DaylightModel::sun_at_patch(int patch, std::span<const SunDisc> suns,
+                                            int rays) const {
   return sunlight(around(), points_of_patch(patch), patch_views_[static_cast<std::size_t>(patch)],
-                  suns, options_.sun_rays_of_patch, patch_key(patch));
+                  suns, rays, patch_key(patch));
 }
 
 SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const {
@@ -269,16 +292,16 @@ SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const
                     .reflected = Eigen::ArrayXXf::Zero(sensor_count(), count)};
   if (options_.direct_only) return light;
   BandArray arriving(mesh_.patch_count(), count * bands);
-  for_each_index(mesh_.patch_count(), "sun at patches", options_.progress, [&](int p) {
-    const Eigen::ArrayXXf E0 = sun_at_patch(p, suns);
+  for_each_index(mesh_.patch_count(), some, "sun at patches", options_.progress, [&](int p) {
+    const Eigen::ArrayXXf E0 = sun_at_patch(p, suns, options_.sun_rays_of_patch);
     for (Eigen::Index s = 0; s < count; ++s) arriving.row(p).segment(s * bands, bands) = E0.row(s);
   });
   light.reflected = reflected(arriving);
   return light;
 }
 
-BandArray DaylightModel::hourly_arriving(std::span<const SkyHour> hours,
-                                         double ground_reflectance) const {
+BandArray DaylightModel::hourly_arriving(std::span<const SkyHour> hours, double ground_reflectance,
+                                         int sun_rays) const {
   const Eigen::Index bands = scene_.bands.count(), count = static_cast<Eigen::Index>(hours.size());
   const BandArray luminance = hour_luminances(sky_, hours, ground_reflectance);
   std::vector<SunDisc> suns;
@@ -290,9 +313,9 @@ BandArray DaylightModel::hourly_arriving(std::span<const SkyHour> hours,
     hour_of_sun.push_back(h);
   }
   BandArray arriving(mesh_.patch_count(), count * bands);
-  for_each_index(mesh_.patch_count(), "sun at patches", options_.progress, [&](int p) {
+  for_each_index(mesh_.patch_count(), some, "sun at patches", options_.progress, [&](int p) {
     arriving.row(p).setZero();
-    const Eigen::ArrayXXf sun = sun_at_patch(p, suns);
+    const Eigen::ArrayXXf sun = sun_at_patch(p, suns, sun_rays);
     for (Eigen::Index s = 0; s < sun.rows(); ++s) {
       const Eigen::Index h = hour_of_sun[static_cast<std::size_t>(s)];
       const auto lux = static_cast<float>(hours[static_cast<std::size_t>(h)].sun_lux);
@@ -324,7 +347,7 @@ void DaylightModel::add_dome(const BandArray& luminance, BandArray& arriving) co
       arriving.row(p).segment((first + h) * bands, bands) += E0.col(h).transpose();
     }
   };
-  for_each_index((patches + block - 1) / block, "sky at patches", options_.progress, [&](int i) {
+  for_each_index((patches + block - 1) / block, 1, "sky at patches", options_.progress, [&](int i) {
     for (Eigen::Index first = 0; first < count; first += width) {
       for (int p = i * block; p < std::min((i + 1) * block, patches); ++p) {
         add(p, first, std::min(width, count - first));

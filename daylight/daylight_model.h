@@ -30,10 +30,12 @@ struct DaylightOptions {
   double tolerance = 1e-6;
   DomeEffort points{.search = 4, .rays = 4096};
   DomeEffort patches{.search = 1, .rays = 1024, .stride = 4};
-  int points_of_patch = 16;   ///< points of a patch whose view is averaged
-  int sun_rays = 16;          ///< of a sensor to the sun's disc
-  int sun_rays_of_patch = 4;  ///< of a patch to the sun's disc
-  int gather_rays = 4096;     ///< of a sensor, for light that surfaces reflect
+  int points_of_patch = 16;   ///< points of a patch whose view is averaged; a power of two
+  int sun_rays = 16;          ///< of a sensor to the sun's disc; a power of two
+  int sun_rays_of_patch = 4;  ///< of a patch to the sun's disc; a power of two
+  /// Rays of a sensor for light that surfaces reflect; a quarter of these where the sensors are
+  /// more than the sources of a year.
+  int gather_rays = 4096;
   std::uint64_t replica = 0;  ///< another number gives independent rays
   /// True for what sensors see of sun, sky and ground alone: surfaces reflect nothing, and no form
   /// factors are computed.
@@ -68,8 +70,8 @@ struct SensorLight {
 class DaylightModel {
  public:
   /// Lamps, emission and sky of the scene are left out. `up` and `north` are unit and
-  /// perpendicular. Throws InputError for a scene without surfaces, Interrupted when progress says
-  /// stop.
+  /// perpendicular. Throws InputError for a scene without surfaces, std::invalid_argument for
+  /// options out of range, Interrupted when progress says stop.
   DaylightModel(Scene scene, const Eigen::Vector3d& up, const Eigen::Vector3d& north,
                 const DaylightOptions& options = {});
   DaylightModel(const DaylightModel&) = delete;
@@ -97,7 +99,9 @@ class DaylightModel {
 
   /// Irradiance E0 of the patches straight from the whole sky of each hour, dome, ground and sun,
   /// lx: patches x (hours x bands), the bands of an hour side by side, each as bright as all light.
-  BandArray hourly_arriving(std::span<const SkyHour> hours, double ground_reflectance) const;
+  /// `sun_rays` as DaylightOptions::sun_rays_of_patch.
+  BandArray hourly_arriving(std::span<const SkyHour> hours, double ground_reflectance,
+                            int sun_rays) const;
   /// B = rho (E0 + F B) for E0 of patches x (sources x bands), in the same columns.
   BandArray radiosity(const BandArray& arriving) const;
   /// Importance of the patches for the light that surfaces reflect to points, which gather by
@@ -120,7 +124,8 @@ class DaylightModel {
   std::vector<SurfacePoint> points_of_patch(int patch) const;
   void view_patches();
   void add_dome(const BandArray& luminance, BandArray& arriving) const;
-  Eigen::ArrayXXf sun_at_patch(int patch, std::span<const SunDisc> suns) const;
+  Eigen::ArrayXXf sun_at_patch(int patch, std::span<const SunDisc> suns, int rays) const;
+  int rays_of_many() const;
   BandArray shares_in_gather(const GatherPoints& points, int rays) const;
   Eigen::ArrayXXf reflected(const BandArray& arriving) const;
 

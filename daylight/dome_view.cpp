@@ -99,16 +99,24 @@ void add_rays(const SkyPatches& sky, int cell, int count, std::uint64_t key, Ray
   }
 }
 
-// Numbers of which one in `stride` is drawn, each with the same probability.
-class Drawn {
+// Cells of which one in `stride` of a row is drawn, each with the same probability. Rows are
+// shifted against each other, so that an upright opening that is narrower than the stride is found.
+class DrawnCells {
  public:
-  Drawn(int stride, std::uint64_t key)
-      : stride_(static_cast<std::size_t>(stride)),
+  DrawnCells(const SkyPatches& sky, int stride, std::uint64_t key)
+      : sky_(sky),
+        stride_(static_cast<std::size_t>(stride)),
         first_(point_of(random_of(key, ~0ULL), stride_)) {}
 
-  bool has(std::size_t number) const { return number % stride_ == first_; }
+  bool has(int cell) const {
+    // Four rows in succession draw all columns of a stride of 4, two of a stride of 2.
+    const auto row = static_cast<std::size_t>(sky_.row_of(cell));
+    const std::size_t shift = row % 2 * (stride_ / 2) + row / 2 % 2 * (stride_ / 4);
+    return (static_cast<std::size_t>(cell) + shift) % stride_ == first_;
+  }
 
  private:
+  const SkyPatches& sky_;
   std::size_t stride_, first_;
 };
 
@@ -117,15 +125,15 @@ void open_with_neighbours(const SkyPatches& sky, int cell, std::vector<char>& op
   for (const int beside : sky.neighbours(cell)) open[static_cast<std::size_t>(beside)] = 1;
 }
 
-// Marks the cells that rays find open, and those around them: all that lie nearer than the next
-// cell that is searched. `E` is the irradiance of each cell without obstacles.
+// Marks the cells that rays find open, and those around them, up to half way to the next cell of
+// the row that is searched. `E` is the irradiance of each cell without obstacles.
 std::vector<char> open_cells(const Surroundings& around, const SkyPatches& sky,
                              ReceiverPoints points, const Eigen::ArrayXd& E,
                              const DomeEffort& effort, std::uint64_t key) {
   RayBatch batch(around, points);
-  const Drawn searched(effort.stride, key);
+  const DrawnCells searched(sky, effort.stride, key);
   for (int c = 0; c < sky.cell_count(); ++c) {
-    if (!(E[c] > 0.0) || !searched.has(static_cast<std::size_t>(c))) continue;
+    if (!(E[c] > 0.0) || !searched.has(c)) continue;
     add_rays(sky, c, effort.search, key, batch);
   }
   batch.cast();
@@ -204,11 +212,11 @@ DomeView view_of_dome(const Surroundings& around, const SkyPatches& sky, Receive
   std::vector<Span> spans;
   RayBatch batch(around, points);
   constexpr int fewest_of_open = 4;
-  const Drawn drawn(effort.stride, rays_key);
+  const DrawnCells drawn(sky, effort.stride, rays_key);
   for (int c = 0; c < sky.cell_count(); ++c) {
     if (!(E[c] > 0.0)) continue;
     const bool is_open = view.open[static_cast<std::size_t>(c)] != 0;
-    if (!is_open && !drawn.has(static_cast<std::size_t>(c))) continue;
+    if (!is_open && !drawn.has(c)) continue;
     const int count =
         is_open ? std::max(fewest_of_open, static_cast<int>(effort.rays * E[c] / open_sum)) : 1;
     const std::size_t begin = batch.size();

@@ -124,9 +124,9 @@ void SkyPatches::find_sums() {
         least = std::min(least, middles_.row(i).dot(direction(cell, u, v).transpose()));
       }
     }
-    // A little more, since the sides of a cell that follow the horizon bulge beyond its corners.
-    constexpr double bulge = 1.05;
-    reaches_[i] = bulge * std::sqrt(std::max(0.0, 1.0 - least * least));
+    // No point of a cell is farther from its middle than its corners; the rest is for rounding.
+    constexpr double rounding = 1e-9;
+    reaches_[i] = std::sqrt(std::max(0.0, 1.0 - least * least)) + rounding;
   }
 }
 

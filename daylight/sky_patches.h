@@ -28,6 +28,12 @@ class SkyPatches {
   int ground_column() const { return dome_count(); }
   int column_of(int cell) const { return cell < dome_count() ? cell : ground_column(); }
 
+  /// Row of a cell, from 0 at the horizon upwards or downwards.
+  int row_of(int cell) const {
+    const int row = cells_[static_cast<std::size_t>(cell)].row;
+    return row < 0 ? -1 - row : row;
+  }
+
   const Eigen::Vector3d& up() const { return up_; }
   const Eigen::Vector3d& north() const { return north_; }
 
@@ -41,8 +47,8 @@ class SkyPatches {
     return neighbours_[static_cast<std::size_t>(cell)];
   }
   /// The irradiance that each cell of radiance 1 gives an unobstructed point: int cos dw over its
-  /// part above the horizon of a unit normal, sr. Exact but for cells that the horizon cuts, whose
-  /// relative error is about 1e-3.
+  /// part above the horizon of a unit normal, sr. Exact but for cells within reach of the horizon,
+  /// whose error is about 1e-3 of a cell in full view.
   Eigen::ArrayXd irradiances(const Eigen::Vector3d& normal) const;
 
  private:

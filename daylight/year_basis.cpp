@@ -110,8 +110,11 @@ SampledYear light_of_year(const DaylightModel& model, const DomeOfVertices& seen
                           double ground_reflectance) {
   const Eigen::Index bands = model.scene().bands.count(),
                      count = static_cast<Eigen::Index>(hours.size());
+  // A ray of each point of a patch: noise of fewer differs from hour to hour, which no short sum
+  // can follow.
+  const int sun_rays = model.options().points_of_patch;
   SampledYear year{.samples = Eigen::MatrixXd(samples.size() * bands, count),
-                   .arriving = model.hourly_arriving(hours, ground_reflectance)};
+                   .arriving = model.hourly_arriving(hours, ground_reflectance, sun_rays)};
   const BandArray dome =
       dome_at(model, seen, samples, hour_luminances(seen.sky, hours, ground_reflectance));
   const BandArray E = reflected_by_importance(
@@ -277,8 +280,8 @@ YearBasis find_year_basis(const DaylightModel& model, std::span<const SkyHour> h
       (vectors.leftCols(terms).array().colwise() / brightness).cast<float>().matrix();
   // Terms may be below 0, which no light is; light is linear.
   const BandArray E0 = in_terms(year.arriving, factors, bands);
-  const BandArray B = model.radiosity(E0.max(0.0f)) - model.radiosity((-E0).max(0.0f));
   year = {};
+  const BandArray B = model.radiosity(E0.max(0.0f)) - model.radiosity((-E0).max(0.0f));
   const BandArray luminance =
       (hour_luminances(seen.sky, hours, ground_reflectance).matrix() * factors).array();
   basis.light.resize(mesh.vertex_count(), terms * bands);

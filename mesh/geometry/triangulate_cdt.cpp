@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <stdexcept>
 
 #include "mesh/geometry/box_tree.h"
 #include "mesh/geometry/triangulation_backend.h"
+#include "scene/errors.h"
 
 namespace lightwell::backend {
 namespace {
@@ -45,13 +45,14 @@ class CrossingSplitter {
   }
 
   void split() {
-    // The second round finds what bends of the first made. No input is known that needs five.
+    // The second round finds what bends of the first made; the limit only guards against a circle.
     constexpr int most_rounds = 100;
     for (int round = 0; round < most_rounds; ++round) {
       if (!split_once()) return;
     }
-    throw std::runtime_error(
-        "a facet could not be triangulated: its lines cross within rounding errors of each other");
+    throw InputError(
+        "a facet could not be triangulated: its lines cross within rounding errors of each other; "
+        "move these lines apart or join them");
   }
 
  private:

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <tuple>
 
 #include "mesh/patches/patch_patterns.h"
@@ -163,6 +164,9 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
 
 BandArray gather_shares(const LitScene& lit, const GatherPoints& points,
                         const GatherOptions& options) {
+  if (!lit.direct_light.emitters().empty() || !lit.direct_light.free_sources().empty()) {
+    throw std::invalid_argument("shares of vertices are those of a scene without lights");
+  }
   const HemisphereGather hemisphere(lit, options, points);
   BandArray shares(points.size(),
                    Eigen::Index{lit.mesh().vertex_count()} * lit.scene.bands.count());

@@ -104,8 +104,9 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
 
 /// Shares of vertices in the light that gather_indirect() finds: the irradiance of each point by
 /// radiosity 1 of one band at one vertex alone, points x (vertices x bands), the bands of a vertex
-/// side by side. No rays are aimed at bright patches, which are not known. Throws Interrupted when
-/// progress says stop.
+/// side by side. No rays are aimed at bright patches, which are not known. Throws
+/// std::invalid_argument for a scene with lights, whose light belongs to no vertex, and Interrupted
+/// when progress says stop.
 BandArray gather_shares(const LitScene& lit, const GatherPoints& points,
                         const GatherOptions& options);
 

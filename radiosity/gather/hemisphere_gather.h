@@ -24,7 +24,7 @@ class HemisphereGather {
   /// `points` give the numbers of rays to prepare for. Keeps references to all but `points`.
   HemisphereGather(const LitScene& lit, const BandArray& radiosity, const GatherOptions& options,
                    const GatherPoints& points);
-  /// For shares of vertices in place of their light (see gather_shares()).
+  /// Shares of vertices in place of their light (see gather_shares()).
   HemisphereGather(const LitScene& lit, const GatherOptions& options, const GatherPoints& points);
 
   /// E = (1/N) sum B over N cosine-distributed rays and, if there are bright patches or portals,

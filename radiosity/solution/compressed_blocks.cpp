@@ -6,6 +6,7 @@
 #include <atomic>
 #include <bit>
 #include <cstring>
+#include <limits>
 #include <new>
 #include <numeric>
 #include <utility>
@@ -19,8 +20,9 @@ static_assert(std::endian::native == std::endian::little,
               "files are written and read on little-endian machines alone");
 
 constexpr std::uint64_t word = sizeof(std::uint64_t);
-constexpr std::size_t block_size = 32768;  // VTK's own
-constexpr int blocks_at_once = 4;          // of one thread; a block takes a millisecond
+constexpr std::ptrdiff_t before_sizes = 3;  // words of a head
+constexpr std::size_t block_size = 32768;   // VTK's own
+constexpr int blocks_at_once = 4;           // of one thread
 
 void add_words(std::string& text, std::span<const std::uint64_t> words) {
   const std::size_t end = text.size();
@@ -31,7 +33,7 @@ void add_words(std::string& text, std::span<const std::uint64_t> words) {
 std::string compressed(std::span<const char> bytes) {
   uLongf length = compressBound(static_cast<uLong>(bytes.size()));
   std::string packed(length, '\0');
-  // With room enough, zlib fails for want of memory alone.
+  // The room suffices, so that zlib fails for want of memory alone.
   if (compress2(reinterpret_cast<Bytef*>(packed.data()), &length,
                 reinterpret_cast<const Bytef*>(bytes.data()), static_cast<uLong>(bytes.size()),
                 Z_DEFAULT_COMPRESSION) != Z_OK) {
@@ -54,14 +56,10 @@ std::string compressed_blocks(std::span<const char> bytes) {
           compressed(bytes.subspan(from, std::min(block_size, bytes.size() - from)));
     }
   });
-  std::vector<std::uint64_t> head{count};
-  if (count > 0) {
-    head.insert(head.end(), {block_size, bytes.size() % block_size});
-    for (const std::string& block : blocks) head.push_back(block.size());
-  }
+  std::vector<std::uint64_t> head{count, block_size, bytes.size() % block_size};
+  for (const std::string& block : blocks) head.push_back(block.size());
   std::string text;
-  text.reserve(std::accumulate(head.begin() + std::min<std::ptrdiff_t>(3, std::ssize(head)),
-                               head.end(), word * head.size()));
+  text.reserve(std::accumulate(head.begin() + before_sizes, head.end(), word * head.size()));
   add_words(text, head);
   for (std::string& block : blocks) text += std::exchange(block, {});
   return text;
@@ -80,24 +78,26 @@ BlockHead block_head(
     std::uint64_t left,
     const std::function<std::vector<std::uint64_t>(std::uint64_t, std::uint64_t)>& read,
     const std::function<void(const std::string&)>& reject) {
-  constexpr std::uint64_t before_sizes = 3;
+  constexpr std::uint64_t most = std::numeric_limits<int>::max();
   if (left < word) reject("the offset is too large");
   const std::uint64_t count = read(0, 1).front();
   if (count == 0) return {};
-  if (left / word < before_sizes || count > left / word - before_sizes) {
+  if (count > most || left / word < before_sizes || count > left / word - before_sizes) {
     reject("there are more blocks than the file has room for");
   }
   std::vector<std::uint64_t> words = read(0, before_sizes + count);
   left -= word * words.size();
   BlockHead head{.size = words[1], .last = words[2] == 0 ? words[1] : words[2]};
-  if (head.last > head.size) reject("the size of a block is wrong");
+  if (head.size == 0 || head.last > head.size) reject("the size of a block is wrong");
   head.compressed.assign(words.begin() + before_sizes, words.end());
   for (std::uint64_t b = 0; b < count; ++b) {
     // Deflate makes at most 1032 bytes of one (Deutsch 1996: 258 bytes from two bits).
     constexpr std::uint64_t most_of_one = 1032;
     const std::uint64_t whole = b + 1 == count ? head.last : head.size;
     const std::uint64_t packed = head.compressed[b];
-    if (packed > left || whole / most_of_one > packed) reject("a block is longer than the file");
+    if (packed == 0 || packed > left || whole / most_of_one > packed) {
+      reject("a block is longer than the file");
+    }
     left -= packed;
   }
   return head;

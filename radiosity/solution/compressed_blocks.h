@@ -10,9 +10,8 @@ namespace lightwell {
 
 /// Bytes compressed by zlib in blocks, as VTK's XML files hold each array: little-endian words of
 /// 64 bits (the number of blocks, the bytes of a block, those of the last block or 0 if it is as
-/// long as the others, the compressed bytes of each block), then the blocks. No bytes are one word,
-/// 0. (VTK File Formats, "XML file formats", compressed data.) The text is the same on any number
-/// of threads.
+/// long as the others, the compressed bytes of each block), then the blocks. (VTK File Formats,
+/// "XML file formats", compressed data.) The text is the same on any number of threads.
 std::string compressed_blocks(std::span<const char> bytes);
 
 /// The head of compressed blocks.

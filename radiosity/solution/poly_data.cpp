@@ -122,7 +122,7 @@ class PolyDataText {
 
   std::string xml_;
   std::vector<std::string> pieces_;  // of the appended data
-  std::size_t offset_ = 0;           // bytes of these
+  std::size_t offset_ = 0;           // of the next array in the appended data, in bytes
 };
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <limits>
+#include <optional>
 #include <pugixml.hpp>
 
 #include "radiosity/solution/poly_data.h"
@@ -13,6 +15,15 @@ namespace lightwell {
 namespace {
 
 constexpr std::int64_t most = std::numeric_limits<int>::max();  // values that an int numbers
+
+// The whole number that a text is; empty if the text is anything else.
+std::optional<std::int64_t> whole_number(std::string_view text) {
+  std::int64_t value = 0;
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  if (parsed.ec != std::errc{} || parsed.ptr != end) return std::nullopt;
+  return value;
+}
 
 // Bytes of a value of a numeric type; 0: the type is unknown.
 std::int64_t bytes_of(std::string_view type) {
@@ -26,7 +37,12 @@ std::int64_t bytes_of(std::string_view type) {
 class ArrayHead {
  public:
   ArrayHead(const PolyDataFile& file, std::ifstream& stream, std::int64_t data, std::int64_t end)
-      : file_(file), stream_(stream), data_(data), end_(end) {}
+      : file_(file),
+        stream_(stream),
+        data_(data),
+        end_(end),
+        unclaimed_(end - data),
+        room_(std::max(least_room, most_of_file * end)) {}
 
   // `tuples`: the rows that the array must have; -1: as the element says.
   StoredArray read(const pugi::xml_node& node, std::int64_t tuples) {
@@ -36,9 +52,10 @@ class ArrayHead {
     array.rows = own;
     const auto bytes = static_cast<std::int64_t>(array.head.bytes());
     if (node.name() == std::string_view("Array")) {
-      constexpr std::int64_t longest = std::int64_t{1} << 30u;
+      constexpr std::int64_t longest = std::int64_t{1} << 26u, most_texts = std::int64_t{1} << 20u;
       require(array.type == "String" && array.columns == 1, "the type is unknown");
-      require(own <= bytes && bytes <= longest, "the count of values is wrong");
+      require(own <= bytes && own <= most_texts && bytes <= longest,
+              "the count of values is wrong");
       return array;
     }
     const std::int64_t each = bytes_of(array.type);
@@ -74,10 +91,10 @@ class ArrayHead {
   std::int64_t number(const pugi::xml_node& node, const char* attribute,
                       std::int64_t otherwise) const {
     if (!node.attribute(attribute)) return otherwise;
-    const std::int64_t value = node.attribute(attribute).as_llong(-1);
-    require(0 <= value && value <= most,
+    const auto value = whole_number(node.attribute(attribute).value());
+    require(value && 0 <= *value && *value <= most,
             fmt::format("{} is '{}'", attribute, node.attribute(attribute).value()));
-    return value;
+    return *value;
   }
 
   StoredArray read_head(const pugi::xml_node& node) {
@@ -88,10 +105,10 @@ class ArrayHead {
     StoredArray array{.name = name_, .type = node.attribute("type").value()};
     array.columns = static_cast<int>(number(node, "NumberOfComponents", 1));
     require(array.columns >= 1, "there are no components");
-    const std::int64_t offset = node.attribute("offset").as_llong(-1);
-    require(offset >= 0, "the offset is no number");
-    require(offset <= end_ - data_, "the offset is too large");
-    array.place = data_ + offset;
+    const auto offset = whole_number(node.attribute("offset").value());
+    require(offset && *offset >= 0, "the offset is no number");
+    require(*offset <= end_ - data_, "the offset is too large");
+    array.place = data_ + *offset;
     const auto read_words = [&](std::uint64_t place, std::uint64_t count) {
       std::vector<std::uint64_t> words(count);
       stream_.seekg(static_cast<std::streamoff>(array.place + static_cast<std::int64_t>(place)));
@@ -105,13 +122,24 @@ class ArrayHead {
     constexpr std::size_t before_sizes = 3;
     const std::size_t words =
         array.head.compressed.empty() ? 1 : before_sizes + array.head.compressed.size();
-    array.place += static_cast<std::int64_t>(sizeof(std::uint64_t) * words);
+    const auto bytes_of_head = static_cast<std::int64_t>(sizeof(std::uint64_t) * words);
+    array.place += bytes_of_head;
+    unclaimed_ -= bytes_of_head + static_cast<std::int64_t>(array.head.compressed_bytes());
+    require(unclaimed_ >= 0, "it shares its place with other arrays");
+    room_ -= static_cast<std::int64_t>(array.head.bytes());
+    require(room_ >= 0, "the values of all arrays are far longer than the file");
     return array;
   }
+
+  // Bytes that all arrays may have together. Constant values shrink to a thousandth, others of real
+  // solutions to a third.
+  static constexpr std::int64_t least_room = std::int64_t{1} << 30u, most_of_file = 256;
 
   const PolyDataFile& file_;
   std::ifstream& stream_;
   std::int64_t data_, end_;  // of the appended data, in bytes from the file's begin
+  std::int64_t unclaimed_;   // bytes of the appended data that no array has
+  std::int64_t room_;        // bytes that the values of further arrays may take
   std::string name_;
 };
 
@@ -125,21 +153,22 @@ struct PolyDataFile::Xml {
 
 PolyDataFile::PolyDataFile(const std::filesystem::path& path)
     : path_(path), file_(path, std::ios::binary) {
+  require(static_cast<bool>(file_), "it cannot be opened; is it there, and may you read it?");
   // The XML is short beside the data: some 200 bytes for each of some hundred arrays.
   constexpr std::string_view start_of_data = "<AppendedData encoding=\"raw\">";
   constexpr std::size_t longest = std::size_t{64} << 20u;
   std::string text;
   std::vector<char> buffer(1 << 16);
-  std::size_t found = std::string::npos;
-  while (found == std::string::npos && text.size() < longest && file_) {
+  std::size_t found = std::string::npos, data = std::string::npos;
+  while (data == std::string::npos && text.size() < longest && file_) {
     file_.read(buffer.data(), static_cast<std::streamsize>(buffer.size()));
     const std::size_t from = text.size() - std::min(text.size(), start_of_data.size());
     text.append(buffer.data(), static_cast<std::size_t>(file_.gcount()));
-    found = text.find(start_of_data, from);
+    if (found == std::string::npos) found = text.find(start_of_data, from);
+    if (found != std::string::npos) data = text.find('_', found);
   }
   require(found != std::string::npos, "it has no appended data");
   file_.clear();
-  const std::size_t data = text.find('_', found);
   require(data != std::string::npos, "its appended data do not begin");
   Xml xml;
   xml.data = static_cast<std::int64_t>(data) + 1;
@@ -166,9 +195,9 @@ void PolyDataFile::read_piece(const Xml& xml) {
           "its XML is not as Lightwell writes it");
   require(piece && !piece.next_sibling("Piece"), "it does not have one piece");
   const auto count = [&](const char* attribute) {
-    const std::int64_t value = piece.attribute(attribute).as_llong(-1);
-    require(0 <= value && value <= most, fmt::format("{} is no count", attribute));
-    return value;
+    const auto value = whole_number(piece.attribute(attribute).value());
+    require(value && 0 <= *value && *value <= most, fmt::format("{} is no count", attribute));
+    return *value;
   };
   const std::int64_t points = count("NumberOfPoints");
   polygons_ = count("NumberOfPolys");

@@ -45,11 +45,11 @@ class SolutionArrays {
   }
   template <class T>
   Values<T> required(Place place, const std::string& name, int rows, int columns = 1) const {
-    const Values<T> values = optional<T>(place, name, columns);
-    require(has(place, name), fmt::format("its array '{}' is missing", name));
-    require(values.rows == rows,
-            fmt::format("its array '{}' has {} rows instead of {}", name, values.rows, rows));
-    return values;
+    const StoredArray* array = file_.find(place, name);
+    require(array, fmt::format("its array '{}' is missing", name));
+    require(array->rows == rows,
+            fmt::format("its array '{}' has {} rows instead of {}", name, array->rows, rows));
+    return optional<T>(place, name, columns);
   }
   /// Integers, all of which must lie in [low, high).
   std::vector<int> integers(Place place, const std::string& name, int rows, int low,

@@ -58,7 +58,7 @@ Columns read_header(const std::vector<std::string_view>& cells, const FileLocati
     if (found == cells.end()) {
       location.fail(
           fmt::format("no column is named '{}'; the first line must name x,y,z,nx,ny,nz (in any "
-                      "order, others are ignored)",
+                      "order, others are ignored), or each line must be these six numbers",
                       column_names[c]));
     }
     if (std::find(found + 1, cells.end(), column_names[c]) != cells.end()) {

@@ -48,7 +48,7 @@ TEST_F(ReadProbes, PositionsBecomeMetresAndNormalsUnitLength) {
   EXPECT_LT((probes[0].normal - Eigen::Vector3d(0.6, 0, 0.8)).norm(), 1e-15);
 }
 
-// As RADIANCE's rtrace reads points.
+// RADIANCE's rtrace reads such points.
 TEST_F(ReadProbes, SixNumbersALineNeedNoNames) {
   for (const char* text :
        {"1 2 -3e-1 0 0\t1\n\n  4 5 6 0 1 0 \r\n", "1,2,-0.3,0,0,1\n4, 5, 6, 0, 1, 0"}) {
