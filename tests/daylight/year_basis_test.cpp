@@ -25,6 +25,7 @@ DaylightOptions coarse() {
   options.mesh.elements_per_patch_edge = 1;
   options.points = YearBasisOptions{}.view;
   options.gather_rays = 256;
+  options.sun_rays_of_patch = options.points_of_patch;  // as find_year_basis() has them
   return options;
 }
 
