@@ -8,7 +8,8 @@ if(NOT embree_FOUND)
 endif()
 # CONFIG is essential: CGAL puts a FindOpenMesh of its own on the module path.
 find_package(OpenMesh REQUIRED CONFIG)
-# The triangulation of facets: CGAL, which is under the GPL, or CDT, which is not. Both give the same triangles.
+# The triangulation of facets: CGAL, which is under the GPL, or CDT, which is not. Both give
+# the same triangles wherever no lines of a facet cross.
 set(LIGHTWELL_TRIANGULATION cgal CACHE STRING "Library that triangulates facets: cgal or cdt")
 set_property(CACHE LIGHTWELL_TRIANGULATION PROPERTY STRINGS cgal cdt)
 set(cdt_version "")

@@ -19,7 +19,9 @@ def loaded_from_elsewhere():
     """Shared libraries in this process that are neither from the environment nor the system's C and C++ or Python."""
     with open("/proc/self/maps") as maps:
         files = {line.split()[-1] for line in maps if ".so" in line}
-    places = {os.path.realpath(p) for p in (sys.prefix, sys.base_prefix)}
+    # Of a Python in /usr the folder of its own modules alone: /usr/lib has everybody's libraries.
+    version = "python%d.%d" % sys.version_info[:2]
+    places = {os.path.realpath(sys.prefix), os.path.realpath(os.path.join(sys.base_prefix, "lib", version))}
     python = ("libpython", "lib-dynload", "libffi", "libbz2", "liblzma", "libssl", "libcrypto", "libexpat", "libsqlite3")
     return sorted(
         file

@@ -47,9 +47,14 @@ class Wheel(unittest.TestCase):
     def test_a_header_that_names_the_gpl_is_refused_whatever_its_package(self):
         with tempfile.TemporaryDirectory() as folder:
             header = os.path.join(folder, "a.h")
-            pathlib.Path(header).write_text("/* the GNU General\n   Public License */\n")
-            with self.assertRaisesRegex(self.script.Refused, "a.h: its text names the GPL"):
-                self.found({header: "libeigen3-dev"})
+            for text in (
+                "/* the GNU General\n   Public License */\n",
+                "/*\n * under the GNU General\n * Public License, version 2\n */\n",
+                "// SPDX-License-Identifier: GPL-3.0-or-later OR LicenseRef-Commercial\n",
+            ):
+                pathlib.Path(header).write_text(text)
+                with self.assertRaisesRegex(self.script.Refused, "a.h: its text names the GPL", msg=text):
+                    self.found({header: "libeigen3-dev"})
 
     def test_a_file_of_no_package_is_refused(self):
         with self.assertRaisesRegex(self.script.Refused, "/usr/local/include/new.h: no Debian package"):
@@ -69,9 +74,14 @@ class Wheel(unittest.TestCase):
         with self.assertRaisesRegex(self.script.Refused, "GLPK is under GPL-3.0-or-later"):
             self.found({"/usr/include/glpk.h": "libglpk-dev"}, [("libglpk*", "GLPK", "GPL-3.0-or-later")])
 
-    def test_the_table_lists_nothing_under_the_gpl(self):
-        for _, library, licence in self.script.read_table():
-            self.assertTrue(not licence.startswith(("GPL", "AGPL")) or " WITH " in licence, library)
+    def test_what_is_not_known_as_permissive_is_refused(self):
+        for licence in ("LGPL-2.1-or-later", "MIT AND GPL-3.0-only", "CC-BY-NC-4.0", "ask the author"):
+            with self.assertRaisesRegex(self.script.Refused, "X is under"):
+                self.found({"/usr/include/x.h": "libx-dev"}, [("libx*", "X", licence)])
+
+    def test_the_table_has_licences_that_are_known(self):
+        for pattern, library, _ in self.script.read_table():
+            self.assertEqual(self.script.library_of(pattern.replace("*", ""), self.script.read_table())[0], library)
 
     def test_a_wheel_of_more_than_40_megabytes_is_refused(self):
         with tempfile.TemporaryDirectory() as folder:
