@@ -67,6 +67,19 @@ class Lights(unittest.TestCase):
         rim = 0.6 * (1 - edge)
         self.check_flux(spot, 683 * 2 * math.pi * ((1 - edge - rim) + rim / 2), 683.0)
 
+    def test_rims_of_all_widths_keep_their_flux(self):
+        for cone in (1.0, 10.0, 90.0):
+            for blend in (0.0, 1e-3, 1.0):
+                spot = Light("s", "SPOT", 4 * math.pi, cone=cone, blend=blend)
+                # 1 - cos h, where the rim, of half the light in the cosine, takes half of its share.
+                share = 2 * math.sin(math.radians(cone / 4)) ** 2 * (1 - blend / 2)
+                with self.subTest(cone=cone, blend=blend):
+                    self.check_flux(spot, 683 * 2 * math.pi * share, 683.0)
+
+    def test_lights_without_extent_are_as_normalized_in_cycles(self):
+        for light in (Light("p", "POINT", 5.0, normalized=False), Light("s", "SUN", 5.0, normalized=False, angle=0.0)):
+            self.assertEqual(lights.watts(light), (5.0, 5.0, 5.0))
+
     def test_narrowed_area_keeps_its_flux(self):
         area = Light("a", "AREA", 2.0, spread=80.0, size=(0.1, 0.1))
         self.check_flux(area, 2 * 683.0, lights.spread_intensity(area, 0.0) * 2 * 683)
@@ -78,8 +91,9 @@ class Lights(unittest.TestCase):
         with open(path, "w", encoding="ascii") as file:
             file.write(text)
         found = json.loads(run_program("info", path, "--json"))
-        # Linear between steps of 0.1 degrees: |I''| h^2 / 8 of I, where |I''| is below 1e3 I_0 / rad^2 (a
-        # rim 5 degrees wide), so 1e3 (1.75e-3)^2 / 8 = 4e-4.
+        # Linear between steps: |I''| h^2 / 8 of I. |I''| is below 6 / w^2 in a rim of width w, and h is below
+        # w / 64: 2e-4. An area falls as its cosine: less. A hard edge of 0.5 degrees ends within 1e-4: half of
+        # 2 x 1e-4 / 0.5, 2e-4 more.
         self.assertAlmostEqual(found["lumens"] / lumens, 1.0, delta=4e-4)
         self.assertAlmostEqual(found["peak_candela"] / candela, 1.0, delta=1e-6)
         self.assertEqual(table["aim"], [0.0, 0.0, -1.0])
@@ -205,6 +219,34 @@ class Folder(unittest.TestCase):
         with self.assertRaisesRegex(scene_folder.SceneError, "was not written by this add-on"):
             scene_folder.write_scene(room(), folder)
 
+    def test_folders_of_the_project_stay(self):
+        for name in ("pictures/mine.png", "meshes/00001.ply", "solution.vtp"):
+            folder = scratch(self)
+            mine = os.path.join(folder, name)
+            os.makedirs(os.path.dirname(mine), exist_ok=True)
+            with open(mine, "w", encoding="utf-8") as file:
+                file.write("mine")
+            if name == "pictures/mine.png":  # no file of that name is exported
+                for _ in range(2):
+                    scene_folder.write_scene(room(), folder)
+            else:
+                with self.assertRaisesRegex(scene_folder.SceneError, f"{name} was not written by this add-on"):
+                    scene_folder.write_scene(room(), folder)
+                self.assertFalse(os.path.exists(os.path.join(folder, "scene.toml")))
+            with open(mine, encoding="utf-8") as file:
+                self.assertEqual(file.read(), "mine")
+
+    def test_export_tells_the_scene_apart_that_was_solved(self):
+        folder = scratch(self)
+        scene_folder.write_scene(room(), folder)
+        first = scene_folder.digest_of(folder)
+        scene_folder.write_scene(room(), folder)
+        self.assertEqual(scene_folder.digest_of(folder), first)
+        other = room()
+        other.surfaces[0].mesh.points[0, 0] = -0.5
+        scene_folder.write_scene(other, folder)
+        self.assertNotIn(scene_folder.digest_of(folder), ("", first))
+
     def test_nothing_to_solve(self):
         with self.assertRaisesRegex(scene_folder.SceneError, "nothing shines"):
             scene_folder.check_scene(room(lights=[]))
@@ -222,6 +264,25 @@ class Folder(unittest.TestCase):
         self.assertIn("2049 lx across its rays", said)
         self.assertIn("214.6 lx on open ground", said)
         self.assertIn("below the horizon (low)", said)
+
+    def test_lights_that_the_program_would_refuse(self):
+        scene = room(
+            lights=[
+                Light("black", "AREA", 5.0, colour=(0.0, 0.0, 0.0), position=(1, 1, 2), size=(0.1, 0.1)),
+                Light("file", "POINT", 5.0, photometry="luminaires/a.ies", factor=0.0, position=(1, 1, 2)),
+                Light("wide", "SUN", 3.0, aim=(0.0, 0.6, -0.8), angle=120.0),
+                Light("dark sun", "SUN", 0.0, aim=(0.0, 0.6, -0.8)),
+            ],
+            light_collections=[""] * 4,
+        )
+        folder = scratch(self)
+        path = scene_folder.write_scene(scene, folder)
+        channels = scene_folder.channel_arguments(scene.emitters, "LIGHT")
+        self.assertEqual(channels, ["--channels", "sun=sun"])
+        run_program("solve", path, "-o", os.path.join(folder, "s.vtp"), "--rays", "64", "--refine", "off", *channels)
+        said = " ".join(scene.notes)
+        self.assertIn("3 lights that give no light (black, file, dark sun)", said)
+        self.assertIn("wide has a disc of 10 degrees instead of 120", said)
 
     def test_too_many_channels(self):
         with self.assertRaisesRegex(scene_folder.SceneError, "at most 256 channels"):

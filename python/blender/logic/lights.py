@@ -14,6 +14,7 @@ LUMINANCE = (0.2126729, 0.7151522, 0.0721750)
 """Y of linear Rec. 709 red, green and blue with the solver's digits; adds up to 1 (ITU-R BT.709)."""
 
 STEP = 0.1  # degrees between the intensities that are written for a spot or a narrowed area
+RIM_STEPS = 64  # at least, where a spot's light falls
 DARK_AFTER = 1e-4  # degrees from the last light to the dark, since files are linear between angles
 
 
@@ -25,7 +26,8 @@ class Light:
     kind: str
     """"POINT", "SPOT", "AREA" or "SUN"."""
     energy: float
-    """W; of a sun W/m^2. Without `normalized`, W for each m^2 of the light's surface, times pi for a sun."""
+    """W; of a sun W/m^2. Without `normalized`, W for each m^2 of the light's surface, times pi for a sun; a point
+    without a radius and a sun without a disc are as with `normalized`, as in Cycles."""
     colour: Tuple[float, float, float] = (1.0, 1.0, 1.0)
     """Factors of red, green and blue, those of a colour temperature included."""
     position: Tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -56,8 +58,9 @@ def watts(light: Light) -> Tuple[float, float, float]:
     A spot has the flux that it would have without its cone.
     """
     power = light.energy * 2.0**light.exposure
-    if not light.normalized:
-        power *= _surface(light)
+    surface = _surface(light)
+    if not light.normalized and (surface > 0.0 or light.kind == "AREA"):
+        power *= surface
     return tuple(power * c for c in light.colour)
 
 
@@ -74,6 +77,13 @@ def luminous(values: Sequence[float]) -> float:
     return sum(y * value for y, value in zip(LUMINANCE, values))
 
 
+def shines(light: Light) -> bool:
+    """True if the light gives light that eyes see."""
+    if light.photometry is not None:
+        return light.factor * luminous(light.colour) > 0.0
+    return luminous(watts(light)) > 0.0
+
+
 def candela_of(light: Light, lumens_per_watt: float) -> float:
     """Luminous intensity of a point, and of a spot on its axis: I = lumens_per_watt P / (4 pi)."""
     return lumens_per_watt * luminous(watts(light)) / (4 * math.pi)
@@ -87,12 +97,20 @@ def spot_share(light: Light, gamma: float) -> float:
     edge = math.cos(math.radians(light.cone / 2))
     above = math.cos(math.radians(gamma)) - edge
     soft = max(light.blend, 0.0) * (1.0 - edge)
+    if soft == 0.0:
+        return 1.0 if gamma <= light.cone / 2 else 0.0
     if above <= 0.0:
         return 0.0
     if above >= soft:
         return 1.0
     t = above / soft
     return t * t * (3.0 - 2.0 * t)
+
+
+def spot_rim(light: Light) -> float:
+    """Degrees off a spot's axis from which on its intensity falls."""
+    edge = math.cos(math.radians(light.cone / 2))
+    return math.degrees(math.acos(min(edge + max(light.blend, 0.0) * (1.0 - edge), 1.0)))
 
 
 def spread_intensity(light: Light, gamma: float) -> float:
@@ -107,14 +125,14 @@ def spread_intensity(light: Light, gamma: float) -> float:
     return math.cos(theta) / math.pi * (math.tan(h) - math.tan(theta)) / (math.tan(h) - h)
 
 
-def ies_text(name: str, edge: float, candela: Callable[[float], float]) -> str:
+def ies_text(name: str, edge: float, candela: Callable[[float], float], rim: float = 0.0) -> str:
     """A photometric file (IES LM-63-2002) of an intensity that is the same in all planes.
 
     edge: degrees from the axis from which on there is no light, more than 0 and up to 90.
     candela: intensity at an angle from the axis, degrees.
+    rim: degrees from the axis to where the intensity begins to fall; steps are as fine as the rest needs.
     """
-    count = max(2, math.ceil(edge / STEP) + 1)
-    gammas = [edge * i / (count - 1) for i in range(count)]
+    gammas = _angles(0.0, rim, STEP) + _angles(rim, edge, min(STEP, (edge - rim) / RIM_STEPS)) + [edge]
     values = [candela(gamma) for gamma in gammas]
     if edge < 90.0 - 2 * DARK_AFTER:  # files end at 90 or 180 degrees
         gammas += [edge + DARK_AFTER, 90.0]
@@ -130,6 +148,14 @@ def ies_text(name: str, edge: float, candela: Callable[[float], float]) -> str:
     ]
     lines += _rows(gammas) + ["0"] + _rows(values)
     return "\n".join(lines) + "\n"
+
+
+def _angles(low: float, high: float, most: float) -> List[float]:
+    """Even angles from `low` on, without `high`, whose steps are `most` at most; none in less than 1e-6 degrees."""
+    if high - low < 1e-6:
+        return []
+    count = math.ceil((high - low) / most)
+    return [low + (high - low) * i / count for i in range(count)]
 
 
 def _rows(values: Sequence[float]) -> List[str]:
@@ -185,7 +211,7 @@ def lamp_table(light: Light, lumens_per_watt: float) -> Tuple[Dict[str, object],
     table.update(aim=list(light.aim), c0=list(light.x_axis), colour=list(light.colour))
     if light.kind == "SPOT":
         full = flux / (4 * math.pi)
-        text = ies_text(light.name, light.cone / 2, lambda gamma: full * spot_share(light, gamma))
+        text = ies_text(light.name, light.cone / 2, lambda gamma: full * spot_share(light, gamma), spot_rim(light))
         return table, text
     text = ies_text(light.name, light.spread / 2, lambda gamma: flux * spread_intensity(light, gamma))
     table.update(opening=list(light.size), round=light.shape in ("DISK", "ELLIPSE"))

@@ -1,15 +1,17 @@
 """A folder with a scene file that the command line reads: scene.toml, meshes, pictures, luminaires."""
 
+import hashlib
 import os
+import re
 import shutil
 import tempfile
 from dataclasses import dataclass, field, replace
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, List, Optional, Set, Tuple
 
 import numpy as np
 
 from .cameras import Camera, camera_table
-from .lights import Light, is_surface, lamp_table, luminous, outline, spoken, watts
+from .lights import Light, is_surface, lamp_table, luminous, outline, shines, spoken, watts
 from .materials import Shader, depends_on_closure, emits, material_table
 from .meshes import Polygons, lies_in_plane, ply_bytes
 from .toml_text import channel_name, plain_names, quoted, table_text
@@ -17,7 +19,10 @@ from .toml_text import channel_name, plain_names, quoted, table_text
 SCENE_FILE = "scene.toml"
 SOLUTION_FILE = "solution.vtp"
 FIRST_LINE = "# Written by the Lightwell add-on for Blender, which replaces this file with each export."
+DIGEST = "# Scene "
+PARTS = ("meshes", "pictures", "luminaires")
 MOST_CHANNELS = 256
+WIDEST_SUN = 10.0  # degrees; the most that scene files allow
 CLEARANCE = 0.001  # metres between an area light and a face in whose plane it lay
 
 
@@ -71,35 +76,105 @@ class Scene:
 def write_scene(scene: Scene, folder: str) -> str:
     """Writes the scene and returns the path of its file. The folder's other files stay.
 
-    Raises SceneError if there is nothing to solve, or a scene file of somebody else.
+    Raises SceneError if there is nothing to solve, or if files of somebody else would be replaced.
+    """
+    scratch = stage_scene(scene, folder)
+    try:
+        put_in_place(scratch, folder)
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+    return os.path.join(folder, SCENE_FILE)
+
+
+def stage_scene(scene: Scene, folder: str) -> str:
+    """Writes the scene into a folder of its own within `folder`, and returns its path, for `put_in_place`.
+
+    Raises SceneError as `write_scene` does.
     """
     check_scene(scene)
-    path = os.path.join(folder, SCENE_FILE)
-    if os.path.exists(path):
-        with open(path, encoding="utf-8", errors="replace") as file:
-            if file.readline().rstrip("\n") != FIRST_LINE:
-                raise SceneError(
-                    f"{path} was not written by this add-on and would be lost; choose another folder"
-                )
-    os.makedirs(folder, exist_ok=True)
     files = dict(scene.files)
     text = scene_text(scene, files)
-    with tempfile.TemporaryDirectory(prefix=".export-", dir=folder) as scratch:
-        for name, data in files.items():
+    named = files_of(text)
+    _check_replaced(folder, [*named, SOLUTION_FILE])
+    os.makedirs(folder, exist_ok=True)
+    scratch = tempfile.mkdtemp(prefix=".export-", dir=folder)
+    whole = {name: files[name] for name in named}
+    whole[SCENE_FILE] = text.replace("\n", f"\n{DIGEST}{_digest(text, whole)}\n", 1).encode("utf-8")
+    try:
+        for name, data in whole.items():
             target = os.path.join(scratch, name)
             os.makedirs(os.path.dirname(target), exist_ok=True)
             with open(target, "wb") as file:
                 file.write(data)
-        with open(os.path.join(scratch, SCENE_FILE), "w", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-        for part in ("meshes", "pictures", "luminaires"):
-            old = os.path.join(folder, part)
-            if os.path.isdir(old):
-                shutil.move(old, os.path.join(scratch, "old-" + part))
-            if os.path.isdir(os.path.join(scratch, part)):
-                os.rename(os.path.join(scratch, part), old)
-        os.replace(os.path.join(scratch, SCENE_FILE), path)
-    return path
+    except BaseException:
+        shutil.rmtree(scratch, ignore_errors=True)
+        raise
+    return scratch
+
+
+def put_in_place(scratch: str, folder: str) -> None:
+    """Moves a staged scene, and its solution if there is one, into the folder, in place of an earlier one.
+
+    Raises SceneError if files of somebody else would be replaced.
+    """
+    with open(os.path.join(scratch, SCENE_FILE), encoding="utf-8") as file:
+        named = files_of(file.read())
+    moved = [SOLUTION_FILE] if os.path.exists(os.path.join(scratch, SOLUTION_FILE)) else []
+    own = _check_replaced(folder, [*named, *moved])
+    for name in own - set(named):
+        if os.path.isfile(os.path.join(folder, name)):
+            os.remove(os.path.join(folder, name))
+    for name in [*named, *moved, SCENE_FILE]:
+        target = os.path.join(folder, name)
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        os.replace(os.path.join(scratch, name), target)
+    for part in PARTS:
+        if os.path.isdir(os.path.join(folder, part)) and not os.listdir(os.path.join(folder, part)):
+            os.rmdir(os.path.join(folder, part))
+
+
+def files_of(text: str) -> List[str]:
+    """Files below the folder that the text of a scene file names, each once."""
+    return list(dict.fromkeys(re.findall(rf'\b(?:file|mesh) = "((?:{"|".join(PARTS)})/[^"\\]+)"', text)))
+
+
+def digest_of(folder: str) -> str:
+    """Identifies the folder's exported scene with all its files; empty if there is none."""
+    try:
+        with open(os.path.join(folder, SCENE_FILE), encoding="utf-8", errors="replace") as file:
+            lines = [file.readline().rstrip("\n") for _ in range(2)]
+    except OSError:
+        return ""
+    is_ours = lines[0] == FIRST_LINE and lines[1].startswith(DIGEST)
+    return lines[1][len(DIGEST) :] if is_ours else ""
+
+
+def _digest(text: str, files: Dict[str, bytes]) -> str:
+    found = hashlib.sha256(text.encode("utf-8"))
+    for data in files.values():
+        found.update(data)
+    return found.hexdigest()[:32]
+
+
+def _check_replaced(folder: str, names: List[str]) -> Set[str]:
+    """Files of the folder's earlier export. Raises SceneError if one of `names` is there and not among them."""
+    path = os.path.join(folder, SCENE_FILE)
+    own: Set[str] = set()
+    if os.path.exists(path):
+        with open(path, encoding="utf-8", errors="replace") as file:
+            text = file.read()
+        if text.split("\n", 1)[0] != FIRST_LINE:
+            raise SceneError(
+                f"{path} was not written by this add-on and would be lost; choose another folder"
+            )
+        own = {*files_of(text), SOLUTION_FILE}
+    for name in names:
+        if name not in own and os.path.lexists(os.path.join(folder, name)):
+            raise SceneError(
+                f"{os.path.join(folder, name)} was not written by this add-on and would be lost; move it "
+                "elsewhere, or choose another folder"
+            )
+    return own - {SOLUTION_FILE}
 
 
 def check_scene(scene: Scene) -> None:
@@ -110,7 +185,7 @@ def check_scene(scene: Scene) -> None:
             "hidden in the viewport or in renders"
         )
     shining = any(emits(scene.materials[surface.material]) for surface in scene.surfaces)
-    lit = any(luminous(watts(light)) > 0.0 or light.photometry for light in scene.lights)
+    lit = any(shines(light) for light in scene.lights)
     if not (shining or lit or scene.world.map or luminous(scene.world.radiance) > 0.0):
         raise SceneError(
             "nothing shines in the scene; add a light, a material with emission, or a world background"
@@ -120,7 +195,10 @@ def check_scene(scene: Scene) -> None:
 def scene_text(scene: Scene, files: Dict[str, bytes]) -> str:
     """The text of the scene file; adds its meshes and photometric files to `files`, what was
     approximated to the scene's notes, and fills in `emitters`."""
-    lights = [light for light in scene.lights if light.kind != "SUN"]
+    dark = [light.name for light in scene.lights if not shines(light)]
+    if dark:
+        scene.notes.append(counted(f"left out: {len(dark)} lights that give no light", dark))
+    lights = [light for light in scene.lights if light.kind != "SUN" and shines(light)]
     names = plain_names([s.name for s in scene.surfaces] + [light.name for light in lights])
     parts = [FIRST_LINE + "\n", f"title = {quoted(scene.title)}\n" + 'unit = "m"\n']
     parts.append(table_text("[bands]", {"kind": "rgb", "lumens_per_watt": scene.lumens_per_watt}))
@@ -211,7 +289,7 @@ def _freed(light: Light, scene: Scene) -> Light:
 
 def _sky(scene: Scene) -> List[str]:
     suns = sorted(
-        (light for light in scene.lights if light.kind == "SUN"),
+        (light for light in scene.lights if light.kind == "SUN" and shines(light)),
         key=lambda sun: -luminous(watts(sun)),
     )
     high = [sun for sun in suns if sun.aim[2] < 0.0]
@@ -236,10 +314,15 @@ def _sky(scene: Scene) -> List[str]:
     parts = [table_text("[sky]", sky)]
     for sun in high[:1]:
         scene.notes.append(spoken(sun, scene.lumens_per_watt))
+        if sun.angle > WIDEST_SUN:
+            scene.notes.append(
+                f"approximated: {sun.name} has a disc of {WIDEST_SUN:g} degrees instead of {sun.angle:.4g}, with the "
+                "same irradiance"
+            )
         table = {
             "direction": [-c for c in sun.aim],
             "irradiance": [float(p) for p in watts(sun)],
-            "angle": max(float(sun.angle), 0.01),
+            "angle": min(max(float(sun.angle), 0.01), WIDEST_SUN),
         }
         parts.append(table_text("[sky.sun]", table))
     for kind, present in (("sky", sky["kind"] != "none"), ("sun", bool(high))):

@@ -1,7 +1,7 @@
 """Values as text of a TOML file."""
 
 import json
-from typing import Any, Dict, List, Mapping, Tuple
+from typing import Any, Dict, List, Mapping, Set
 
 
 def quoted(text: str) -> str:
@@ -31,16 +31,18 @@ def table_text(head: str, table: Mapping[str, Any]) -> str:
 
 def plain_names(names: List[str]) -> Dict[int, str]:
     """Names without what patterns of channels read otherwise (`* ? [ ] \\`), no two alike, by their place."""
-    taken: Dict[str, int] = {}
+    taken: Set[str] = set()
+    counts: Dict[str, int] = {}  # so that equal names do not try all numbers again
     result: Dict[int, str] = {}
     for place, name in enumerate(names):
         plain = "".join("_" if c in "*?[]\\" or not c.isprintable() else c for c in name).strip() or "unnamed"
         plain = _cut(plain, 180)
-        unique, count = plain, 1
+        unique, count = plain, counts.get(plain, 1)
         while unique in taken:
             count += 1
             unique = f"{plain} {count}"
-        taken[unique] = place
+        taken.add(unique)
+        counts[plain] = count
         result[place] = unique
     return result
 
