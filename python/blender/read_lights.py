@@ -11,7 +11,7 @@ from mathutils import Matrix, Vector
 from .logic.cameras import Camera
 from .logic.lights import Light
 from .logic.scene_folder import World
-from .read_materials import Pictures, node_tree
+from .read_materials import Pictures, node_tree, output_of, source_of
 
 PHOTOMETRY = "lightwell_ies"
 """Custom property of a light: a photometric file, .ies or .ldt, with Blender's // for the file's folder."""
@@ -26,19 +26,24 @@ def read_light(
     if data.energy < 0.0:
         notes.append(f"left out: {name} has negative watts")
         return None
+    if getattr(getattr(data, "cycles", None), "is_portal", False) and data.type == "AREA":
+        notes.append(f"left out: {name} is a portal, which guides Cycles' rays and gives no light")
+        return None
     axes = [Vector(matrix.col[k][:3]) for k in range(3)]
-    if data.type == "AREA" and min(axes[0].length, axes[1].length) == 0.0:
-        notes.append(f"left out: {name} has a scale of 0")
+    details = _details(data, axes, metres)
+    if data.type == "AREA" and min(details["size"]) == 0.0:
+        notes.append(f"left out: {name} has a size or scale of 0")
         return None
     unit = [axis.normalized() for axis in axes]
-    details = _details(data, axes, metres)
+    if unit[0].cross(unit[1]).dot(unit[2]) < 0.0:
+        unit[0] = -unit[0]  # mirrored; Cycles' lights shine along -z of their object all the same
     photometry, factor = _photometry(data, name, files, notes)
-    _say_left_out(data, name, notes)
+    _say_left_out(data, name, axes, notes)
     return Light(
         name=name,
         kind=data.type,
         energy=float(data.energy),
-        colour=_colour(data),
+        colour=tuple(a * b for a, b in zip(_colour(data), _node_colour(data, name, notes))),
         position=tuple(metres * c for c in matrix.translation),
         x_axis=tuple(unit[0]),
         y_axis=tuple(unit[1]),
@@ -71,7 +76,31 @@ def _colour(data: bpy.types.Light) -> Tuple[float, float, float]:
     return tuple(max(c, 0.0) for c in colour)
 
 
-def _say_left_out(data: bpy.types.Light, name: str, notes: List[str]) -> None:
+def _node_colour(data: bpy.types.Light, name: str, notes: List[str]) -> Tuple[float, float, float]:
+    """Strength times colour of the light's emission node, by which Cycles multiplies; 1 without nodes."""
+    if not (data.use_nodes and data.node_tree) or _photometry_path(data) or _ies_node(data):
+        return (1.0, 1.0, 1.0)
+    output = output_of(data.node_tree)
+    node = source_of(output.inputs["Surface"]) if output else None
+    if node is None:
+        notes.append(f"left out: {name} has nodes and nothing at their output, so it gives no light")
+        return (0.0, 0.0, 0.0)
+    if node.type != "EMISSION":
+        return (1.0, 1.0, 1.0)  # named in the notes
+    linked = [socket.name for socket in node.inputs if socket.name in ("Color", "Strength") and socket.is_linked]
+    if linked:
+        notes.append(
+            f"approximated: what is linked to {' and '.join(linked)} of the emission of {name} counts as 1"
+        )
+    strength = 1.0 if "Strength" in linked else float(node.inputs["Strength"].default_value)
+    colour = (1.0,) * 3 if "Color" in linked else node.inputs["Color"].default_value[:3]
+    return tuple(max(strength * float(c), 0.0) for c in colour)
+
+
+def _say_left_out(data: bpy.types.Light, name: str, axes: List[Vector], notes: List[str]) -> None:
+    lengths = [axis.length for axis in axes]
+    if data.type == "SPOT" and max(lengths) - min(lengths) > 1e-3 * max(lengths):
+        notes.append(f"approximated: {name} is scaled unevenly; its cone is round here, and an ellipse in Cycles")
     if data.type in ("POINT", "SPOT") and data.shadow_soft_size > 0.0:
         notes.append(f"approximated: {name} is a point, without its radius, so its shadows are sharp")
     if data.use_nodes and data.node_tree and not _ies_node(data):
@@ -87,14 +116,29 @@ def _ies_node(data: bpy.types.Light) -> Optional[bpy.types.Node]:
     return next((node for node in data.node_tree.nodes if node.type == "TEX_IES"), None)
 
 
+def _photometry_path(data: bpy.types.Light) -> str:
+    return str(data.original.get(PHOTOMETRY, ""))  # evaluated copies may have earlier properties
+
+
+def _factor(data: bpy.types.Light, name: str, notes: List[str]) -> float:
+    given = data.original.get(FACTOR, 1.0)
+    try:
+        factor = float(given)
+    except (TypeError, ValueError):
+        factor = -1.0
+    if math.isfinite(factor) and factor >= 0.0:
+        return factor
+    notes.append(f"approximated: {FACTOR} of {name} is no number from 0 on ({given}); 1 counts")
+    return 1.0
+
+
 def _photometry(
     data: bpy.types.Light, name: str, files: Dict[str, bytes], notes: List[str]
 ) -> Tuple[Optional[str], float]:
     """The photometric file that a light names, kept below the scene's folder, and the factor of its light."""
-    own = data.original  # evaluated copies may have earlier properties
-    factor = float(own.get(FACTOR, 1.0))
+    factor = _factor(data, name, notes)
     node = _ies_node(data)
-    path = str(own.get(PHOTOMETRY, "")) or (node.filepath if node and node.mode == "EXTERNAL" else "")
+    path = _photometry_path(data) or (node.filepath if node and node.mode == "EXTERNAL" else "")
     if path:
         full = bpy.path.abspath(path, library=data.library)
         try:
@@ -128,7 +172,9 @@ def read_camera(
     depth = camera.dof
     focus = depth.focus_distance
     if depth.focus_object:
-        focus = abs((matrix.inverted() @ depth.focus_object.matrix_world.translation).z)
+        # Along the view, whatever the camera's scale.
+        way = depth.focus_object.matrix_world.translation - matrix.translation
+        focus = abs(way.dot(Vector(matrix.col[2][:3]).normalized()))
     return Camera(
         name=name,
         position=tuple(metres * c for c in matrix.translation),
@@ -168,7 +214,7 @@ def read_world(world: Optional[bpy.types.World], pictures: Pictures, notes: List
     if source.type != "TEX_ENVIRONMENT" or source.image is None:
         notes.append(f"left out: the world's node '{source.bl_label}'; use a colour or an environment picture")
         return World()
-    file = pictures.file_of(source.image)
+    file = pictures.file_of(source.image, is_light=True)
     if file is None or not file.endswith((".exr", ".hdr")) or source.projection != "EQUIRECTANGULAR":
         notes.append(
             f"left out: the world's picture {source.image.name}; an OpenEXR or HDR picture in longitude and "

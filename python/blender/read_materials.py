@@ -6,12 +6,17 @@ from dataclasses import replace
 from typing import Dict, List, Optional, Tuple, Union
 
 import bpy
+import numpy as np
 
+from .logic.colours import encoded
 from .logic.materials import Picture, Shader
 
 UNKNOWN_GREY = Shader(base=(0.8, 0.8, 0.8), roughness=1.0)  # as Cycles draws faces without a material
 
 WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "MIRROR": "mirror", "CLIP": "clamp"}
+
+OF_LIGHT = (".exr", ".hdr")
+"""Endings of pictures without an upper end, which are read as light alone."""
 
 LEFT_OUT_INPUTS = {
     "Subsurface Weight": "subsurface scattering",
@@ -26,18 +31,22 @@ class Pictures:
 
     def __init__(self, files: Dict[str, bytes]):
         self.files = files
-        self._known: Dict[str, Optional[str]] = {}
+        self._known: Dict[Tuple[str, bool], Optional[str]] = {}
 
-    def file_of(self, image: bpy.types.Image) -> Optional[str]:
-        """The file below the scene's folder; None if the image has no pixels, such as a missing file."""
-        if image.name_full not in self._known:
-            self._known[image.name_full] = self._keep(image)
-        return self._known[image.name_full]
+    def file_of(self, image: bpy.types.Image, is_light: bool = False) -> Optional[str]:
+        """The file below the scene's folder; None if the image has no pixels, such as a missing file.
 
-    def _keep(self, image: bpy.types.Image) -> Optional[str]:
+        is_light: the picture is one of light, not of reflectance or a mask, and may be OpenEXR or HDR.
+        """
+        key = (image.name_full, is_light)
+        if key not in self._known:
+            self._known[key] = self._keep(image, is_light)
+        return self._known[key]
+
+    def _keep(self, image: bpy.types.Image, is_light: bool) -> Optional[str]:
         data = _stored_bytes(image)
         ending = _ending(data)
-        if ending is None:
+        if ending is None or ending in OF_LIGHT and not is_light:
             data, ending = _as_png(image), ".png"
         if data is None:
             return None
@@ -68,12 +77,28 @@ def _ending(data: Optional[bytes]) -> Optional[str]:
     return next((ending for start, ending in starts.items() if data.startswith(start)), None)
 
 
+def is_black(image: bpy.types.Image) -> bool:
+    """True if no pixel has light; the program refuses a channel of a surface that does not shine."""
+    values = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(values)
+    return image.channels > 0 and not (values.reshape(-1, image.channels)[:, :3] > 0.0).any()
+
+
 def _as_png(image: bpy.types.Image) -> Optional[bytes]:
     if image.source not in ("FILE", "GENERATED") or not image.has_data and not image.size[0]:
         return None
+    width, height = image.size
+    values = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(values)
+    if width * height == 0 or len(values) != width * height * image.channels:
+        return None
+    rgba = _four_channels(values.reshape(-1, image.channels))
+    if image.is_float:  # linear, where the pixels of other images are those of the file
+        rgba[:, :3] = encoded(rgba[:, :3])
     path = os.path.join(bpy.app.tempdir or bpy.utils.resource_path("USER"), "lightwell-picture.png")
-    copy = image.copy()
+    copy = bpy.data.images.new("lightwell-picture", width, height, alpha=True)
     try:
+        copy.pixels.foreach_set(rgba.ravel())
         copy.file_format = "PNG"
         copy.save(filepath=path)
         with open(path, "rb") as file:
@@ -86,13 +111,23 @@ def _as_png(image: bpy.types.Image) -> Optional[bytes]:
             os.remove(path)
 
 
+def _four_channels(values: np.ndarray) -> np.ndarray:
+    rgba = np.ones((len(values), 4), np.float32)
+    count = values.shape[1]
+    if count >= 3:
+        rgba[:, :count] = values[:, :4]
+    else:
+        rgba[:, :3] = values[:, :1]
+    return rgba
+
+
 def read_material(material: Optional[bpy.types.Material], pictures: Pictures) -> Shader:
     """The material as the solver knows it."""
     if material is None:
         return replace(UNKNOWN_GREY, left_out=("faces without a material have a reflectance of 0.8",))
     tree = node_tree(material)
-    output = _output(tree) if tree else None
-    surface = _source(output.inputs["Surface"]) if output else None
+    output = output_of(tree) if tree else None
+    surface = source_of(output.inputs["Surface"]) if output else None
     if surface is None:
         return _viewport(material, "no surface shader; the viewport's colour")
     reader = READERS.get(surface.type)
@@ -108,7 +143,8 @@ def node_tree(data: Union[bpy.types.Material, bpy.types.World]) -> Optional[bpy.
     return data.node_tree if bpy.app.version >= (5, 0, 0) or data.use_nodes else None
 
 
-def _output(tree: bpy.types.NodeTree) -> Optional[bpy.types.Node]:
+def output_of(tree: bpy.types.NodeTree) -> Optional[bpy.types.Node]:
+    """The output that Cycles takes."""
     for target in ("CYCLES", "ALL"):
         output = tree.get_output_node(target)
         if output:
@@ -121,7 +157,7 @@ def _viewport(material: bpy.types.Material, why: str) -> Shader:
     return Shader(base=colour, roughness=1.0, left_out=(why,))
 
 
-def _source(socket: bpy.types.NodeSocket) -> Optional[bpy.types.Node]:
+def source_of(socket: bpy.types.NodeSocket) -> Optional[bpy.types.Node]:
     """The node that feeds a socket, past reroutes."""
     while socket.is_linked and socket.links:
         node = socket.links[0].from_node
@@ -144,7 +180,7 @@ class _Inputs:
         socket = self.node.inputs.get(name)
         if socket is None:
             return default
-        source = _source(socket)
+        source = source_of(socket)
         if source is not None and source.type == "VALUE":
             return float(source.outputs[0].default_value)
         if source is not None:
@@ -156,14 +192,16 @@ class _Inputs:
         socket = self.node.inputs.get(name)
         if socket is None:
             return (0.0, 0.0, 0.0), None
-        source = _source(socket)
+        source = source_of(socket)
         own = tuple(float(c) for c in socket.default_value[:3])
         if source is None:
             return own, None
         if source.type == "RGB":
             return tuple(float(c) for c in source.outputs[0].default_value[:3]), None
         if source.type == "TEX_IMAGE":
-            picture = self._picture(source)
+            picture = self._picture(source, self._is_light(name))
+            if picture and self._is_light(name) and is_black(source.image):
+                return (0.0, 0.0, 0.0), None
             if picture:
                 return (1.0, 1.0, 1.0), picture
             self.left_out.append("pictures that are missing; a grey of 0.5")
@@ -171,21 +209,24 @@ class _Inputs:
         self.left_out.append(f"node '{source.bl_label}' of {name.lower()}; the viewport's colour")
         return tuple(self.material.diffuse_color[:3]), None
 
+    def _is_light(self, name: str) -> bool:
+        return name == "Emission Color" or self.node.type == "EMISSION"
+
     def alpha_picture(self, name: str) -> Optional[Picture]:
         """The picture whose alpha is linked to a socket."""
         socket = self.node.inputs.get(name)
-        source = _source(socket) if socket else None
+        source = source_of(socket) if socket else None
         if source is None or source.type != "TEX_IMAGE" or socket.links[0].from_socket.name != "Alpha":
             return None
         return self._picture(source)
 
-    def _picture(self, node: bpy.types.Node) -> Optional[Picture]:
+    def _picture(self, node: bpy.types.Node, is_light: bool = False) -> Optional[Picture]:
         if node.image is None:
             return None
-        file = self.pictures.file_of(node.image)
+        file = self.pictures.file_of(node.image, is_light)
         if file is None:
             return None
-        vector = _source(node.inputs["Vector"])
+        vector = source_of(node.inputs["Vector"])
         if vector is not None and vector.type not in ("UVMAP", "TEX_COORD"):
             self.left_out.append(f"node '{vector.bl_label}' of a picture's place")
         elif vector is not None and vector.type == "TEX_COORD":

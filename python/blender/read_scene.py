@@ -45,6 +45,8 @@ class _Reader:
         self.pictures = Pictures(self.scene.files)
         self.left_out: Dict[str, List[str]] = {}
         self.seen: Set[str] = set()
+        self.rendered = rendered_objects(depsgraph.view_layer.layer_collection)
+        self.rendered_within: Dict[str, Set[str]] = {}
         settings = source.unit_settings
         self.metres = metres_per_unit(settings.system, settings.scale_length)
         if self.metres != 1.0:
@@ -56,7 +58,7 @@ class _Reader:
         if not instance.show_self or found.original.get(OWN) or (parent and parent.original.get(OWN)):
             return
         self.seen.add(found.name)
-        if found.original.hide_render or (parent and parent.original.hide_render):
+        if self._is_hidden(found.original, parent.original if parent else None):
             self._leave_out("objects hidden in renders", found.name)
         elif found.type == "LIGHT":
             self._take_light(instance)
@@ -66,6 +68,19 @@ class _Reader:
             self._take_faces(instance)
         elif found.type not in WITHOUT_LIGHT | AS_INSTANCES:
             self._leave_out(f"objects of the kind {found.type.lower()}", found.name)
+
+    def _is_hidden(self, found: bpy.types.Object, parent: Optional[bpy.types.Object]) -> bool:
+        """True if renders hide the object, or what it is an instance of."""
+        if found.hide_render or parent and parent.hide_render:
+            return True
+        if (parent or found).name_full not in self.rendered:
+            return True
+        library = parent.instance_collection if parent and parent.instance_type == "COLLECTION" else None
+        if library is None:
+            return False
+        if library.name_full not in self.rendered_within:
+            self.rendered_within[library.name_full] = rendered_in(library)
+        return found.name_full not in self.rendered_within[library.name_full]
 
     def say_left_out(self) -> None:
         for found in self.source.objects:
@@ -85,9 +100,6 @@ class _Reader:
             found.data, found.name, instance.matrix_world, self.metres, scene.files, scene.notes
         )
         if light is None:
-            return
-        if light.energy == 0.0 and not light.photometry:
-            self._leave_out("lights of 0 W", found.name)
             return
         scene.lights.append(light)
         scene.light_collections.append(_collection(found.original))
@@ -139,6 +151,28 @@ class _Reader:
         if name not in self.scene.materials:
             self.scene.materials[name] = read_material(material, self.pictures)
         return name
+
+
+def rendered_objects(layer: bpy.types.LayerCollection) -> Set[str]:
+    """Names of the objects to which a path of collections leads that are not excluded or hidden in renders."""
+    if layer.collection.hide_render:
+        return set()
+    found = set() if layer.exclude else {one.name_full for one in layer.collection.objects}
+    return found.union(*(rendered_objects(child) for child in layer.children))
+
+
+def rendered_in(collection: bpy.types.Collection, depth: int = 8) -> Set[str]:
+    """Names of the objects of a collection that its instances render, those of instances within it included."""
+    if collection.hide_render or depth == 0:  # Blender follows instances no deeper, so loops end
+        return set()
+    found = {one.name_full for one in collection.objects}
+    within = [
+        one.instance_collection
+        for one in collection.objects
+        if one.instance_type == "COLLECTION" and one.instance_collection and not one.hide_render
+    ]
+    nested = (rendered_in(child, depth) for child in collection.children)
+    return found.union(*nested, *(rendered_in(child, depth - 1) for child in within))
 
 
 def _collection(found: bpy.types.Object) -> str:

@@ -76,9 +76,10 @@ class Lights(unittest.TestCase):
                 with self.subTest(cone=cone, blend=blend):
                     self.check_flux(spot, 683 * 2 * math.pi * share, 683.0)
 
-    def test_lights_without_extent_are_as_normalized_in_cycles(self):
-        for light in (Light("p", "POINT", 5.0, normalized=False), Light("s", "SUN", 5.0, normalized=False, angle=0.0)):
-            self.assertEqual(lights.watts(light), (5.0, 5.0, 5.0))
+    def test_lights_without_extent_shine_as_in_cycles(self):
+        # The same numbers in Cycles: test_blender_cycles.py.
+        self.assertEqual(lights.watts(Light("p", "POINT", 5.0, normalized=False)), (20.0, 20.0, 20.0))
+        self.assertEqual(lights.watts(Light("s", "SUN", 5.0, normalized=False, angle=0.0)), (5.0, 5.0, 5.0))
 
     def test_narrowed_area_keeps_its_flux(self):
         area = Light("a", "AREA", 2.0, spread=80.0, size=(0.1, 0.1))

@@ -87,6 +87,12 @@ def linear(srgb: np.ndarray) -> np.ndarray:
     return np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
 
 
+def encoded(values: np.ndarray) -> np.ndarray:
+    """sRGB, 0 to 1, of linear values (IEC 61966-2-1)."""
+    inside = np.clip(np.nan_to_num(values), 0.0, 1.0)
+    return np.where(inside <= 0.0031308, 12.92 * inside, 1.055 * inside ** (1 / 2.4) - 0.055)
+
+
 def lux_text(lux: float) -> str:
     """Three digits and the unit."""
     if lux >= 1000.0:

@@ -26,8 +26,8 @@ class Light:
     kind: str
     """"POINT", "SPOT", "AREA" or "SUN"."""
     energy: float
-    """W; of a sun W/m^2. Without `normalized`, W for each m^2 of the light's surface, times pi for a sun; a point
-    without a radius and a sun without a disc are as with `normalized`, as in Cycles."""
+    """W; of a sun W/m^2. Without `normalized`, W for each m^2 of the light's surface, times pi for a sun. As in Cycles,
+    a sun without a disc is then as with `normalized`, and a point without a radius 4 times as bright."""
     colour: Tuple[float, float, float] = (1.0, 1.0, 1.0)
     """Factors of red, green and blue, those of a colour temperature included."""
     position: Tuple[float, float, float] = (0.0, 0.0, 0.0)
@@ -58,17 +58,16 @@ def watts(light: Light) -> Tuple[float, float, float]:
     A spot has the flux that it would have without its cone.
     """
     power = light.energy * 2.0**light.exposure
-    surface = _surface(light)
-    if not light.normalized and (surface > 0.0 or light.kind == "AREA"):
-        power *= surface
+    if not light.normalized:
+        power *= _surface(light)
     return tuple(power * c for c in light.colour)
 
 
 def _surface(light: Light) -> float:
     if light.kind == "SUN":
-        return math.pi * math.radians(light.angle / 2) ** 2
+        return math.pi * math.radians(light.angle / 2) ** 2 if light.angle > 0.0 else 1.0
     if light.kind != "AREA":
-        return 4 * math.pi * light.radius**2
+        return 4 * math.pi * light.radius**2 if light.radius > 0.0 else 4.0
     return light.size[0] * light.size[1] * (1.0 if light.shape in ("SQUARE", "RECTANGLE") else math.pi / 4)
 
 

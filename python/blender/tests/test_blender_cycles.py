@@ -102,6 +102,34 @@ class Cycles(unittest.TestCase):
         light.rotation_euler.x = math.radians(5)
         self.agree(SAMPLED)
 
+    def test_mirrored_area_shines_where_cycles_does(self):
+        scales = (-1.0, 1.0, 1.0), (1.0, 1.0, -1.0)
+        for scale in scales:
+            self.setUp()
+            light = add_light("a", "AREA", (0.3, 0.1, 0.8), 100.0, shape="RECTANGLE", size=0.6, size_y=0.3)
+            light.rotation_euler = (0.2, 0.3, 0.4) if scale[2] > 0 else (math.pi, 0.3, 0.4)
+            light.scale = scale
+            self.agree(SAMPLED)
+
+    def test_portal_gives_no_light(self):
+        add_light("s", "POINT", (0.3, 0.2, 1), 100.0, shadow_soft_size=0.0)
+        add_light("portal", "AREA", (-0.2, 0, 0.8), 100.0, size=0.3).data.cycles.is_portal = True
+        self.agree(EXACT)
+
+    def test_emission_node_multiplies_the_light(self):
+        data = add_light("s", "POINT", (0.3, 0.2, 1), 100.0, shadow_soft_size=0.0).data
+        data.use_nodes = True
+        node = next(node for node in data.node_tree.nodes if node.type == "EMISSION")
+        node.inputs["Strength"].default_value = 3.0
+        node.inputs["Color"].default_value = (0.5, 1.0, 0.25, 1.0)
+        self.agree(EXACT)
+
+    def test_lights_of_watts_a_square_metre_without_extent(self):
+        add_light("s", "POINT", (0.3, 0.2, 1), 100.0, shadow_soft_size=0.0, normalize=False)
+        add_light("spot", "SPOT", (0, 0, 2), 50.0, shadow_soft_size=0.0, normalize=False)
+        add_light("sun", "SUN", (0, 0, 1), 2.0, angle=0.0, normalize=False).rotation_euler.x = 0.5
+        self.agree(EXACT)
+
     def test_surface_shines_on_both_sides(self):
         points = [(-0.3, -0.2, 0.7), (-0.3, 0.2, 0.9), (0.3, 0.2, 0.9), (0.3, -0.2, 0.7)]
         for faces in ([(0, 1, 2, 3)], [(3, 2, 1, 0)]):
