@@ -10,6 +10,7 @@ import sys
 import zipfile
 
 HERE = os.path.dirname(os.path.abspath(__file__))
+BEGIN_OF_TIME = (1980, 1, 1, 0, 0, 0)  # the same sources give the same file
 LEFT_OUT = {"tests", "__pycache__", "README.md", "build_zip.py"}
 
 
@@ -22,11 +23,19 @@ def build_zip(folder: str) -> str:
         for place, folders, names in os.walk(HERE):
             folders[:] = sorted(set(folders) - LEFT_OUT)
             for name in sorted(set(names) - LEFT_OUT):
-                full = os.path.join(place, name)
-                packed.write(full, os.path.relpath(full, HERE))
-        packed.write(os.path.join(HERE, "..", "..", "LICENSE"), "LICENSE")
+                if not name.endswith((".zip", ".part")):
+                    _pack(packed, os.path.join(place, name), os.path.relpath(os.path.join(place, name), HERE))
+        _pack(packed, os.path.join(HERE, "..", "..", "LICENSE"), "LICENSE")
     os.replace(path + ".part", path)
     return path
+
+
+def _pack(packed: zipfile.ZipFile, path: str, name: str) -> None:
+    entry = zipfile.ZipInfo(name, BEGIN_OF_TIME)
+    entry.compress_type = zipfile.ZIP_DEFLATED
+    entry.external_attr = 0o644 << 16
+    with open(path, "rb") as file:
+        packed.writestr(entry, file.read())
 
 
 if __name__ == "__main__":

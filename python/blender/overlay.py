@@ -14,6 +14,7 @@ from mathutils.bvhtree import BVHTree
 
 from . import show
 from .logic.colours import Scale, bilinear, false_colours, lux_text
+from .properties import undo_step
 
 WIDTH, HEIGHT, MARGIN = 18, 220, 28  # of the legend, in pixels at the usual size of the interface
 
@@ -157,6 +158,7 @@ class LIGHTWELL_OT_read(bpy.types.Operator):
         _redraw_views(context)
         if event.type == "LEFTMOUSE" and event.value == "PRESS" and hit:
             keep_reading(context.scene, hit)
+            undo_step("Keep Reading")
         return {"RUNNING_MODAL"} if event.type == "LEFTMOUSE" else {"PASS_THROUGH"}
 
     def _look(self, region, space, event):

@@ -3,7 +3,8 @@
 import bpy
 
 from . import show, solve
-from .logic.lights import luminous
+from .logic.lights import spoken
+from .read_lights import read_light
 
 
 class LIGHTWELL_PT_panel(bpy.types.Panel):
@@ -91,8 +92,9 @@ class LIGHTWELL_PT_scene(bpy.types.Panel):
         layout.prop(settings, "lumens_per_watt")
         found = context.object
         if found is not None and found.type == "LIGHT" and found.data.type != "SUN":
-            lumens = settings.lumens_per_watt * found.data.energy * luminous(found.data.color)
-            layout.label(text=f"{found.name}: {found.data.energy:.4g} W radiant are {lumens:.4g} lm")
+            light = read_light(found.data, found.name, found.matrix_world, show.metres_of(context.scene), {}, [])
+            said = spoken(light, settings.lumens_per_watt) if light else f"{found.name}: no light"
+            _wrapped(layout, said)
         layout.label(text="Watts here are light, not those on a lamp's box.")
         layout.prop(settings, "folder")
         layout.operator("lightwell.export", icon="EXPORT")

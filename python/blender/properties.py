@@ -32,7 +32,8 @@ class LightwellPreferences(bpy.types.AddonPreferences):
 def program(context: bpy.types.Context) -> str:
     """The path of the program. Raises ProgramError."""
     found = context.preferences.addons.get(__package__)
-    given = found.preferences.program if found else os.environ.get("LIGHTWELL_PROGRAM", "")
+    # Blender may keep the path of a file relative to the .blend file, with // in front.
+    given = bpy.path.abspath(found.preferences.program) if found else os.environ.get("LIGHTWELL_PROGRAM", "")
     return find_program(given)
 
 
@@ -132,8 +133,17 @@ class LightwellSettings(bpy.types.PropertyGroup):
         name="To", description="Lux of the last colour; 0: chosen by the light", min=0.0, update=_show
     )
     solution: StringProperty(name="Solution", description="Its file, relative to the .blend file")
+    solved: StringProperty(name="Solved", description="Identifies the exported scene that was solved")
     message: StringProperty(name="Message")
     channels: CollectionProperty(type=LightwellChannel)
+
+
+def undo_step(message: str) -> None:
+    """Makes what a timer or a click has changed a step of its own, so that undoing keeps to steps of the user."""
+    windows = bpy.context.window_manager.windows
+    if not bpy.app.background and len(windows):
+        with bpy.context.temp_override(window=bpy.context.window or windows[0]):
+            bpy.ops.ed.undo_push(message=message)
 
 
 def levels(settings: LightwellSettings) -> List[float]:

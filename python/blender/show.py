@@ -1,5 +1,6 @@
 """The light as an object: the elements of the solve, with lux and colours at their vertices."""
 
+import os
 from typing import Dict, Optional
 
 import bpy
@@ -14,16 +15,20 @@ from .read_scene import OWN
 NAME = "Lightwell light"
 MARK, CORNERS, WEIGHTS = "lightwell_reading", "lightwell_corners", "lightwell_weights"
 """Custom properties of a kept reading: its words, the vertices that it lies between, and their weights."""
+ENDS = "lightwell_scale"
+"""Custom property of the light's object: the ends of the scale that was chosen by the light."""
 LUX, LIGHT_COLOURS, LUX_COLOURS = "lux", "light", "false colours"
 
-_solutions: Dict[str, Solution] = {}  # by path; what is shown, for dimming
+_solutions: Dict[str, Solution] = {}  # by path; what is shown, for dimming; one at most
 
 
 def collection_of(scene: bpy.types.Scene, name: str) -> bpy.types.Collection:
-    """The scene's collection of that name."""
-    found = next((c for c in scene.collection.children if c.name.startswith(name)), None)
+    """The scene's collection that the add-on made under that name, or one that has the very name."""
+    children = list(scene.collection.children)
+    found = next((c for c in children if c.get(OWN) == name), None) or next((c for c in children if c.name == name), None)
     if found is None:
         found = bpy.data.collections.new(name)
+        found[OWN] = name  # Blender numbers equal names, as in a second scene
         scene.collection.children.link(found)
     return found
 
@@ -33,17 +38,24 @@ def light_object(scene: bpy.types.Scene) -> Optional[bpy.types.Object]:
     return next((found for found in scene.objects if found.get(OWN) == NAME), None)
 
 
+def path_of(settings) -> str:
+    """The file of the solution that is shown; empty if none is."""
+    return os.path.normpath(bpy.path.abspath(settings.solution)) if settings.solution else ""
+
+
 def solution_of(scene: bpy.types.Scene) -> Optional[Solution]:
     """The solution that is shown, read again after the .blend file was opened; None if it is gone."""
-    path = bpy.path.abspath(scene.lightwell.solution)
+    path = path_of(scene.lightwell)
     if not path:
         return None
     if path not in _solutions:
         try:
-            _solutions[path] = read_solution(path)
+            solution = read_solution(path)
         except SolutionError as error:
             scene.lightwell.message = str(error)[:400]
             return None
+        _solutions.clear()
+        _solutions[path] = solution
     return _solutions[path]
 
 
@@ -122,17 +134,16 @@ def _material() -> bpy.types.Material:
     return found
 
 
-def scale(scene: bpy.types.Scene, lux: Optional[np.ndarray] = None) -> Scale:
+def scale(scene: bpy.types.Scene) -> Scale:
     """The scale of the false colours: the one given, or one for the light."""
     settings = scene.lightwell
     if settings.high > settings.low:
         return Scale(settings.low, settings.high)
-    if lux is None:
-        found = light_object(scene)
-        if found is None:
-            return Scale(0.0, 1.0)
-        lux = vertex_lux(found.data)
-    return scale_of(lux)
+    found = light_object(scene)
+    if found is None:
+        return Scale(0.0, 1.0)
+    # Every redraw asks for the scale, and finding it takes a sort of all vertices.
+    return Scale(*found[ENDS]) if ENDS in found else scale_of(vertex_lux(found.data))
 
 
 def vertex_lux(mesh: bpy.types.Mesh) -> np.ndarray:
@@ -156,7 +167,9 @@ def recolour(scene: bpy.types.Scene) -> None:
     mesh = found.data
     mesh.attributes[LUX].data.foreach_set("value", lux.astype(np.float32))
     _set_colours(mesh, LIGHT_COLOURS, light_colours(solution.light(levels)))
-    _set_colours(mesh, LUX_COLOURS, linear(false_colours(lux, scale(scene, lux))))
+    chosen = scale_of(lux)
+    found[ENDS] = [chosen.low, chosen.high]
+    _set_colours(mesh, LUX_COLOURS, linear(false_colours(lux, scale(scene))))
     mesh.attributes.active_color_name = LUX_COLOURS if settings.view == "LUX" else LIGHT_COLOURS
     mesh.attributes.render_color_index = mesh.color_attributes.find(mesh.attributes.active_color_name)
     mesh.update()

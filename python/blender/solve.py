@@ -5,6 +5,7 @@ A timer looks at the program, not a modal operator, which would hold up Blender'
 
 import os
 import re
+import shutil
 import time
 from typing import List, Optional
 
@@ -17,6 +18,9 @@ from .logic.scene_folder import (
     SOLUTION_FILE,
     SceneError,
     channel_arguments,
+    digest_of,
+    put_in_place,
+    stage_scene,
     write_scene,
 )
 from .logic.solution import SolutionError, read_solution
@@ -27,15 +31,30 @@ INTERVAL = 0.2  # seconds between two looks at the program
 
 
 class Run:
-    """The run that is under way: the job, the scene that it belongs to, and what to do at its end."""
+    """The run that is under way: the job, the scene that it belongs to, and what to do at its end.
+
+    Folders are those of the run's begin: meanwhile the file may be saved under another name.
+    """
 
     current: Optional["Run"] = None
 
-    def __init__(self, job: Job, scene: bpy.types.Scene, finish):
+    def __init__(self, job: Job, scene: bpy.types.Scene, folder: str, finish, scratch: str = ""):
         self.job = job
-        self.scene_name = scene.name
+        self.scene_uid = scene.session_uid  # scenes may be renamed
+        self.folder = folder
         self.finish = finish
+        self.scratch = scratch
+        """A folder that goes when the run ends."""
         self.begin = time.monotonic()
+
+    def scene(self) -> Optional[bpy.types.Scene]:
+        """The scene of the run; None if it was removed."""
+        return next((scene for scene in bpy.data.scenes if scene.session_uid == self.scene_uid), None)
+
+    def clean(self) -> None:
+        """Removes what the run leaves besides its result."""
+        if self.scratch:
+            shutil.rmtree(self.scratch, ignore_errors=True)
 
     def words(self) -> str:
         seconds = time.monotonic() - self.begin
@@ -54,8 +73,8 @@ def folder_of(scene: bpy.types.Scene) -> str:
     return os.path.join(bpy.app.tempdir, f"lightwell-{plain}")
 
 
-def export(context: bpy.types.Context):
-    """Writes the scene; returns it and its folder. Raises SceneError."""
+def export(context: bpy.types.Context, write=write_scene):
+    """Writes the scene; returns it, its folder, and what `write` returns of it. Raises SceneError."""
     scene = read_scene(context)
     folder = folder_of(context.scene)
     if not bpy.data.filepath:
@@ -64,11 +83,11 @@ def export(context: bpy.types.Context):
             "Blender ends"
         )
     try:
-        write_scene(scene, folder)
+        written = write(scene, folder)
     except OSError as error:
         raise SceneError(f"{folder} cannot be written ({error.strerror}); choose another folder") from error
     write_notes(scene.notes)
-    return scene, folder
+    return scene, folder, written
 
 
 def write_notes(notes: List[str], append: bool = False) -> None:
@@ -90,15 +109,14 @@ def solve_arguments(program: str, settings, folder: str, emitters) -> List[str]:
     return arguments + channel_arguments(emitters, settings.group)
 
 
-def start(context: bpy.types.Context, job: Job, finish) -> Run:
-    """Lets a timer watch the job; in background mode waits for its end."""
-    Run.current = Run(job, context.scene, finish)
+def start(run: Run) -> None:
+    """Lets a timer watch the run's job; in background mode waits for its end."""
+    Run.current = run
     if bpy.app.background:
-        job.wait()
+        run.job.wait()
         _look()
-    else:
+    elif not bpy.app.timers.is_registered(_look):
         bpy.app.timers.register(_look, first_interval=INTERVAL)
-    return Run.current
 
 
 def _look() -> Optional[float]:
@@ -111,18 +129,32 @@ def _look() -> Optional[float]:
     if code is None:
         return INTERVAL
     Run.current = None
-    scene = bpy.data.scenes.get(run.scene_name)
+    try:
+        _end(run, code)
+    finally:
+        run.clean()
+    _redraw()
+    return INTERVAL if Run.current else None  # a run may begin another one
+
+
+def _end(run: Run, code: int) -> None:
+    scene = run.scene()
     if scene is None:
-        return None
+        write_notes(["the light was not taken: its scene was removed during the solve"], append=True)
+        return
+    if run.scratch:  # the folder goes, and its name says nothing
+        run.job.notes = [note.replace(run.scratch + os.sep, "") for note in run.job.notes]
     failure = run.job.failure(code)
     scene.lightwell.message = failure[:400]
     if failure:
         print(f"Lightwell: {failure}")
     else:
-        run.finish(scene, run, code)
+        try:
+            run.finish(scene, run, code)
+        except (SceneError, ProgramError, OSError) as error:
+            scene.lightwell.message = str(error)[:400]
+            print(f"Lightwell: {error}")
     write_notes(run.job.notes, append=True)
-    _redraw()
-    return None
 
 
 def _redraw() -> None:
@@ -134,12 +166,14 @@ def _redraw() -> None:
 
 def take_light(scene: bpy.types.Scene, run: Run, code: int) -> None:
     """Shows the light of a finished solve."""
-    path = os.path.join(folder_of(scene), SOLUTION_FILE)
+    path = os.path.join(run.folder, SOLUTION_FILE)
     try:
-        solution = read_solution(path)
+        solution = read_solution(os.path.join(run.scratch, SOLUTION_FILE))
     except SolutionError as error:
-        scene.lightwell.message = str(error)
+        scene.lightwell.message = str(error)[:400]
         return
+    put_in_place(run.scratch, run.folder)
+    scene.lightwell.solved = digest_of(run.folder)
     show.show(scene, path, solution)
     overlay.refresh_readings(scene)
     seconds = time.monotonic() - run.begin
@@ -149,6 +183,7 @@ def take_light(scene: bpy.types.Scene, run: Run, code: int) -> None:
     if code == 4 and scene.lightwell.effort == "ACCURACY":
         said += "; short of the accuracy that was asked for"
     scene.lightwell.message = said
+    properties.undo_step("Lightwell Solve")
 
 
 class LIGHTWELL_OT_export(bpy.types.Operator):
@@ -157,9 +192,13 @@ class LIGHTWELL_OT_export(bpy.types.Operator):
     bl_idname = "lightwell.export"
     bl_label = "Export Scene"
 
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return Run.current is None
+
     def execute(self, context: bpy.types.Context):
         try:
-            scene, folder = export(context)
+            scene, folder, _ = export(context)
         except SceneError as error:
             self.report({"ERROR"}, f"Lightwell: {error}")
             return {"CANCELLED"}
@@ -181,15 +220,29 @@ class LIGHTWELL_OT_solve(bpy.types.Operator):
     def execute(self, context: bpy.types.Context):
         settings = context.scene.lightwell
         try:
-            program = properties.program(context)
-            scene, folder = export(context)
-            arguments = solve_arguments(program, settings, folder, scene.emitters)
-            start(context, Job(arguments, folder), take_light)
+            begin_solve(context)
         except (SceneError, ProgramError) as error:
             settings.message = str(error)[:400]
             self.report({"ERROR"}, f"Lightwell: {error}")
             return {"CANCELLED"}
         return {"FINISHED"}
+
+
+def begin_solve(context: bpy.types.Context) -> Run:
+    """Exports the scene beside the earlier one, which it replaces together with its light, and solves it.
+
+    Raises SceneError and ProgramError.
+    """
+    program = properties.program(context)
+    scene, folder, scratch = export(context, stage_scene)
+    try:
+        arguments = solve_arguments(program, context.scene.lightwell, scratch, scene.emitters)
+        run = Run(Job(arguments, scratch), context.scene, folder, take_light, scratch)
+    except (SceneError, ProgramError):
+        shutil.rmtree(scratch, ignore_errors=True)
+        raise
+    start(run)
+    return run
 
 
 class LIGHTWELL_OT_cancel(bpy.types.Operator):
@@ -214,6 +267,7 @@ CLASSES = (LIGHTWELL_OT_export, LIGHTWELL_OT_solve, LIGHTWELL_OT_cancel)
 def _end_run(*_: object) -> None:
     if Run.current is not None:
         Run.current.job.kill()
+        Run.current.clean()
         Run.current = None
 
 

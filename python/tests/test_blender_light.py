@@ -2,6 +2,7 @@
 
 import os
 import signal
+import subprocess
 import sys
 import time
 import unittest
@@ -15,7 +16,7 @@ import lightwell as lw
 sys.path.insert(0, os.path.join(SOURCE, "python", "blender"))
 
 from logic import colours, program  # noqa: E402
-from logic.solution import SolutionError, read_solution  # noqa: E402
+from logic.solution import SolutionError, dark_limit, element_areas, read_solution  # noqa: E402
 
 
 class Solved(unittest.TestCase):
@@ -62,6 +63,17 @@ class Solved(unittest.TestCase):
         # B = M + rho E, where M is hundreds of times as large at lamps.
         pair = self.pairs(self.light.light(levels), relit, relit.radiosity)
         np.testing.assert_allclose(*pair, rtol=1e-6, atol=1e-9)
+
+    def test_bright_lamps_hide_no_lit_walls(self):
+        # A wall of 1 m^2 in 1 lx beside 10 000 elements of lamps of 1 mm^2 in 1e5 lx, and a side in 1e-5 lx.
+        lux = np.array([1.0] + [1e5] * 10000 + [1e-5, 0.0])
+        areas = np.array([1.0] + [1e-6] * 10000 + [1.0, 1.0])
+        self.assertEqual((lux <= dark_limit(lux, areas)).tolist(), [False] * 10001 + [True, True])
+
+    def test_areas_of_elements(self):
+        points = np.array([[0, 0, 1], [2, 0, 1], [2, 3, 1], [0, 3, 1], [2, 0, 5]], float)
+        corners, first = np.array([0, 1, 2, 3, 1, 4, 2]), np.array([0, 4, 7])
+        np.testing.assert_allclose(element_areas(points, corners, first), [6.0, 6.0])
 
     def test_files_that_are_no_solution(self):
         path = os.path.join(self.folder, "bad.vtp")
@@ -136,10 +148,41 @@ class Program(unittest.TestCase):
         os.kill(job._process.pid, signal.SIGKILL)
         self.assertIn("ended by signal 9 of the system", job.failure(job.wait()))
 
+    def test_run_ends_with_the_process_that_began_it(self):
+        folder = scratch(self)
+        code = (
+            "import os, sys; sys.path.insert(0, sys.argv[1]); from logic import program; "
+            "job = program.Job(sys.argv[2:], '.'); print(job._process.pid, flush=True); os.abort()"
+        )
+        arguments = [PROGRAM, "solve", ROOM, "-o", "s.vtp", "--accuracy", "0.1%"]
+        add_on = os.path.join(SOURCE, "python", "blender")
+        crashed = subprocess.run(
+            [sys.executable, "-c", code, add_on, *arguments], cwd=folder, capture_output=True, text=True, check=False
+        )
+        pid = int(crashed.stdout)
+        for _ in range(500):  # the solve itself takes minutes
+            if not _is_alive(pid):
+                return
+            time.sleep(0.01)
+        os.kill(pid, signal.SIGKILL)
+        self.fail("the program outlived the process that began it")
+
+    def test_folder_that_is_missing(self):
+        with self.assertRaisesRegex(program.ProgramError, "the folder /nowhere is missing"):
+            program.Job([PROGRAM, "--version"], "/nowhere")
+
     def test_error_of_the_program_is_the_message(self):
         folder = scratch(self)
         job = program.Job([PROGRAM, "solve", "missing.toml", "-o", "s.vtp"], folder)
         self.assertIn("missing.toml", job.failure(job.wait()))
+
+
+def _is_alive(pid):
+    try:
+        with open(f"/proc/{pid}/stat", encoding="latin-1") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
 
 
 if __name__ == "__main__":

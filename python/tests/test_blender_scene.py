@@ -3,8 +3,11 @@
 import json
 import math
 import os
+import shutil
+import subprocess
 import sys
 import unittest
+import zipfile
 
 import numpy as np
 from scenes import SOURCE, run_program, scratch
@@ -288,6 +291,30 @@ class Folder(unittest.TestCase):
     def test_too_many_channels(self):
         with self.assertRaisesRegex(scene_folder.SceneError, "at most 256 channels"):
             scene_folder.channel_arguments({f"lamp {i}": "" for i in range(257)}, "LIGHT")
+
+    def test_zip_has_the_same_bytes_again_and_no_earlier_zip(self):
+        folder = scratch(self)
+        whole = os.path.join(folder, "python", "blender")
+        shutil.copytree(os.path.join(SOURCE, "python", "blender"), whole, ignore=shutil.ignore_patterns("__pycache__"))
+        shutil.copy(os.path.join(SOURCE, "LICENSE"), folder)
+        zips = []
+        for _ in range(2):
+            subprocess.run([sys.executable, "build_zip.py"], cwd=whole, check=True, capture_output=True)
+            path = next(os.path.join(whole, name) for name in os.listdir(whole) if name.endswith(".zip"))
+            with open(path, "rb") as file:
+                zips.append(file.read())
+            for place, _, names in os.walk(whole):
+                for name in names:
+                    os.utime(os.path.join(place, name), (1e9, 1e9))
+        self.assertEqual(zips[0], zips[1])
+        with zipfile.ZipFile(path) as packed:
+            names = packed.namelist()
+        self.assertIn("LICENSE", names)
+        self.assertFalse([name for name in names if name.endswith((".zip", ".part")) or "test" in name])
+
+    def test_equal_names_are_numbered_at_once(self):
+        names = toml_text.plain_names(["lamp", "lamp 3", *["lamp"] * 20000])
+        self.assertEqual([names[k] for k in (2, 3, 20001)], ["lamp 2", "lamp 4", "lamp 20002"])
 
     def test_text(self):
         self.assertEqual(toml_text.value_text({"a": [1, 0.5, True]}), "{ a = [1, 0.5, true] }")

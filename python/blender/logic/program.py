@@ -5,14 +5,16 @@ any moment, and cannot take Blender down with it. The Python package would have 
 very Python that Blender brings.
 """
 
+import ctypes
 import os
 import queue
 import re
 import shutil
 import signal
 import subprocess
+import sys
 import threading
-from typing import List, Optional, Tuple
+from typing import Callable, List, Optional, Tuple
 
 VERSION = (0, 1)
 """Major and minor version of the program whose files the add-on reads."""
@@ -71,6 +73,8 @@ class Job:
         self.cancelled = False
         self._lines: "queue.Queue[Optional[str]]" = queue.Queue()
         self._ended = False
+        if not os.path.isdir(folder):
+            raise ProgramError(f"the folder {folder} is missing; solve again")
         own, other = _terminal()
         try:
             self._process = subprocess.Popen(
@@ -80,9 +84,12 @@ class Job:
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.PIPE if other is None else other,
                 start_new_session=os.name == "posix",
+                preexec_fn=_end_with_parent(),
             )
-        except OSError as error:
-            raise ProgramError(f"{arguments[0]} does not start ({error.strerror})") from error
+        except (OSError, subprocess.SubprocessError) as error:
+            if own is not None:
+                os.close(own)
+            raise ProgramError(f"{arguments[0]} does not start ({getattr(error, 'strerror', error)})") from error
         finally:
             if other is not None:
                 os.close(other)
@@ -168,6 +175,18 @@ class Job:
 
 def _plain(line: bytes) -> str:
     return re.sub(r"\x1b\[[0-9;]*[A-Za-z]", "", line.decode("utf-8", "replace")).strip()
+
+
+def _end_with_parent() -> Optional[Callable[[], object]]:
+    """Lets the system end the program where Blender crashes (Linux, prctl(2)); None elsewhere."""
+    if not sys.platform.startswith("linux"):
+        return None
+    try:
+        call = ctypes.CDLL(None).prctl
+    except (OSError, AttributeError):
+        return None
+    set_death_signal = 1  # PR_SET_PDEATHSIG
+    return lambda: call(set_death_signal, int(signal.SIGTERM))
 
 
 def _terminal() -> Tuple[Optional[int], Optional[int]]:

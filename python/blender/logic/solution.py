@@ -13,8 +13,9 @@ TYPES = {
     "Int64": "<i8", "UInt64": "<u8", "Float32": "<f4", "Float64": "<f8", "String": "<u1",
 }  # fmt: skip
 
-DARK = 1e-3
-"""Share of the mean light below which an element is outside of rooms, within bodies or below walls."""
+DARK = 1e-4
+"""Share of the mean illuminance of what is lit below which an element is outside of rooms, within bodies or below
+walls; as `lightwell export` and the window."""
 SIDE_STEP = 0.0005  # metres between a side and its place where both sides are lit; as `lightwell export`
 
 
@@ -185,14 +186,36 @@ class _Light:
         return (self.fields["patch_emission"] * self.fields["patch_area"][:, None]).sum(axis=0)[None]
 
 
+def dark_limit(light: np.ndarray, areas: np.ndarray) -> float:
+    """The light, in the units given, of an element that is still dark. Means are by area: lamps have many small
+    elements in bright light, and little area."""
+    lit = light > 0.0
+    return DARK * float(np.average(light[lit], weights=areas[lit] + 1e-30)) if lit.any() else 0.0
+
+
+def element_areas(points: np.ndarray, corners: np.ndarray, first: np.ndarray) -> np.ndarray:
+    """(elements,) areas in the square of the unit of the points: half of the sum of crosses about the first corner."""
+    begin = points[np.repeat(corners[first[:-1]], np.diff(first))].astype(float)
+    following = np.arange(1, len(corners) + 1)
+    following[first[1:] - 1] = first[:-1]
+    crosses = np.cross(points[corners] - begin, points[corners[following]] - begin)
+    return 0.5 * np.linalg.norm(np.add.reduceat(crosses, first[:-1], axis=0), axis=1)
+
+
+def _largest(values: np.ndarray, solution: Solution) -> np.ndarray:
+    return np.maximum.reduceat(values[solution.corners], solution.first[:-1])
+
+
 def _shown(solution: Solution, twin: np.ndarray) -> Solution:
     """The sides that are lit or shine, so that one can look into a closed room from outside. Where both
     sides of one place are, each is moved a little along its normal."""
     sizes = np.diff(solution.first)
-    bright = (solution.irradiance.sum(axis=0) + solution.radiosity.sum(axis=0)).max(axis=1)
-    of_element = np.add.reduceat(bright[solution.corners], solution.first[:-1]) / sizes
-    lit = of_element[of_element > 1e-2 * DARK * np.mean(of_element)]
-    keep = of_element >= DARK * (np.mean(lit) if len(lit) else 0.0)
+    bands = solution.irradiance.sum(axis=0).max(axis=1)
+    limit = dark_limit(_largest(bands, solution), element_areas(solution.points, solution.corners, solution.first))
+    # Sides that shine are shown, even where no light falls.
+    keep = _largest(np.maximum(bands, solution.radiosity.sum(axis=0).max(axis=1)), solution) > limit
+    if not keep.any():
+        keep[:] = True
     both = keep & np.where(twin >= 0, keep[twin], False)
     moved = np.zeros(len(solution.points), bool)
     moved[solution.corners[np.repeat(both, sizes)]] = True

@@ -3,7 +3,6 @@
 import json
 import math
 import os
-import re
 import subprocess
 import sys
 import tempfile
@@ -62,6 +61,23 @@ def lux_at(scene, place):
 
 def notes():
     return bpy.data.texts[addon.solve.NOTES].as_string()
+
+
+class InTheBackground:
+    """Runs go on beside Blender, as they do where it has a window, until the test waits for the one under way."""
+
+    def __enter__(self):
+        self.start = addon.solve.start
+        addon.solve.start = lambda run: setattr(addon.solve.Run, "current", run)
+        return self
+
+    def wait(self):
+        addon.solve.Run.current.job.wait()
+        addon.solve._look()
+
+    def __exit__(self, *_):
+        addon.solve.start = self.start
+        addon.solve._end_run()
 
 
 class Room(unittest.TestCase):
@@ -292,6 +308,52 @@ class Room(unittest.TestCase):
         self.assertNotIn("left out", notes())  # models of the light are no part of the scene
 
 
+    def test_file_may_be_saved_and_its_scene_renamed_during_a_solve(self):
+        scene = cube_room()
+        before = addon.solve.folder_of(scene)
+        with InTheBackground() as later:
+            bpy.ops.lightwell.solve()
+            self.save()
+            scene.name = "renamed"
+            bpy.ops.scene.new(type="EMPTY")
+            scene.lightwell.folder = os.path.join(self.folder, "elsewhere")
+            later.wait()
+        self.assertRegex(scene.lightwell.message, r"^\d+ elements in")
+        self.assertEqual(addon.show.path_of(scene.lightwell), os.path.join(before, "solution.vtp"))
+        self.assertTrue(os.path.exists(os.path.join(before, "solution.vtp")))
+        self.assertGreater(lux_at(scene, (0.3, 0.2, 1.0)), 0.0)
+
+    def test_objects_of_the_user_stay_and_models_leave_nothing(self):
+        scene = cube_room()
+        mine = bpy.data.collections.new("Lightwell lightmaps of mine")
+        scene.collection.children.link(mine)
+        mine.objects.link(bpy.data.objects.new("mine", None))
+        self.save()
+        solve(scene)
+        bpy.ops.lightwell.lightmaps(size=64)
+        bpy.data.collections[addon.lightmaps.NAME].objects.link(bpy.data.objects.new("too", None))
+        rooms = (bpy.data.objects, bpy.data.meshes, bpy.data.materials, bpy.data.images)
+        counts = [len(room) for room in rooms]
+        bpy.ops.lightwell.lightmaps(size=64)
+        self.assertEqual([len(room) for room in rooms], counts)
+        self.assertEqual([found.name for found in mine.objects], ["mine"])
+        self.assertIn("too", scene.objects)
+
+    def test_model_comes_into_the_scene_of_its_run(self):
+        scene = cube_room()
+        self.save()
+        solve(scene)
+        scene.lightwell.channels[0].level = 0.5
+        with InTheBackground() as later:
+            bpy.ops.lightwell.lightmaps(size=64)
+            bpy.ops.scene.new(type="EMPTY")
+            later.wait()
+            later.wait()
+        self.assertIn("lightmaps in the collection", scene.lightwell.message)
+        self.assertTrue([found for found in scene.objects if found.get(addon.read_scene.OWN) == addon.lightmaps.NAME])
+        self.assertFalse(bpy.context.scene.objects)
+
+
 class Interface(unittest.TestCase):
     """What the mouse and the panel call, without a window."""
 
@@ -340,7 +402,7 @@ class Interface(unittest.TestCase):
                 panel.draw(SimpleNamespace(layout=layout), bpy.context)
         for name in ("solve", "read", "lightmaps", "export"):
             self.assertIn(f"lightwell.{name}", layout.said)
-        self.assertIn("Area: 10 W radiant are 6830 lm", layout.said)
+        self.assertIn("Area: 10 W radiant, 6830 lm", layout.said)
         self.assertIn("Area  6830 lm", layout.said)
 
 
@@ -431,15 +493,28 @@ class BadInput(unittest.TestCase):
         scene = cube_room()
         solve(scene)
         before = lux_at(scene, (0.3, 0.2, 1.0))
-        scene.lightwell.effort = "ACCURACY"
-        exported, folder = addon.solve.export(bpy.context)
-        arguments = addon.solve.solve_arguments(PROGRAM, scene.lightwell, folder, exported.emitters)
-        job = addon.solve.Job(arguments, folder)
-        job.cancel()
-        addon.solve.start(bpy.context, job, addon.solve.take_light)
+        folder = addon.solve.folder_of(scene)
+        files = {name: os.stat(os.path.join(folder, name)).st_ino for name in sorted(os.listdir(folder))}
+        scene.objects["Area"].data.energy = 50.0
+        with InTheBackground() as later:
+            bpy.ops.lightwell.solve()
+            self.assertFalse(bpy.ops.lightwell.export.poll())
+            bpy.ops.lightwell.cancel()
+            later.wait()
         self.assertIn("stopped", scene.lightwell.message)
         self.assertEqual(lux_at(scene, (0.3, 0.2, 1.0)), before)
-        self.assertFalse([name for name in os.listdir(folder) if re.search(r"\.part$", name)])
+        # The scene is still the one that belongs to the light.
+        self.assertEqual(
+            {name: os.stat(os.path.join(folder, name)).st_ino for name in sorted(os.listdir(folder))}, files
+        )
+
+    def test_bake_of_a_scene_that_was_not_solved(self):
+        scene = cube_room()
+        solve(scene)
+        scene.objects["Area"].data.energy = 50.0
+        bpy.ops.lightwell.export()
+        with self.assertRaisesRegex(RuntimeError, "is not the one that was solved; solve again"):
+            bpy.ops.lightwell.lightmaps(size=64)
 
 
 if __name__ == "__main__":

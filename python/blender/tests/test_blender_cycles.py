@@ -61,7 +61,7 @@ class Cycles(unittest.TestCase):
     def ours(self):
         """Irradiance by the exported scene."""
         bpy.context.view_layer.update()
-        _, folder = addon.solve.export(bpy.context)
+        _, folder, _ = addon.solve.export(bpy.context)
         points, out = (os.path.join(folder, name) for name in ("points.csv", "light.csv"))
         with open(points, "w", encoding="utf-8") as file:
             file.write("x,y,z,nx,ny,nz\n0,0,0,0,0,1\n")
