@@ -101,6 +101,8 @@ def _say_left_out(data: bpy.types.Light, name: str, axes: List[Vector], notes: L
     lengths = [axis.length for axis in axes]
     if data.type == "SPOT" and max(lengths) - min(lengths) > 1e-3 * max(lengths):
         notes.append(f"approximated: {name} is scaled unevenly; its cone is round here, and an ellipse in Cycles")
+    if not getattr(data, "use_shadow", True):
+        notes.append(f"approximated: {name} casts shadows here")
     if data.type in ("POINT", "SPOT") and data.shadow_soft_size > 0.0:
         notes.append(f"approximated: {name} is a point, without its radius, so its shadows are sharp")
     if data.use_nodes and data.node_tree and not _ies_node(data):
@@ -206,6 +208,10 @@ def read_world(world: Optional[bpy.types.World], pictures: Pictures, notes: List
     output = next((n for n in tree.nodes if n.type == "OUTPUT_WORLD"), None)
     if node is None or output is None or not output.inputs["Surface"].is_linked:
         return World()
+    if node.inputs["Strength"].is_linked:
+        notes.append("approximated: what is linked to the world's strength; the socket's own number counts")
+    if output_of(tree) and source_of(output_of(tree).inputs["Surface"]) != node:
+        notes.append("approximated: the world's nodes between its first background and the output are left out")
     strength = float(node.inputs["Strength"].default_value)
     link = node.inputs["Color"]
     if not link.is_linked:
@@ -228,7 +234,12 @@ def _turn_of(source: bpy.types.Node, notes: List[str]) -> float:
     vector = source.inputs["Vector"]
     if not vector.is_linked or vector.links[0].from_node.type != "MAPPING":
         return 0.0
-    turn = vector.links[0].from_node.inputs["Rotation"].default_value
+    mapping = vector.links[0].from_node.inputs
+    if "Location" in mapping and any(abs(c) > 1e-6 for c in mapping["Location"].default_value):
+        notes.append("left out: the place of the world's picture in its mapping")
+    if any(abs(c - 1.0) > 1e-6 for c in mapping["Scale"].default_value):
+        notes.append("left out: the scale of the world's picture in its mapping")
+    turn = mapping["Rotation"].default_value
     if abs(turn[0]) > 1e-6 or abs(turn[1]) > 1e-6:
         notes.append("left out: turns of the world's picture about x and y")
     return math.degrees(turn[2])

@@ -18,12 +18,17 @@ WRAPS = {"REPEAT": "repeat", "EXTEND": "clamp", "MIRROR": "mirror", "CLIP": "cla
 OF_LIGHT = (".exr", ".hdr")
 """Endings of pictures without an upper end, which are read as light alone."""
 
-LEFT_OUT_INPUTS = {
+LEFT_OUT_INPUTS = {  # a number above 0 or a link counts
     "Subsurface Weight": "subsurface scattering",
     "Sheen Weight": "sheen",
     "Anisotropic": "anisotropy",
     "Thin Film Thickness": "thin film",
 }
+
+LEFT_OUT_TINTS = {"Specular Tint": "specular tint", "Coat Tint": "coat tint"}  # a colour besides white or a link counts
+
+LEFT_OUT_OUTPUTS = {"Volume": "a volume", "Displacement": "displacement"}
+"""Inputs of the material's output that count if they are linked."""
 
 
 class Pictures:
@@ -128,14 +133,15 @@ def read_material(material: Optional[bpy.types.Material], pictures: Pictures) ->
     tree = node_tree(material)
     output = output_of(tree) if tree else None
     surface = source_of(output.inputs["Surface"]) if output else None
+    beside = tuple(said for name, said in LEFT_OUT_OUTPUTS.items() if output and output.inputs[name].is_linked)
     if surface is None:
-        return _viewport(material, "no surface shader; the viewport's colour")
+        return _viewport(material, *beside, "no surface shader; the viewport's colour")
     reader = READERS.get(surface.type)
     if reader is None:
-        return _viewport(material, f"node '{surface.bl_label}'; the viewport's colour")
+        return _viewport(material, *beside, f"node '{surface.bl_label}'; the viewport's colour")
     inputs = _Inputs(surface, material, pictures)
     shader = reader(inputs)
-    return replace(shader, left_out=shader.left_out + tuple(dict.fromkeys(inputs.left_out)))
+    return replace(shader, left_out=shader.left_out + beside + tuple(dict.fromkeys(inputs.left_out)))
 
 
 def node_tree(data: Union[bpy.types.Material, bpy.types.World]) -> Optional[bpy.types.NodeTree]:
@@ -152,9 +158,9 @@ def output_of(tree: bpy.types.NodeTree) -> Optional[bpy.types.Node]:
     return None
 
 
-def _viewport(material: bpy.types.Material, why: str) -> Shader:
+def _viewport(material: bpy.types.Material, *why: str) -> Shader:
     colour = tuple(material.diffuse_color[:3])
-    return Shader(base=colour, roughness=1.0, left_out=(why,))
+    return Shader(base=colour, roughness=1.0, left_out=why)
 
 
 def source_of(socket: bpy.types.NodeSocket) -> Optional[bpy.types.Node]:
@@ -246,6 +252,11 @@ def _principled(inputs: _Inputs) -> Shader:
     for name, said in LEFT_OUT_INPUTS.items():
         socket = inputs.node.inputs.get(name)
         if socket is not None and (socket.is_linked or socket.default_value > 0.0):
+            inputs.left_out.append(said)
+    for name, said in LEFT_OUT_TINTS.items():
+        socket = inputs.node.inputs.get(name)
+        is_seen = name != "Coat Tint" or inputs.node.inputs["Coat Weight"].default_value > 0.0
+        if socket is not None and is_seen and (socket.is_linked or min(socket.default_value[:3]) < 1.0):
             inputs.left_out.append(said)
     if inputs.node.inputs["Normal"].is_linked:
         inputs.left_out.append("bump and normal maps")

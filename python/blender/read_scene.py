@@ -16,6 +16,13 @@ from .read_materials import Pictures, read_material
 WITH_FACES = {"MESH", "CURVE", "SURFACE", "META", "FONT"}
 AS_INSTANCES = WITH_FACES - {"MESH"}
 """Kinds whose faces come as instances of the kind MESH, besides the object itself."""
+RAYS = {
+    "visible_diffuse": "diffuse rays",
+    "visible_glossy": "glossy rays",
+    "visible_transmission": "rays through glass",
+    "visible_shadow": "shadow rays",
+}
+"""Switches of an object's visibility to rays in Cycles, and the words for them. That of cameras changes no lux."""
 WITHOUT_LIGHT = {"EMPTY", "ARMATURE", "LATTICE", "SPEAKER", "LIGHT_PROBE"}
 
 OWN = "lightwell_light"
@@ -44,6 +51,7 @@ class _Reader:
         self.scene = Scene(title=bpy.path.display_name_from_filepath(bpy.data.filepath) or source.name)
         self.pictures = Pictures(self.scene.files)
         self.left_out: Dict[str, List[str]] = {}
+        self.ignored: Dict[str, List[str]] = {}
         self.seen: Set[str] = set()
         self.rendered = rendered_objects(depsgraph.view_layer.layer_collection)
         self.rendered_within: Dict[str, Set[str]] = {}
@@ -60,7 +68,9 @@ class _Reader:
         self.seen.add(found.name)
         if self._is_hidden(found.original, parent.original if parent else None):
             self._leave_out("objects hidden in renders", found.name)
-        elif found.type == "LIGHT":
+            return
+        self._say_ignored(found)
+        if found.type == "LIGHT":
             self._take_light(instance)
         elif found.type == "CAMERA":
             self._take_camera(instance)
@@ -68,6 +78,17 @@ class _Reader:
             self._take_faces(instance)
         elif found.type not in WITHOUT_LIGHT | AS_INSTANCES:
             self._leave_out(f"objects of the kind {found.type.lower()}", found.name)
+
+    def _say_ignored(self, found: bpy.types.Object) -> None:
+        """Notes what Cycles does with some rays or some lights alone; light here is the same for all."""
+        if found.type not in WITH_FACES | {"LIGHT"}:
+            return
+        hidden = [said for name, said in RAYS.items() if not getattr(found, name, True)]
+        for said in hidden:
+            self.ignored.setdefault(f"objects that {said} do not see; all light meets them here", []).append(found.name)
+        linking = getattr(found, "light_linking", None)
+        if linking and (linking.receiver_collection or linking.blocker_collection):
+            self.ignored.setdefault("light linking; light reaches all objects here", []).append(found.name)
 
     def _is_hidden(self, found: bpy.types.Object, parent: Optional[bpy.types.Object]) -> bool:
         """True if renders hide the object, or what it is an instance of."""
@@ -89,6 +110,8 @@ class _Reader:
                     self._leave_out("objects hidden in the viewport", found.name)
         for said, names in self.left_out.items():
             self.scene.notes.append(counted(f"left out: {len(names)} {said}", names))
+        for said, names in self.ignored.items():
+            self.scene.notes.append(counted(f"approximated: {said}", names))
 
     def _leave_out(self, said: str, name: str) -> None:
         self.left_out.setdefault(said, []).append(name)

@@ -129,6 +129,20 @@ class Materials(unittest.TestCase):
         self.assertAlmostEqual(materials.material_table(glass, True)[0]["glass"]["tint"][0], 0.9)
         self.assertTrue(materials.material_table(glass, False)[0]["glass"]["thin"])
 
+    def test_what_a_kind_does_not_have_is_said(self):
+        glow = Shader(emission=(1.0, 1.0, 1.0), alpha=0.5, metallic=1.0)
+        said = materials.material_table(glow, False)[1]
+        self.assertEqual(said, ["alpha of a material that shines", "metallic of a material that shines"])
+        mask = materials.Picture("pictures/a.png")
+        said = materials.material_table(Shader(transmission=1.0, mask=mask, coat=0.1), True)[1]
+        self.assertEqual(said, ["a mask of glass", "a coat of glass"])
+        for shader, words in (
+            (Shader(coat=0.4), ["a coat of a weight below 0.5"]),
+            (Shader(coat=1.0, metallic=1.0), ["a coat of metal or of what lets light through"]),
+            (Shader(coat=1.0), []),
+        ):
+            self.assertEqual(materials.material_table(shader, False)[1], words)
+
     def test_every_kind_is_read_by_the_program(self):
         kinds = {
             "white": Shader(base=(1.0, 1.0, 1.0), roughness=0.1),

@@ -2,7 +2,7 @@
 
 import math
 from dataclasses import dataclass, field
-from typing import Dict, List, Optional, Tuple
+from typing import Callable, Dict, List, Optional, Tuple
 
 Colour = Tuple[float, float, float]
 Table = Dict[str, object]
@@ -49,6 +49,30 @@ class Shader:
     """Inputs and nodes that were not understood."""
 
 
+def _is_layered(shader: Shader) -> bool:
+    """True if the base mirrors or lets light through by itself, which leaves no place for a coat."""
+    is_mirror = shader.metallic >= LEAST_METAL and shader.roughness <= DIFFUSE_ROUGHNESS
+    return is_mirror or shader.alpha < 1.0 or shader.translucent > 0.0
+
+
+LEFT_OUT: Tuple[Tuple[Tuple[str, ...], str, Callable[[Shader], bool]], ...] = (
+    (("shine", "glass"), "alpha", lambda s: s.alpha < 1.0),
+    (("shine", "glass"), "a mask", lambda s: s.mask is not None),
+    (("shine", "glass"), "metallic", lambda s: s.metallic >= LEAST_METAL),
+    (("shine", "glass"), "a coat", lambda s: s.coat > 0.0),
+    (("opaque",), "a coat of a weight below 0.5", lambda s: 0.0 < s.coat < 0.5),
+    (("opaque",), "a coat rougher than 0.7", lambda s: s.coat >= 0.5 and s.coat_roughness > DIFFUSE_ROUGHNESS),
+    (("opaque",), "a coat of metal or of what lets light through", lambda s: s.coat >= 0.5 and _is_layered(s)),
+)
+"""What materials of a kind do not have here: the kinds, the words, and whether a shader has it."""
+
+KINDS = {"shine": "of a material that shines", "glass": "of glass", "opaque": ""}
+
+
+def _unused(shader: Shader, kind: str) -> List[str]:
+    return [f"{said} {KINDS[kind]}".rstrip() for kinds, said, has in LEFT_OUT if kind in kinds and has(shader)]
+
+
 def emits(shader: Shader) -> bool:
     return max(shader.emission) > 0.0
 
@@ -68,6 +92,8 @@ def material_table(shader: Shader, is_closed: bool) -> Tuple[Table, List[str]]:
     remarks = list(shader.left_out)
     if base != shader.base:
         remarks.append("base colour above 1")
+    kind = "shine" if emits(shader) else "glass" if shader.transmission >= 0.5 else "opaque"
+    remarks += _unused(shader, kind)
     if emits(shader):
         return _emitter(shader, base, is_closed, remarks), remarks
     if shader.transmission >= 0.5:

@@ -255,6 +255,25 @@ class Room(unittest.TestCase):
         # sRGB of 0.25 in eight bits: half a step of 1 / 255.
         self.assertAlmostEqual(again.pixels[0], 1.055 * 0.25 ** (1 / 2.4) - 0.055, delta=0.5 / 255 + 1e-6)
 
+    def test_what_is_left_out_of_nodes_and_visibility_is_said(self):
+        scene = cube_room()
+        tree = bpy.data.materials["walls"].node_tree
+        shader, output = tree.nodes["Principled BSDF"], tree.get_output_node("ALL")
+        shader.inputs["Specular Tint"].default_value = (1, 0.5, 0.5, 1)
+        for kind, socket in (("ShaderNodeVolumeScatter", "Volume"), ("ShaderNodeDisplacement", "Displacement")):
+            tree.links.new(tree.nodes.new(kind).outputs[0], output.inputs[socket])
+        scene.objects["Cube"].visible_glossy = False
+        scene.objects["Area"].data.use_shadow = False
+        scene.objects["Area"].light_linking.receiver_collection = bpy.data.collections.new("lit")
+        world = scene.world.node_tree
+        world.links.new(world.nodes.new("ShaderNodeValue").outputs[0], world.nodes["Background"].inputs["Strength"])
+        bpy.context.view_layer.update()
+        self.assertRegex(solve(scene), r"^\d+ elements in")
+        said = notes()
+        for words in ("specular tint", "a volume", "displacement", "glossy rays", "casts shadows", "light linking"):
+            self.assertIn(words, said)
+        self.assertIn("linked to the world's strength", said)
+
     def test_properties_that_are_no_numbers_and_cameras_of_scale_0(self):
         scene = cube_room()
         data = scene.objects["Area"].data
