@@ -25,7 +25,8 @@ _solutions: Dict[str, Solution] = {}  # by path; what is shown, for dimming; one
 def collection_of(scene: bpy.types.Scene, name: str) -> bpy.types.Collection:
     """The scene's collection that the add-on made under that name, or one that has the very name."""
     children = list(scene.collection.children)
-    found = next((c for c in children if c.get(OWN) == name), None) or next((c for c in children if c.name == name), None)
+    own = [c for c in children if c.get(OWN) == name] + [c for c in children if c.name == name]
+    found = own[0] if own else None
     if found is None:
         found = bpy.data.collections.new(name)
         found[OWN] = name  # Blender numbers equal names, as in a second scene

@@ -151,8 +151,10 @@ class Program(unittest.TestCase):
     def test_run_ends_with_the_process_that_began_it(self):
         folder = scratch(self)
         code = (
-            "import os, sys; sys.path.insert(0, sys.argv[1]); from logic import program; "
-            "job = program.Job(sys.argv[2:], '.'); print(job._process.pid, flush=True); os.abort()"
+            "import os, sys, time\nsys.path.insert(0, sys.argv[1])\nfrom logic import program\n"
+            "job = program.Job(sys.argv[2:], '.')\n"
+            "while job.poll() is None and job.share is None: time.sleep(0.01)\n"
+            "print(job._process.pid if job.poll() is None else 0, flush=True)\nos.abort()"
         )
         arguments = [PROGRAM, "solve", ROOM, "-o", "s.vtp", "--accuracy", "0.1%"]
         add_on = os.path.join(SOURCE, "python", "blender")
@@ -160,6 +162,7 @@ class Program(unittest.TestCase):
             [sys.executable, "-c", code, add_on, *arguments], cwd=folder, capture_output=True, text=True, check=False
         )
         pid = int(crashed.stdout)
+        self.assertGreater(pid, 0, "the solve ended before it told how far it was")
         for _ in range(500):  # the solve itself takes minutes
             if not _is_alive(pid):
                 return

@@ -2,15 +2,18 @@
 
 import os
 import sys
+import tempfile
 import unittest
 from typing import Sequence, Tuple
 
 import bpy
+from mathutils import Vector
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", ".."))
 
 import blender as addon  # noqa: E402
 
+PROGRAM = os.environ.get("LIGHTWELL_PROGRAM", "lightwell")
 Place = Tuple[float, float, float]
 
 
@@ -101,3 +104,34 @@ def three_rooms() -> bpy.types.Scene:
         add_light(f"lamp {number + 1}", "AREA", (x, 2, 2.7), (4.0, 2.0, 6.0)[number], size=0.6)
     add_light("spot", "SPOT", (2.0, 3.3, 2.6), 20.0, spot_size=0.9, spot_blend=0.3)
     return scene
+
+
+def solve(scene):
+    """Solves in place; returns the message, or that of the error."""
+    try:
+        bpy.ops.lightwell.solve()
+    except RuntimeError as error:
+        return str(error)
+    return scene.lightwell.message
+
+
+def lux_at(scene, place):
+    """Lux on the first front below a place."""
+    reader = addon.overlay.Reader(addon.show.light_object(scene))
+    return reader.at(Vector(place), Vector((0, 0, -1))).lux
+
+
+def notes():
+    return bpy.data.texts[addon.solve.NOTES].as_string()
+
+
+class InFolder(unittest.TestCase):
+    """Tests with a folder of their own, for the .blend file."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+
+    def save(self):
+        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(self.folder, "room.blend"))

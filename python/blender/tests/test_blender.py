@@ -13,10 +13,22 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 
 import bpy  # noqa: E402
 import numpy as np  # noqa: E402
-from mathutils import Matrix, Vector  # noqa: E402
-from rooms import add_box, add_light, add_mesh, addon, cube_room, empty_scene, matt, three_rooms  # noqa: E402
-
-PROGRAM = os.environ["LIGHTWELL_PROGRAM"]
+from mathutils import Matrix  # noqa: E402
+from rooms import (  # noqa: E402
+    PROGRAM,
+    InFolder,
+    add_box,
+    add_light,
+    add_mesh,
+    addon,
+    cube_room,
+    empty_scene,
+    lux_at,
+    matt,
+    notes,
+    solve,
+    three_rooms,
+)
 
 # The cube of cube_room() with Blender's order of corners, and its light as a panel that shines down.
 CUBE_BY_HAND = """
@@ -44,50 +56,8 @@ polygon = [[-0.25, -0.25, 1.75], [-0.25, 0.25, 1.75], [0.25, 0.25, 1.75], [0.25,
 """
 
 
-def solve(scene):
-    """Solves in place; returns the message, or that of the error."""
-    try:
-        bpy.ops.lightwell.solve()
-    except RuntimeError as error:
-        return str(error)
-    return scene.lightwell.message
-
-
-def lux_at(scene, place):
-    """Lux on the first front below a place."""
-    reader = addon.overlay.Reader(addon.show.light_object(scene))
-    return reader.at(Vector(place), Vector((0, 0, -1))).lux
-
-
-def notes():
-    return bpy.data.texts[addon.solve.NOTES].as_string()
-
-
-class InTheBackground:
-    """Runs go on beside Blender, as they do where it has a window, until the test waits for the one under way."""
-
-    def __enter__(self):
-        self.start = addon.solve.start
-        addon.solve.start = lambda run: setattr(addon.solve.Run, "current", run)
-        return self
-
-    def wait(self):
-        addon.solve.Run.current.job.wait()
-        addon.solve._look()
-
-    def __exit__(self, *_):
-        addon.solve.start = self.start
-        addon.solve._end_run()
-
-
-class Room(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = folder.name
-
-    def save(self):
-        bpy.ops.wm.save_as_mainfile(filepath=os.path.join(self.folder, "room.blend"))
+class Room(InFolder):
+    """The lux and the words of rooms."""
 
     def test_cube_has_the_lux_of_the_room_written_by_hand(self):
         scene = cube_room()
@@ -312,66 +282,6 @@ class Room(unittest.TestCase):
         self.assertAlmostEqual(found["nodes"] / lumens, 1.0, delta=1e-5)
         self.assertIn("its watts do not count", notes())
 
-    def test_lightmaps_come_back_with_a_picture(self):
-        scene = cube_room()
-        self.save()
-        solve(scene)
-        scene.lightwell.channels[0].level = 0.5
-        bpy.ops.lightwell.lightmaps(size=128)
-        found = [o for o in scene.objects if o.get(addon.read_scene.OWN) == addon.lightmaps.NAME]
-        meshes = [o for o in found if o.type == "MESH"]
-        self.assertTrue(meshes, scene.lightwell.message)
-        nodes = meshes[0].data.materials[0].node_tree.nodes
-        self.assertTrue(any(node.type == "TEX_IMAGE" and node.image.size[0] == 128 for node in nodes))
-        solve(scene)
-        self.assertNotIn("left out", notes())  # models of the light are no part of the scene
-
-
-    def test_file_may_be_saved_and_its_scene_renamed_during_a_solve(self):
-        scene = cube_room()
-        before = addon.solve.folder_of(scene)
-        with InTheBackground() as later:
-            bpy.ops.lightwell.solve()
-            self.save()
-            scene.name = "renamed"
-            bpy.ops.scene.new(type="EMPTY")
-            scene.lightwell.folder = os.path.join(self.folder, "elsewhere")
-            later.wait()
-        self.assertRegex(scene.lightwell.message, r"^\d+ elements in")
-        self.assertEqual(addon.show.path_of(scene.lightwell), os.path.join(before, "solution.vtp"))
-        self.assertTrue(os.path.exists(os.path.join(before, "solution.vtp")))
-        self.assertGreater(lux_at(scene, (0.3, 0.2, 1.0)), 0.0)
-
-    def test_objects_of_the_user_stay_and_models_leave_nothing(self):
-        scene = cube_room()
-        mine = bpy.data.collections.new("Lightwell lightmaps of mine")
-        scene.collection.children.link(mine)
-        mine.objects.link(bpy.data.objects.new("mine", None))
-        self.save()
-        solve(scene)
-        bpy.ops.lightwell.lightmaps(size=64)
-        bpy.data.collections[addon.lightmaps.NAME].objects.link(bpy.data.objects.new("too", None))
-        rooms = (bpy.data.objects, bpy.data.meshes, bpy.data.materials, bpy.data.images)
-        counts = [len(room) for room in rooms]
-        bpy.ops.lightwell.lightmaps(size=64)
-        self.assertEqual([len(room) for room in rooms], counts)
-        self.assertEqual([found.name for found in mine.objects], ["mine"])
-        self.assertIn("too", scene.objects)
-
-    def test_model_comes_into_the_scene_of_its_run(self):
-        scene = cube_room()
-        self.save()
-        solve(scene)
-        scene.lightwell.channels[0].level = 0.5
-        with InTheBackground() as later:
-            bpy.ops.lightwell.lightmaps(size=64)
-            bpy.ops.scene.new(type="EMPTY")
-            later.wait()
-            later.wait()
-        self.assertIn("lightmaps in the collection", scene.lightwell.message)
-        self.assertTrue([found for found in scene.objects if found.get(addon.read_scene.OWN) == addon.lightmaps.NAME])
-        self.assertFalse(bpy.context.scene.objects)
-
 
 class Interface(unittest.TestCase):
     """What the mouse and the panel call, without a window."""
@@ -507,33 +417,6 @@ class BadInput(unittest.TestCase):
                 file.write("# mine\n")
             scene.lightwell.folder = folder
             self.assertIn("was not written by this add-on", solve(scene))
-
-    def test_cancelled_run_keeps_earlier_light(self):
-        scene = cube_room()
-        solve(scene)
-        before = lux_at(scene, (0.3, 0.2, 1.0))
-        folder = addon.solve.folder_of(scene)
-        files = {name: os.stat(os.path.join(folder, name)).st_ino for name in sorted(os.listdir(folder))}
-        scene.objects["Area"].data.energy = 50.0
-        with InTheBackground() as later:
-            bpy.ops.lightwell.solve()
-            self.assertFalse(bpy.ops.lightwell.export.poll())
-            bpy.ops.lightwell.cancel()
-            later.wait()
-        self.assertIn("stopped", scene.lightwell.message)
-        self.assertEqual(lux_at(scene, (0.3, 0.2, 1.0)), before)
-        # The scene is still the one that belongs to the light.
-        self.assertEqual(
-            {name: os.stat(os.path.join(folder, name)).st_ino for name in sorted(os.listdir(folder))}, files
-        )
-
-    def test_bake_of_a_scene_that_was_not_solved(self):
-        scene = cube_room()
-        solve(scene)
-        scene.objects["Area"].data.energy = 50.0
-        bpy.ops.lightwell.export()
-        with self.assertRaisesRegex(RuntimeError, "is not the one that was solved; solve again"):
-            bpy.ops.lightwell.lightmaps(size=64)
 
 
 if __name__ == "__main__":
