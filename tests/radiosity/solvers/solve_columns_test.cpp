@@ -42,8 +42,9 @@ TEST(SolveColumns, AreSolvesOfTheirOwn) {
 
 // Receivers' sums over the light of sources, by a solve for each source and by a solve for each
 // receiver: a mirror, whose shares differ by band, and a sheet that passes light to its other side.
-// Light leaves an error of 1e-6 / (1 - rho), importance of its largest one; rows are reciprocal to
-// float rounding, 6e-8 a factor, in each of some 30 bounces.
+// Light leaves an error of 1e-6 / (1 - rho) of its largest value, importance one of 1e-9 as for
+// years of daylight; rows are reciprocal to float rounding, 6e-8 a factor, in each of some 30
+// bounces.
 TEST(SolveImportance, IsTheLightOfReceiversFromTheOtherSide) {
   Scene scene = test::room_with_mirror(0.7f);
   Material sheet = test::diffuse(scene.bands, 0.3f);
@@ -65,7 +66,7 @@ TEST(SolveImportance, IsTheLightOfReceiversFromTheOtherSide) {
     return (a.cast<double>() * b.cast<double>()).sum();
   };
   const BandArray B = solve_columns(mesh, *F, arriving, 1e-6),
-                  w = solve_importance(mesh, *F, received, 1e-6);
+                  w = solve_importance(mesh, *F, received, 1e-9);
   for (int s = 0; s < sources; ++s) {
     for (int r = 0; r < receivers; ++r) {
       for (int k = 0; k < bands; ++k) {
