@@ -109,6 +109,29 @@ TEST(DomeView, OfAnOpenFieldIsExact) {
   EXPECT_NEAR(double{view.coefficient.col(0).sum()}, pi, 1e-6 * pi);
 }
 
+// Of 16 points in a row, 8 lie in the sun that falls through the hole. Rays of 4 points, other ones
+// for each receiver, find 0 or all of it, in the mean half; four errors of the mean of 1024.
+// Cosines within the disc differ from 1 by 1e-5.
+TEST(DomeView, SunOfSomePointsIsInTheMeanThatOfAll) {
+  const Rays rays(roof_with_hole());
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < 16; ++i) {
+    points.push_back({.position = {0.25 + 0.1 * i, 0.0, 0.0}, .normal = Vector3d::UnitZ()});
+  }
+  const SunDisc sun(rays.sky, Vector3d::UnitZ());
+  const DomeView view = view_of_dome(rays.around(), rays.sky, points, {}, 1);
+  ASSERT_NE(view.open[static_cast<std::size_t>(sun.cell)], 0);
+  const auto light = [&](int count, std::uint64_t key) {
+    return double{sunlight(rays.around(), points, view, {&sun, 1}, count, key)(0, 0)};
+  };
+  EXPECT_NEAR(light(16, 1), 0.5, 1e-5);
+  EXPECT_NEAR(light(64, 1), 0.5, 1e-5);
+  constexpr int keys = 1024;
+  double sum = 0.0;
+  for (int k = 0; k < keys; ++k) sum += light(4, static_cast<std::uint64_t>(k));
+  EXPECT_NEAR(sum / keys, 0.5, 4.0 * 0.5 / std::sqrt(keys));
+}
+
 // A search of one cell in four misses a hole of half a cell's size in most views. The ray that then
 // stands for four closed cells finds the hole in as many views as makes up for that. Five standard
 // errors of the mean of the views.
