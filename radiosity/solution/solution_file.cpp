@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <pugixml.hpp>
 #include <stdexcept>
 
 #include "mesh/patches/pictured_emission.h"
@@ -283,6 +284,23 @@ std::string summary(const SolvedScene& solved) {
 
 }  // namespace
 
+namespace {
+
+// Throws std::runtime_error if the text before the data could not be read again, before an older
+// file and the checkpoint go.
+void require_readable(const std::filesystem::path& path, const std::string& before_data) {
+  pugi::xml_document xml;
+  const std::string whole = before_data + "</AppendedData></VTKFile>";
+  const pugi::xml_parse_result parsed = xml.load_buffer(whole.data(), whole.size());
+  if (parsed) return;
+  throw std::runtime_error(fmt::format(
+      "cannot write '{}': what would be written could not be read again ({} at byte {}); "
+      "please report the scene",
+      path.string(), parsed.description(), parsed.offset));
+}
+
+}  // namespace
+
 void write_solution(const std::filesystem::path& path, const SolvedScene& solved) {
   PolyData data;
   add_geometry(data, solved.mesh);
@@ -296,6 +314,7 @@ void write_solution(const std::filesystem::path& path, const SolvedScene& solved
 
   std::vector<std::string> text = poly_data_text(std::move(data));
   text.insert(text.begin(), solution_preamble(summary(solved)));
+  require_readable(path, text[0] + text[1]);
   text.push_back(seal_of(text));
   write_pieces(path, text);
 }

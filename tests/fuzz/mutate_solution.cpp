@@ -1,5 +1,5 @@
-// Changes of solution files that keep what VTK, zlib and the seal check by the way: the sizes of
-// blocks, the places of arrays and the checksums.
+// Changes of solution files that keep what the reader, zlib and the seal check by the way: the
+// sizes of blocks, the places of arrays and the checksums.
 #include <algorithm>
 #include <charconv>
 #include <map>
