@@ -114,9 +114,8 @@ class CrossingSplitter {
         const auto j = static_cast<std::size_t>(other);
         if (j <= i || !do_cross(edges[i], edges[j])) continue;
         has_found = true;
-        const bool has_ends =
-            cut_at_ends(edges[i], edges[j], cuts[j]) | cut_at_ends(edges[j], edges[i], cuts[i]);
-        if (has_ends) continue;
+        const bool has_ends = cut_at_ends(edges[i], edges[j], cuts[j]);
+        if (cut_at_ends(edges[j], edges[i], cuts[i]) || has_ends) continue;
         const CDT::VertInd point = crossing(edges[i], edges[j]);
         cuts[i].push_back(point);
         cuts[j].push_back(point);
