@@ -20,7 +20,7 @@ namespace {
 // Owners of random keys.
 constexpr std::uint64_t of_patch = 0, of_sensor = 1;
 
-constexpr int some = 4;  // patches in a row on one thread
+constexpr int patches_at_once = 4;  // on one thread
 
 // Share of each band in the illuminance of white light.
 Eigen::ArrayXf luminous_weights(const Bands& bands) {
@@ -127,10 +127,11 @@ std::vector<SurfacePoint> DaylightModel::points_of_patch(int patch) const {
 
 void DaylightModel::view_patches() {
   patch_views_.resize(static_cast<std::size_t>(mesh_.patch_count()));
-  for_each_index(mesh_.patch_count(), some, "sky at patches", options_.progress, [&](int p) {
-    patch_views_[static_cast<std::size_t>(p)] =
-        view_of_dome(around(), sky_, points_of_patch(p), options_.patches, patch_key(p));
-  });
+  for_each_index(
+      mesh_.patch_count(), patches_at_once, "sky at patches", options_.progress, [&](int p) {
+        patch_views_[static_cast<std::size_t>(p)] =
+            view_of_dome(around(), sky_, points_of_patch(p), options_.patches, patch_key(p));
+      });
 }
 
 void DaylightModel::set_sensors(std::span<const GatherPoint> sensors) {
@@ -140,7 +141,9 @@ void DaylightModel::set_sensors(std::span<const GatherPoint> sensors) {
     const auto sensor = static_cast<std::size_t>(i);
     sensor_views_[sensor] = view_of(sky_, sensors_[sensor], options_.points, i);
   });
-  constexpr int hours_of_sun = 4400;  // of a year, the sources besides the sky's patches
+  // The sun is up in half of a year's hours and a little more, for its disc and the air's
+  // refraction.
+  constexpr int hours_of_sun = 4400;
   const bool has_fewer_sources = sensor_count() > sky_.column_count() + hours_of_sun;
   importance_ = options_.direct_only || has_fewer_sources
                     ? BandArray()
@@ -211,18 +214,17 @@ BandArray reflected_by_importance(const BandArray& importance, const BandArray& 
                                   Eigen::Index bands) {
   const Eigen::Index points = importance.cols() / bands, sources = arriving.cols() / bands;
   BandArray E(points, arriving.cols());
-  using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   for (Eigen::Index b = 0; b < bands; ++b) {
-    const auto of_band = [&](const BandArray& all, Eigen::Index count) -> RowMajor {
-      return all(Eigen::all, Eigen::seqN(b, count, bands)).matrix();
+    const auto of_band = [&](const BandArray& all, Eigen::Index count) -> BandArray {
+      return all(Eigen::all, Eigen::seqN(b, count, bands));
     };
-    const RowMajor weights = of_band(importance, points), light = of_band(arriving, sources);
+    const BandArray weights = of_band(importance, points), light = of_band(arriving, sources);
     constexpr int width = 64;
     parallel_for(static_cast<int>((sources + width - 1) / width), 1, [&](int begin, int end) {
       const Eigen::Index first = Eigen::Index{begin} * width,
                          n = std::min(Eigen::Index{end} * width, sources) - first;
-      const RowMajor part = weights.transpose() * light.middleCols(first, n);
-      E(Eigen::all, Eigen::seqN(first * bands + b, n, bands)) = part.array();
+      const BandArray part = weights.matrix().transpose() * light.middleCols(first, n).matrix();
+      E(Eigen::all, Eigen::seqN(first * bands + b, n, bands)) = part;
     });
   }
   return E;
@@ -292,10 +294,12 @@ SensorLight DaylightModel::sun_coefficients(std::span<const SunDisc> suns) const
                     .reflected = Eigen::ArrayXXf::Zero(sensor_count(), count)};
   if (options_.direct_only) return light;
   BandArray arriving(mesh_.patch_count(), count * bands);
-  for_each_index(mesh_.patch_count(), some, "sun at patches", options_.progress, [&](int p) {
-    const Eigen::ArrayXXf E0 = sun_at_patch(p, suns, options_.sun_rays_of_patch);
-    for (Eigen::Index s = 0; s < count; ++s) arriving.row(p).segment(s * bands, bands) = E0.row(s);
-  });
+  for_each_index(mesh_.patch_count(), patches_at_once, "sun at patches", options_.progress,
+                 [&](int p) {
+                   const Eigen::ArrayXXf E0 = sun_at_patch(p, suns, options_.sun_rays_of_patch);
+                   for (Eigen::Index s = 0; s < count; ++s)
+                     arriving.row(p).segment(s * bands, bands) = E0.row(s);
+                 });
   light.reflected = reflected(arriving);
   return light;
 }
@@ -313,15 +317,16 @@ BandArray DaylightModel::hourly_arriving(std::span<const SkyHour> hours, double 
     hour_of_sun.push_back(h);
   }
   BandArray arriving(mesh_.patch_count(), count * bands);
-  for_each_index(mesh_.patch_count(), some, "sun at patches", options_.progress, [&](int p) {
-    arriving.row(p).setZero();
-    const Eigen::ArrayXXf sun = sun_at_patch(p, suns, sun_rays);
-    for (Eigen::Index s = 0; s < sun.rows(); ++s) {
-      const Eigen::Index h = hour_of_sun[static_cast<std::size_t>(s)];
-      const auto lux = static_cast<float>(hours[static_cast<std::size_t>(h)].sun_lux);
-      arriving.row(p).segment(h * bands, bands) = lux * sun.row(s);
-    }
-  });
+  for_each_index(
+      mesh_.patch_count(), patches_at_once, "sun at patches", options_.progress, [&](int p) {
+        arriving.row(p).setZero();
+        const Eigen::ArrayXXf sun = sun_at_patch(p, suns, sun_rays);
+        for (Eigen::Index s = 0; s < sun.rows(); ++s) {
+          const Eigen::Index h = hour_of_sun[static_cast<std::size_t>(s)];
+          const auto lux = static_cast<float>(hours[static_cast<std::size_t>(h)].sun_lux);
+          arriving.row(p).segment(h * bands, bands) = lux * sun.row(s);
+        }
+      });
   add_dome(luminance, arriving);
   return arriving;
 }

@@ -42,6 +42,8 @@ class SkyPatches {
   /// The unit direction of a point (u, v) of a cell in [0,1]^2, even in solid angle.
   Eigen::Vector3d direction(int cell, double u, double v) const;
   double solid_angle(int cell) const;  ///< sr
+  /// The unit direction to the middle of a cell; of a cap, the vertical.
+  Eigen::Vector3d middle(int cell) const { return middles_.row(cell); }
   /// The cells that touch a cell, at corners too.
   const std::vector<int>& neighbours(int cell) const {
     return neighbours_[static_cast<std::size_t>(cell)];

@@ -27,10 +27,9 @@ struct DomeSamples {
         on_ground(sky.irradiances(sky.up()).head(sky.dome_count())) {
     Eigen::Index at = 0;
     for (int p = 0; p < sky.dome_count(); ++p) {
-      const bool is_cap = p + 1 == sky.dome_count();
-      if (is_cap && steps == 1) {
-        towards.col(at) = sky.up();  // the middle of the cap, which has no middle azimuth
-        break;
+      if (steps == 1) {
+        towards.col(at++) = sky.middle(p);
+        continue;
       }
       for (int i = 0; i < steps; ++i) {
         for (int j = 0; j < steps; ++j) {

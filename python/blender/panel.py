@@ -7,12 +7,17 @@ from .logic.lights import spoken
 from .read_lights import read_light
 
 
-class LIGHTWELL_PT_panel(bpy.types.Panel):
-    bl_label = "Lightwell"
-    bl_idname = "LIGHTWELL_PT_panel"
+class _InSidebar:
+    """A panel in the sidebar of the 3D view."""
+
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
     bl_category = "Lightwell"
+
+
+class LIGHTWELL_PT_panel(_InSidebar, bpy.types.Panel):
+    bl_label = "Lightwell"
+    bl_idname = "LIGHTWELL_PT_panel"
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
@@ -35,12 +40,9 @@ class LIGHTWELL_PT_panel(bpy.types.Panel):
         _wrapped(layout, settings.message)
 
 
-class LIGHTWELL_PT_light(bpy.types.Panel):
+class LIGHTWELL_PT_light(_InSidebar, bpy.types.Panel):
     bl_label = "Light"
     bl_parent_id = "LIGHTWELL_PT_panel"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Lightwell"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -60,12 +62,9 @@ class LIGHTWELL_PT_light(bpy.types.Panel):
         layout.operator("lightwell.lightmaps", icon="TEXTURE")
 
 
-class LIGHTWELL_PT_channels(bpy.types.Panel):
+class LIGHTWELL_PT_channels(_InSidebar, bpy.types.Panel):
     bl_label = "Channels"
     bl_parent_id = "LIGHTWELL_PT_panel"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Lightwell"
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
@@ -78,12 +77,9 @@ class LIGHTWELL_PT_channels(bpy.types.Panel):
             column.prop(channel, "level", text=f"{channel.name}  {lumens:.4g} lm", slider=True)
 
 
-class LIGHTWELL_PT_scene(bpy.types.Panel):
+class LIGHTWELL_PT_scene(_InSidebar, bpy.types.Panel):
     bl_label = "Units and Files"
     bl_parent_id = "LIGHTWELL_PT_panel"
-    bl_space_type = "VIEW_3D"
-    bl_region_type = "UI"
-    bl_category = "Lightwell"
     bl_options = {"DEFAULT_CLOSED"}
 
     def draw(self, context: bpy.types.Context) -> None:

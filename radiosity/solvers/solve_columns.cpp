@@ -57,11 +57,10 @@ BandArray solve_columns(const PatchMesh& mesh, const FormFactors& form_factors,
 }
 
 BandArray solve_importance(const PatchMesh& mesh, const FormFactors& form_factors,
-                           const BandArray& received, double tolerance, const Progress& progress) {
+                           BandArray received, double tolerance, const Progress& progress) {
   const Eigen::ArrayXf area = mesh.area.cast<float>();
-  BandArray sent = received;
-  sent.colwise() /= area;
-  BandArray importance = solve_columns(mesh, form_factors, sent, tolerance, progress);
+  received.colwise() /= area;  // what receivers send
+  BandArray importance = solve_columns(mesh, form_factors, received, tolerance, progress);
   importance.colwise() *= area;
   return importance;
 }

@@ -26,7 +26,6 @@ BandArray solve_columns(const PatchMesh& mesh, const FormFactors& form_factors,
 ///
 /// `tolerance` and what is thrown are those of solve_columns(), for B'.
 BandArray solve_importance(const PatchMesh& mesh, const FormFactors& form_factors,
-                           const BandArray& received, double tolerance,
-                           const Progress& progress = {});
+                           BandArray received, double tolerance, const Progress& progress = {});
 
 }  // namespace lightwell

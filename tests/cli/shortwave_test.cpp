@@ -50,15 +50,19 @@ TEST_F(Shortwave, TheSunShinesFromItsAzimuthAndFilesOfUdalesHoldTheTable) {
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0][0], 0.1);
   EXPECT_EQ(rows[1][0], 0.4);
-  // Through each end goes less than (10 + 15) / 1000 of the light; one of 16384 strips along the
-  // street is lit in part.
-  EXPECT_NEAR(rows[0][1], std::hypot(1.5, 1.0) - 1.5, 0.05);
+  // An end of 10 m x 15 m sends less than half of what leaves it to the road of 10 m x 1000 m; by
+  // reciprocity less than 15 / 2000 of the road's light goes through either end.
+  EXPECT_NEAR(rows[0][1], std::hypot(1.5, 1.0) - 1.5, 2 * 15.0 / 2000);
   EXPECT_EQ(rows[0][2], 0.0);
-  EXPECT_NEAR(rows[1][2], 800 * std::sqrt(0.5) * 10 / 15, 800 * 2.0 / 16384);
+  // The shadow's edge cuts one of 16384 strips of the wall, each 0.9 mm high. Rays in single
+  // precision, 1000 m x 6e-8 = 0.06 mm, take no more than its neighbour for cut.
+  const double strip = 800 * std::sqrt(0.5) / 16384;
+  EXPECT_NEAR(rows[1][2], 800 * std::sqrt(0.5) * 10 / 15, 2 * strip);
   EXPECT_EQ(rows[2][2], 0.0);
   for (const auto& row : rows) {
-    EXPECT_NEAR(row[3], 100 * row[1], 1e-6);
-    EXPECT_NEAR(row[5], (1 - row[0]) * (row[2] + row[3] + row[4]), 1e-5);  // nine digits
+    // Nine digits: a view factor is rounded by 5e-10, W/m2 below 100 by 5e-8, below 1000 by 5e-7.
+    EXPECT_NEAR(row[3], 100 * row[1], 100 * 5e-10 + 5e-8);
+    EXPECT_NEAR(row[5], (1 - row[0]) * (row[2] + row[3] + row[4]), 3 * 5e-7 + 5e-8);
   }
   const auto json = nlohmann::json::parse(ended.out);
   const double arriving = json["arriving"].get<double>();
@@ -78,7 +82,8 @@ TEST_F(Shortwave, TheSunShinesFromItsAzimuthAndFilesOfUdalesHoldTheTable) {
   factors >> i >> j >> F;
   EXPECT_EQ(i, 1);
   EXPECT_EQ(j, 2);
-  EXPECT_NEAR(F, 0.5 * (1.0 - rows[0][1]), 1e-6);  // six digits, and floats
+  // Six decimals in the file, 5e-7, and two factors of 0.35 that are floats, 3e-8.
+  EXPECT_NEAR(F, 0.5 * (1.0 - rows[0][1]), 5e-7 + 3e-8);
 }
 
 // The facet faces +z, and the model is no longer along y than along z: y would be up.

@@ -109,8 +109,8 @@ TEST(DomeView, OfAnOpenFieldIsExact) {
   EXPECT_NEAR(double{view.coefficient.col(0).sum()}, pi, 1e-6 * pi);
 }
 
-// Of 16 points in a row, 8 lie in the sun that falls through the hole. Rays of 4 points, other ones
-// for each receiver, find 0 or all of it, in the mean half; four errors of the mean of 1024.
+// The sun that falls through the hole lights 8 of 16 points in a row. Rays of 4 points, other ones
+// for each receiver, find 0 or all of its light, in the mean half; four errors of the mean of 1024.
 // Cosines within the disc differ from 1 by 1e-5.
 TEST(DomeView, SunOfSomePointsIsInTheMeanThatOfAll) {
   const Rays rays(roof_with_hole());
