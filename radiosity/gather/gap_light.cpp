@@ -246,7 +246,10 @@ void GapLight::follow(const ElementCaster& caster, const Ray& ray, const Element
                .normal = normal,
                .facet = stop.hit.facet};
     Portals::View view;
-    if (aims.portals && !exits) view = aims.portals->view(stop.at.position, normal, 1);
+    if (aims.portals && !exits) {
+      const double patch_size = std::sqrt(mesh.area[mesh.patch[stop.hit.element]]);
+      view = aims.portals->view_near(stop.at.position, normal, patch_size);
+    }
     // Paths end by chance (Arvo & Kirk 1990), at once or after as many bounces as light makes. The
     // rays that are not aimed weigh more, and more paths go on instead.
     const auto rho = mesh.reflectance.row(mesh.patch[stop.hit.element]);
@@ -293,7 +296,8 @@ void GapLight::add_near_portal(const ElementCaster& caster, const Portals& porta
   const Spectrum rho = mesh.reflectance.row(mesh.patch[first_hit.element]).transpose();
   add_direct(caster, {.at = at, .key = portal_key, .shadows = shadows, .one_stands_for_all = true},
              rho, sum);
-  const Portals::View view = portals.view(at.position, at.normal, 1);
+  const double patch_size = std::sqrt(mesh.area[mesh.patch[first_hit.element]]);
+  const Portals::View view = portals.view_near(at.position, at.normal, patch_size);
   const GapAims aims{.portals = &portals};
   Stop stop{.at = at, .key = portal_key};
   const double weight = next_ray(caster, aims, view, view.is_empty() ? 0.0 : 0.5, stop);

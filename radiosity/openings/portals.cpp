@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <ranges>
 
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
@@ -194,20 +195,20 @@ Portals::Portals(const ElementCaster& caster, const std::vector<float>& brightne
   boxes_ = BoxTree(std::move(boxes));
 }
 
-template <class Weight>
-Portals::View Portals::view_of(const Vector3d& from, const Vector3d& normal, int rays,
-                               Weight weight) const {
+template <class Numbers, class Weight>
+Portals::View Portals::view_of(const Numbers& portals, const Vector3d& from, const Vector3d& normal,
+                               int rays, Weight weight) const {
   // Cosine-distributed rays that pass a portal, from which number on they leave less noise than
   // aimed ones would.
   constexpr double few = 4.0;
   View view;
   double sum = 0.0;
-  for (std::size_t i = 0; i < portals_.size(); ++i) {
-    const Portal& portal = portals_[i];
+  for (const int number : portals) {
+    const Portal& portal = portals_[static_cast<std::size_t>(number)];
     const Vector3d to = portal.shape.center - from;
     const double height = -to.dot(portal.shape.normal);  // before the front
     const int side = height > 0.0 ? 0 : 1;
-    const double of_light = weight(portal, side);
+    const double of_light = weight(number, side);
     if (!(of_light > 0.0) || !portal.region[side].contains(from)) continue;
     const double radius = portal.shape.along.norm() + portal.shape.across.norm();
     const double rise = to.dot(normal) + radius;  // bound for the portal's highest point
@@ -219,22 +220,35 @@ Portals::View Portals::view_of(const Vector3d& from, const Vector3d& normal, int
     const double form_factor = std::min(rise / (distance + radius), 1.0) * slant * portal.area /
                                (std::numbers::pi * distance2 + portal.area);
     sum += of_light * form_factor / (1.0 + rays * form_factor / few);
-    view.entries_.push_back({static_cast<int>(i), sum});
+    view.entries_.push_back({number, sum});
   }
   for (View::Entry& entry : view.entries_) entry.up_to /= sum;
   if (!view.entries_.empty()) view.entries_.back().up_to = 1.0;
   return view;
 }
 
+// Brightness that a portal shows to its side: nothing to the brighter one.
+double Portals::light_towards(int portal, int side) const {
+  const Portal& of = portals_[static_cast<std::size_t>(portal)];
+  return of.is_dim[side] ? of.brightness[1 - side] : 0.0;
+}
+
 Portals::View Portals::view(const Vector3d& from, const Vector3d& normal, int rays) const {
-  return view_of(from, normal, rays, [](const Portal& portal, int side) {
-    return portal.is_dim[side] ? portal.brightness[1 - side] : 0.0;
-  });
+  return view_of(std::views::iota(0, size()), from, normal, rays,
+                 [this](int portal, int side) { return light_towards(portal, side); });
+}
+
+Portals::View Portals::view_near(const Vector3d& from, const Vector3d& normal, double reach) const {
+  thread_local std::vector<int> around;
+  const Vector3d all_ways = Vector3d::Constant(reach);
+  boxes_.find_overlaps({from - all_ways, from + all_ways}, around);
+  return view_of(around, from, normal, 1,
+                 [this](int portal, int side) { return light_towards(portal, side); });
 }
 
 Portals::View Portals::view_both_ways(const Vector3d& from, const Vector3d& normal,
                                       int rays) const {
-  return view_of(from, normal, rays, [](const Portal&, int) { return 1.0; });
+  return view_of(std::views::iota(0, size()), from, normal, rays, [](int, int) { return 1.0; });
 }
 
 Portals::Aim Portals::draw(const View& view, const Vector3d& from, double which, double u,
