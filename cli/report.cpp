@@ -82,9 +82,11 @@ std::string line(const char* head, const std::string& body) {
   return fmt::format("{:<9} {}\n", head, body);
 }
 
-// Energy balance, and the share of lamps without surface.
+// Energy balance, and the share of lamps without surface. Empty where a report's figures of the
+// same name, the energy of a year, stand in place of the balance.
 std::string energy_text(const Json& facts) {
   const Json& energy = facts["energy"];
+  if (!energy.contains("emitted")) return {};
   const double emitted = energy["emitted"];
   const auto percent = [&](const char* key) {
     const double share = emitted > 0.0 ? 100.0 * energy[key].get<double>() / emitted : 0.0;

@@ -82,6 +82,11 @@ TEST_F(ReportCommand, AreasAreHeldToTheLimitsOfStandards) {
   // 40 W for 2500 h over 12 m2.
   EXPECT_DOUBLE_EQ(json["energy"]["LENI_kWh_per_m2"].get<double>(), 100.0 / 12.0);
   EXPECT_EQ(surface("around")["points"].get<int>() > 0, true);
+  // In text the energy of a year stands in place of the solution's energy balance.
+  const Ended text = run({"report", "room.toml", "room.vtp", "--areas", "areas.toml",
+                          "--activities", "mine.toml", "--watts", "panel=40", "--rays", "64"});
+  EXPECT_EQ(text.code, 0) << text.err;
+  EXPECT_TRUE(says(text.out, "LENI 8.33 kWh/m2"));
 }
 
 TEST_F(ReportCommand, APlaneIsHeldToTheLimitsOfAnActivity) {
