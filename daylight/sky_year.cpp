@@ -120,10 +120,6 @@ std::optional<SkyHour> sky_at(const Weather& weather, int number, const ClockTim
 
 }  // namespace
 
-int year_of_dates(bool is_leap_year) {
-  return is_leap_year ? 2016 : 2017;
-}
-
 std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up,
                                const Eigen::Vector3d& north) {
   const Sky frame{.up = up, .north = north};

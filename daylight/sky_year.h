@@ -8,7 +8,7 @@
 
 #include "daylight/sky_patches.h"
 #include "scene/bands.h"
-#include "scene/io/weather/weather_file.h"
+#include "scene/io/weather/sun_hours.h"
 #include "scene/sky.h"
 #include "scene/sun_position.h"
 
@@ -26,10 +26,6 @@ struct SkyHour {
   /// Illuminance of open level ground by sun and dome, lx.
   double horizontal_lux(const Eigen::Vector3d& up) const;
 };
-
-/// The year whose dates the hours of a typical year have, which is put together from months of
-/// several years: 2017, or the leap year 2016.
-int year_of_dates(bool is_leap_year);
 
 /// The hours of a year in which there is light, in order.
 ///

@@ -37,6 +37,7 @@ NB_MODULE(_lightwell, module) {
   add_pictures(module);
   add_report(module);
   add_radiation(module);
+  add_shortwave(module);
   nb::class_<Threads>(module, "ThreadLimit")
       .def(nb::init<int>(), nb::arg("count"))
       .def("enter", &Threads::enter)

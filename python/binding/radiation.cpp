@@ -1,7 +1,5 @@
-#include <nanobind/stl/array.h>
 #include <nanobind/stl/string.h>
 
-#include <array>
 #include <cmath>
 #include <vector>
 
@@ -10,8 +8,6 @@
 #include "python/binding/long_work.h"
 #include "python/binding/module.h"
 #include "radiosity/radiation/radiant_exchange.h"
-#include "radiosity/radiation/shortwave.h"
-#include "radiosity/radiation/sky_exposure.h"
 
 namespace nb = nanobind;
 
@@ -66,39 +62,6 @@ ArrayOut factors_of(Factors* factors, const ExchangeAreas& areas, const ListIn<d
       result_of_long(nb::none(), [&](const Progress&) { return factors(areas, eps); }));
 }
 
-using Exposure = Eigen::ArrayXd(const FacetViewFactors&, const Eigen::Vector3d&);
-
-/// `direction`: unit.
-ArrayOut exposure_of(Exposure* exposure, const FoundFormFactors& found,
-                     const std::array<double, 3>& direction) {
-  const Eigen::Vector3d towards(direction[0], direction[1], direction[2]);
-  return list_out(result_of_long(
-      nb::none(), [&](const Progress&) { return exposure(found.factors, towards); }));
-}
-
-void add_shortwave(nb::module_& module) {
-  nb::class_<ShortwaveExchange>(module, "ShortwaveExchange")
-      .def_prop_ro("reflected", [](const ShortwaveExchange& s) { return list_out(s.reflected); })
-      .def_prop_ro("net", [](const ShortwaveExchange& s) { return list_out(s.net); })
-      .def_ro("arriving", &ShortwaveExchange::arriving)
-      .def_ro("absorbed", &ShortwaveExchange::absorbed)
-      .def_ro("escaped", &ShortwaveExchange::escaped);
-  module.def("sky_view_factors",
-             [](const FoundFormFactors& found, const std::array<double, 3>& up) {
-               return exposure_of(sky_view_factors, found, up);
-             });
-  module.def("sun_factors", [](const FoundFormFactors& found, const std::array<double, 3>& sun) {
-    return exposure_of(sun_factors, found, sun);
-  });
-  module.def("shortwave_exchange", [](const FoundFormFactors& found, const ListIn<double>& first,
-                                      const ListIn<double>& albedo) {
-    const Eigen::ArrayXd E = list_from(first), of_rows = list_from(albedo);
-    return result_of_long(nb::none(), [&](const Progress&) {
-      return shortwave_exchange(found.factors.factors, E, of_rows);
-    });
-  });
-}
-
 }  // namespace
 
 void add_radiation(nb::module_& module) {
@@ -123,7 +86,6 @@ void add_radiation(nb::module_& module) {
     return factors_of(transfer_factors, areas, emittance);
   });
   module.attr("stefan_boltzmann") = stefan_boltzmann;
-  add_shortwave(module);
 }
 
 }  // namespace lightwell::python

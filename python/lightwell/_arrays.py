@@ -51,6 +51,13 @@ def directions_of(name: str, values: Any, count: int) -> np.ndarray:
     return np.ascontiguousarray(np.broadcast_to(array, (count, 3)))
 
 
+def unit_vector(name: str, direction: Any) -> Tuple[float, float, float]:
+    """A direction of any length but 0 as a unit vector."""
+    vector = directions_of(name, direction, 1)[0]
+    x, y, z = vector / np.linalg.norm(vector)
+    return float(x), float(y), float(z)
+
+
 def integers_of(name: str, values: Any, dtype: type = np.int32) -> np.ndarray:
     """A list of integers within the range of `dtype`, in one piece of memory."""
     array = array_of(name, values)

@@ -1,45 +1,73 @@
-"""Sky view factors, and sun and sky on facets with all reflections, on top of view factors."""
+"""Sky view factors, and sun and sky on facets and points with all reflections, on view factors."""
 
-from typing import Any, Sequence, Tuple
+from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _lightwell
-from ._arrays import at_least_zero, directions_of
+from ._arrays import array_of, checked_progress, directions_of, points_of, unit_vector, whole_number
 from ._errors import InputError
 from ._form_factors import FormFactors
 from ._radiation import PerSurface, _rows
-from ._scene import fixed
+from ._scene import Progress, fixed
+
+
+class PointLight(NamedTuple):
+    """Sun and sky at points. p is the number of points; of h instants, (p,) becomes (h, p)."""
+
+    sky_view_factor: np.ndarray
+    """(p,) float64, 0 to 1: share of the hemisphere, weighted by the cosine, that shows the sky."""
+    direct: np.ndarray
+    """(p,) float64, W/m^2, irradiance by the sun."""
+    diffuse: np.ndarray
+    """(p,) float64, W/m^2, irradiance by the sky."""
+    reflected: np.ndarray
+    """(p,) float64, W/m^2, irradiance by what rows reflect."""
+    total: np.ndarray
+    """(p,) float64, W/m^2, the sum of the three."""
 
 
 class Shortwave:
     """Sun and sky on the rows of view factors; made by `shortwave`. n is the number of rows.
 
-    Arrays are read-only.
+    Arrays are read-only. Of h instants, light of the shape (n,) becomes (h, n), and powers (h,).
     """
 
-    def __init__(self, sky: np.ndarray, direct: np.ndarray, diffuse: np.ndarray, exchange: Any):
-        self.sky_view_factor: np.ndarray = fixed(sky)
+    def __init__(self, found: "_lightwell.ShortwaveArrays", is_series: bool, has_points: bool):
+        def light(values: np.ndarray) -> np.ndarray:
+            return fixed(values if is_series else values[0])
+
+        def power(values: np.ndarray) -> Any:
+            return fixed(values) if is_series else float(values[0])
+
+        self.sky_view_factor: np.ndarray = fixed(found.sky_view)
         """(n,) float64, 0 to 1: share of a row's radiation that reaches the dome above the horizon."""
-        self.direct: np.ndarray = fixed(direct)
+        self.direct: np.ndarray = light(found.direct)
         """(n,) float64, W/m^2, irradiance by the sun, mean over the row."""
-        self.diffuse: np.ndarray = fixed(diffuse)
+        self.diffuse: np.ndarray = light(found.diffuse)
         """(n,) float64, W/m^2, irradiance by the sky."""
-        self.reflected: np.ndarray = fixed(exchange.reflected)
+        self.reflected: np.ndarray = light(found.reflected)
         """(n,) float64, W/m^2, irradiance by what rows reflect."""
-        self.net: np.ndarray = fixed(exchange.net)
+        self.net: np.ndarray = light(found.net)
         """(n,) float64, W/m^2, absorbed: (1 - albedo) (direct + diffuse + reflected)."""
-        self.arriving: float = exchange.arriving
+        self.arriving: Union[float, np.ndarray] = power(found.arriving)
         """W, from sun and sky on all rows."""
-        self.absorbed: float = exchange.absorbed
+        self.absorbed: Union[float, np.ndarray] = power(found.absorbed)
         """W, by all rows."""
-        self.escaped: float = exchange.escaped
+        self.escaped: Union[float, np.ndarray] = power(found.escaped)
         """W, reflected out of the openings; `absorbed` and `escaped` add up to `arriving`."""
+        self.points: Optional[PointLight] = None
+        """Light at `points`; None where none were given."""
+        if has_points:
+            sun, sky, rows = light(found.point_direct), light(found.point_diffuse), light(found.point_reflected)
+            self.points = PointLight(fixed(found.point_sky_view), sun, sky, rows, fixed(sun + sky + rows))
 
     def __repr__(self) -> str:
+        rows, instants = self.net.shape[-1], np.size(self.arriving)
+        many = f"{instants} instants, sums of " if self.net.ndim > 1 else ""
         return (
-            f"<lightwell.Shortwave: {len(self.net)} rows, {self.arriving:.6g} W arrive, "
-            f"{self.absorbed:.6g} W are absorbed>"
+            f"<lightwell.Shortwave: {rows} rows, {many}{np.sum(self.arriving):.6g} W arrive, "
+            f"{np.sum(self.absorbed):.6g} W are absorbed>"
         )
 
 
@@ -47,44 +75,91 @@ def shortwave(
     factors: FormFactors,
     *,
     albedo: PerSurface,
-    sun: Sequence[float] = (),
-    direct: float = 0.0,
-    diffuse: float = 0.0,
+    sun: Any = (),
+    direct: Any = 0.0,
+    diffuse: Any = 0.0,
     up: Sequence[float] = (0.0, 0.0, 1.0),
+    points: Any = None,
+    normals: Any = None,
+    rays: Optional[int] = None,
+    progress: Optional[Progress] = None,
 ) -> Shortwave:
     """Sky view factors of rows, and the sun and sky that rows absorb after all diffuse reflections.
 
     factors: result of `form_factors`.
     albedo: 0 to 0.99: one value, (n,) values, or values by the name of the surface.
-    sun: (3,), towards the sun, of any length; above the horizon.
-    direct: irradiance across the sun's rays, W/m^2.
-    diffuse: irradiance of open level ground by an even sky, W/m^2. No light comes from below the
-        horizon.
+    sun: (3,), towards the sun, of any length; above the horizon. (h, 3): of h instants.
+    direct: irradiance across the sun's rays, W/m^2: one value, or (h,).
+    diffuse: irradiance of open level ground by an even sky, W/m^2: one value, or (h,). No light comes
+        from below the horizon.
     up: (3,), to the zenith, of any length.
+    points: (p, 3), metres: also light at these points, in the air or on facets.
+    normals: (p, 3) or (3,), of any length: the directions that the points face.
+    rays: fewest shadow rays of a row's patch for each place of the sun, a power of two from 64 to 1024;
+        by default 1024 for one instant and 64 for more.
+    progress: called with the phase and the share done; False stops the work.
 
-    Raises InputError.
+    What does not depend on the sun is computed once for all instants. Numbers are those of
+    `lightwell shortwave`, bit for bit.
+
+    Raises InputError, and Interrupted after False.
     """
     if not isinstance(factors, FormFactors):
         raise InputError("factors must be a result of form_factors, which knows the geometry")
-    count = len(factors.areas)
-    zenith = _unit("up", up)
-    sky = _lightwell.sky_view_factors(factors._found, zenith)
-    from_sky = at_least_zero("diffuse", diffuse) * sky
-    from_sun = np.zeros(count)
-    across = at_least_zero("direct", direct)
-    if across > 0.0:
-        if len(sun) == 0:
+    asked = _lightwell.ShortwaveQuestion()
+    asked.up = unit_vector("up", up)
+    is_series, asked.suns, asked.direct, asked.diffuse = _instants(sun, direct, diffuse, asked.up)
+    asked.albedo = np.ascontiguousarray(_rows("albedo", albedo, len(factors.areas), factors, np.nan))
+    if (points is None) != (normals is None):
+        raise InputError("points need the directions that they face; give points and normals")
+    places = points_of("points", np.zeros((0, 3)) if points is None else points)
+    asked.points = places
+    asked.normals = places if points is None else directions_of("normals", normals, len(places))
+    usual = _lightwell.rays_of_many_suns if is_series else _lightwell.rays_of_one_sun
+    asked.rays = _checked_rays(usual if rays is None else rays)
+    found = _lightwell.shortwave(factors._found, asked, checked_progress(progress))
+    return Shortwave(found, is_series, points is not None)
+
+
+def _checked_rays(rays: Any) -> int:
+    count = whole_number("rays", rays, _lightwell.rays_of_many_suns, _lightwell.rays_of_one_sun)
+    if count & (count - 1):
+        raise InputError(f"rays is {count}; a power of two is needed, such as 256")
+    return count
+
+
+def _instants(
+    sun: Any, direct: Any, diffuse: Any, up: Tuple[float, float, float]
+) -> Tuple[bool, np.ndarray, np.ndarray, np.ndarray]:
+    """True for a list of instants; unit vectors to the sun (h, 3), direct and diffuse light (h,)."""
+    given = {"direct": array_of("direct", direct), "diffuse": array_of("diffuse", diffuse)}
+    counts = {name: len(values) for name, values in given.items() if values.ndim > 0}
+    if np.ndim(sun) == 2:
+        counts["sun"] = len(sun)
+    is_series = bool(counts)
+    count = max(counts.values(), default=1)
+    for name, length in counts.items():
+        if length not in (1, count) or length == 0:
+            raise InputError(f"{name} has {length} instants where others have {count}; give one each")
+    lights = [_irradiances(name, values, count) for name, values in given.items()]
+    if np.size(sun) == 0:
+        if (lights[0] > 0.0).any():
             raise InputError("direct light needs the direction of the sun; give sun=(x, y, z)")
-        towards = _unit("sun", sun)
-        if not float(np.dot(towards, zenith)) > 0.0:
-            raise InputError("the sun is below the horizon; give direct=0, or a sun above")
-        from_sun = across * _lightwell.sun_factors(factors._found, towards)
-    shares = _rows("albedo", albedo, count, factors, np.nan)
-    exchange = _lightwell.shortwave_exchange(factors._found, from_sun + from_sky, shares)
-    return Shortwave(sky, from_sun, from_sky, exchange)
+        return is_series, np.tile(np.array(up), (count, 1)), lights[0], lights[1]
+    towards = directions_of("sun", sun, count)
+    towards = towards / np.linalg.norm(towards, axis=1)[:, np.newaxis]
+    below = np.flatnonzero((lights[0] > 0.0) & ~(towards @ np.array(up) > 0.0))
+    if below.size:
+        where = f" at instant {below[0]}" if is_series else ""
+        raise InputError(f"the sun is below the horizon{where}; give direct=0, or a sun above")
+    return is_series, np.ascontiguousarray(towards), lights[0], lights[1]
 
 
-def _unit(name: str, direction: Sequence[float]) -> Tuple[float, float, float]:
-    vector = directions_of(name, direction, 1)[0]
-    x, y, z = vector / np.linalg.norm(vector)
-    return float(x), float(y), float(z)
+def _irradiances(name: str, values: np.ndarray, count: int) -> np.ndarray:
+    if values.ndim > 1:
+        raise InputError(f"{name} has the shape {values.shape}; one value, or one for each instant, is needed")
+    light = np.ascontiguousarray(np.broadcast_to(values, (count,)), dtype=np.float64)
+    bad = np.flatnonzero(~(np.isfinite(light) & (light >= 0.0)))
+    if bad.size:
+        raise InputError(f"{name} is {light[bad[0]]:g}; a number of 0 or more is needed")
+    return light

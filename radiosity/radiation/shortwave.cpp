@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "scene/errors.h"
+#include "scene/parallel.h"
 
 namespace lightwell {
 namespace {
@@ -67,6 +68,18 @@ ShortwaveExchange shortwave_exchange(const ViewFactors& view_factors, const Eige
     result.escaped += A * (view_factors.open[r] + view_factors.blocked[r]) * albedo[i] * E[i];
   }
   return result;
+}
+
+std::vector<ShortwaveExchange> shortwave_exchanges(const ViewFactors& view_factors,
+                                                   std::span<const Eigen::ArrayXd> first,
+                                                   const Eigen::ArrayXd& albedo) {
+  std::vector<ShortwaveExchange> results(first.size());
+  parallel_for(static_cast<int>(first.size()), 1, [&](int begin, int end) {
+    for (auto h = static_cast<std::size_t>(begin); h < static_cast<std::size_t>(end); ++h) {
+      results[h] = shortwave_exchange(view_factors, first[h], albedo);
+    }
+  });
+  return results;
 }
 
 }  // namespace lightwell

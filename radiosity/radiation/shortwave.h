@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
+#include <vector>
 
 #include "radiosity/form_factors/view_factors.h"
 
@@ -25,5 +27,10 @@ struct ShortwaveExchange {
 /// InputError that names the row for numbers out of range, and if there are not as many as rows.
 ShortwaveExchange shortwave_exchange(const ViewFactors& view_factors, const Eigen::ArrayXd& first,
                                      const Eigen::ArrayXd& albedo);
+
+/// The same for each of many instants, `first`, in parallel.
+std::vector<ShortwaveExchange> shortwave_exchanges(const ViewFactors& view_factors,
+                                                   std::span<const Eigen::ArrayXd> first,
+                                                   const Eigen::ArrayXd& albedo);
 
 }  // namespace lightwell

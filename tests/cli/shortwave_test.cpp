@@ -1,7 +1,11 @@
 // Sky view factors and net shortwave flux by the command line.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
+#include <cstring>
+#include <numbers>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -98,6 +102,96 @@ TEST_F(Shortwave, TheZenithIsThatOfTheOption) {
   EXPECT_LE(table(5)[0][0], 0.5 + 0.016);  // four standard errors of 16384 rays
 }
 
+// At 48 degrees north, 0 east. Every hour of 21 June from 4 to 20 o'clock has 500 W/m2 across the
+// sun's rays, and 100 W/m2 of the sky; all other days are dark.
+std::string june_weather() {
+  std::string text =
+      "place Test\nlatitude 48\nlongitude 0\ntime_zone 0\nsite_elevation 0\n"
+      "weather_data_file_units 1\n";
+  for (int hour = 4; hour < 20; ++hour) text += fmt::format("6 21 {}.5 500 100\n", hour);
+  return text;
+}
+
+TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
+  folder.write("june.wea", june_weather());
+  folder.write("p.csv", "x,y,z,nx,ny,nz\n5,500,0,0,0,1\n5,500,20,0,0,1\n");
+  const std::vector<std::string> wanted{"--albedo", "0.3",   "--weather",       "june.wea",
+                                        "--points", "p.csv", "--points-output", "q.csv"};
+  const Ended ended = shortwave(
+      wanted + std::vector<std::string>{"--days", "06-20..06-22", "--hourly", "hours", "--json"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto json = nlohmann::json::parse(ended.out);
+  ASSERT_EQ(json["hours"], 16);
+  const double arriving = json["arriving_kwh"].get<double>();
+  EXPECT_NEAR(json["absorbed_kwh"].get<double>() + json["escaped_kwh"].get<double>(), arriving,
+              1e-6 * arriving);
+  const auto rows = table(5);  // sky_view_factor, then kWh/m2: direct, diffuse, reflected, net
+  ASSERT_EQ(rows.size(), 3u);
+  for (const auto& row : rows) EXPECT_NEAR(row[2], 1.6 * row[0], 1e-8);
+  // hours.csv, and net.npy of 128 bytes and 16 x 3 floats, hold the same.
+  std::istringstream lines(content_of(folder / "hours/hours.csv"));
+  std::string line;
+  std::getline(lines, line);
+  double sum = 0.0, up = 0.0;
+  for (int h = 0; h < 16; ++h) {
+    ASSERT_TRUE(std::getline(lines, line));
+    std::istringstream parts(line);
+    std::vector<std::string> cells;
+    for (std::string cell; std::getline(parts, cell, ',');) cells.push_back(cell);
+    ASSERT_EQ(cells.size(), 11u);
+    EXPECT_EQ(cells[3], fmt::format("{:02d}:30", 4 + h));
+    sum += std::stod(cells[8]);
+    up += std::sin(std::stod(cells[4]) * std::numbers::pi / 180.0);
+  }
+  EXPECT_NEAR(sum / 1000.0, arriving, 1e-8 * arriving);
+  const std::string net = content_of(folder / "hours/net.npy");
+  ASSERT_EQ(net.size(), 128 + 16 * 3 * sizeof(float));
+  double of_road = 0.0;
+  for (std::size_t h = 0; h < 16; ++h) {
+    float value = 0.0f;
+    std::memcpy(&value, net.data() + 128 + h * 3 * sizeof(float), sizeof(float));
+    of_road += double{value};
+  }
+  EXPECT_NEAR(of_road / 1000.0, rows[0][4], 16 * 500e-3 * 6e-8 + 1e-8);  // floats; nine digits
+  // The second point, above the roofs, has all of the sun and all of the sky, and no wall in view.
+  std::istringstream points(content_of(folder / "q.csv"));
+  std::getline(points, line);
+  EXPECT_EQ(line, "x,y,z,nx,ny,nz,sky_view_factor,direct_kwh,diffuse_kwh,reflected_kwh,total_kwh");
+  std::getline(points, line);
+  std::getline(points, line);
+  EXPECT_TRUE(line.starts_with("5,500,20,0,0,1,1,"));
+  // Angles have four decimals: 5e-5 degrees in each of 16 hours.
+  EXPECT_NEAR(std::stod(line.substr(std::string("5,500,20,0,0,1,1,").size())), 0.5 * up,
+              0.5 * 16 * 5e-5 * std::numbers::pi / 180.0 + 1e-8);
+  EXPECT_NE(line.find(",1.6,0,"), std::string::npos);
+  // Without days the year has the same 16 hours.
+  ASSERT_EQ(shortwave(wanted).code, 0);
+  EXPECT_EQ(table(5), rows);
+}
+
+TEST_F(Shortwave, PointsOfAnInstantHaveSunSkyAndReflections) {
+  folder.write("p.csv", "0,500,10,1,0,0\n");
+  const Ended ended =
+      shortwave({"--albedo", "0.3", "--sun", "45,90", "--direct", "800", "--diffuse", "100",
+                 "--points", "p.csv", "--points-output", "q.csv"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  std::istringstream lines(content_of(folder / "q.csv"));
+  std::string line;
+  std::getline(lines, line);
+  std::getline(lines, line);
+  std::istringstream parts(line);
+  std::vector<double> cells;
+  for (std::string cell; std::getline(parts, cell, ',');) cells.push_back(std::stod(cell));
+  ASSERT_EQ(cells.size(), 11u);
+  // Five metres below the tops the sky ends at atan(5 / 10) above the horizon.
+  const double sky = 0.5 * (1.0 - 5.0 / std::hypot(5.0, 10.0));
+  EXPECT_NEAR(cells[6], sky, 4.0 * std::sqrt(sky * (1.0 - sky) / 16384.0));
+  EXPECT_NEAR(cells[7], 800 * std::sqrt(0.5), 1e-6);
+  EXPECT_NEAR(cells[8], 100 * cells[6], 1e-6);
+  EXPECT_GT(cells[9], 0.0);
+  EXPECT_NEAR(cells[10], cells[7] + cells[8] + cells[9], 1e-5);
+}
+
 TEST_F(Shortwave, WrongOptionsAndTablesAreRefused) {
   struct Case {
     std::vector<std::string> options;
@@ -105,6 +199,7 @@ TEST_F(Shortwave, WrongOptionsAndTablesAreRefused) {
     std::string says;
   };
   folder.write("white.csv", "surface,albedo\n*,1\n");
+  folder.write("june.wea", june_weather());
   folder.write("empty.csv", "surface,albedo\n*,\n");
   const std::vector<Case> cases{
       {{"--direct", "800", "--albedo", "0.2"}, 2, "the sun needs a place"},
@@ -115,6 +210,18 @@ TEST_F(Shortwave, WrongOptionsAndTablesAreRefused) {
       {{"--diffuse", "nan", "--albedo", "0"}, 2, "not 'nan'"},
       {{"--up", "x"}, 2, "x"},
       {{"--udales", "case", "--case", "1"}, 2, "three digits are needed, not '1'"},
+      {{"--case", "001"}, 2, "the number names the files of --udales FOLDER; give the folder"},
+      {{"--points", "white.csv"}, 2, "points are read from --points FILE and written to"},
+      {{"--points-output", "q.csv"}, 2, "give both"},
+      {{"--days", "06-21"}, 2, "days are those of --weather FILE"},
+      {{"--hourly", "hours"}, 2, "hours are those of --weather FILE"},
+      {{"--weather", "june.wea", "--days", "6/21"}, 2, "'6/21' is no span of days"},
+      {{"--weather", "june.wea", "--days", "02-30..03-01"}, 2, "is no span of days"},
+      {{"--weather", "june.wea"}, 2, "give --albedo A"},
+      {{"--weather", "june.wea", "--albedo", "0", "--diffuse", "9"}, 2, "give either"},
+      {{"--weather", "june.wea", "--albedo", "0", "--udales", "case"}, 2, "have one instant"},
+      {{"--weather", "june.wea", "--albedo", "0", "--days", "12-24"}, 3, "no hour of the days"},
+      {{"--rays", "48"}, 2, "48"},
       {{"--surfaces", "white.csv"}, 3, "white.csv:2: the albedo is 1; it lies from 0 to 0.99"},
       {{"--surfaces", "empty.csv"}, 3, "empty.csv:2: has no albedo"}};
   for (const auto& [options, code, sentence] : cases) {

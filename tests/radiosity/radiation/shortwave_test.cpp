@@ -6,7 +6,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <span>
+#include <string_view>
+#include <vector>
 
+#include "radiosity/radiation/shortwave_model.h"
 #include "radiosity/radiation/sky_exposure.h"
 #include "scene/errors.h"
 #include "scene/io/default_material.h"
@@ -130,6 +134,91 @@ TEST(ShortwaveExchange, AddsUpManyReflections) {
   EXPECT_NEAR(result.net[0], 0.01 / (1.0 - 0.99 * 0.99), 1e-8);
   EXPECT_NEAR(result.absorbed, 1.0, 1e-7);
   EXPECT_EQ(result.escaped, 0.0);
+}
+
+// A point of the road sees the sky between the walls' tops, which stand at the angles a and b above
+// the horizon: (cos a + cos b) / 2. A point of a wall at the height z sees it above the other's top
+// and up to its own plane: (1 - sin c) / 2, c of the other's top.
+TEST(PointViews, OfAStreetAreThoseOfItsClosedForm) {
+  const FacetViewFactors found = street();
+  const ElementCaster caster(found.mesh);
+  const double y = 5e5, x = 2.5, z = 6.0;
+  const std::vector<ExposurePoint> points{
+      {.position = {x, y, 0.0}, .normal = zenith, .facet = 0},
+      {.position = {0.0, y, z}, .normal = Eigen::Vector3d::UnitX(), .facet = 1},
+      {.position = {x, y, height + 1.0}, .normal = zenith},
+      {.position = {x, y, 1.0}, .normal = -zenith}};
+  const PointViews views = point_views(found, caster, points, zenith);
+  const auto cosine = [](double d) { return d / std::hypot(d, height); };
+  const double of_road = 0.5 * (cosine(x) + cosine(width - x));
+  const double of_wall = 0.5 * (1.0 - (height - z) / std::hypot(height - z, width));
+  // Four standard errors of independent rays; stratified ones err less.
+  const auto noise = [](double p) { return 4.0 * std::sqrt(p * (1.0 - p) / 16384.0); };
+  EXPECT_NEAR(views.sky[0], of_road, noise(of_road));
+  EXPECT_NEAR(views.sky[1], of_wall, noise(of_wall));
+  EXPECT_EQ(views.sky[2], 1.0);
+  EXPECT_EQ(views.sky[3], 0.0);
+  ASSERT_EQ(views.rows[0].size(), 2u);
+  EXPECT_NEAR(views.rows[0][0].value, 0.5 * (1.0 - cosine(x)), noise(0.5 * (1.0 - cosine(x))));
+  ASSERT_EQ(views.rows[3].size(), 1u);
+  EXPECT_EQ(views.rows[3][0].patch, 0);
+  // A sun at 45 degrees shines on the road from x = height on, and above the walls.
+  const Eigen::ArrayXd sun = point_sun_factors(caster, points, sun_over_second_wall(45.0));
+  EXPECT_EQ(sun[0], 0.0);
+  EXPECT_NEAR(sun[1], std::sqrt(0.5), 1e-12);  // the shadow ends at height - width = 5 m
+  EXPECT_NEAR(sun[2], std::sqrt(0.5), 1e-12);
+  EXPECT_EQ(sun[3], 0.0);
+}
+
+// Light of an instant does not depend on those beside it; the light at points in the middle of the
+// road is near that of the rows they lie on, and adds up with the model's rows.
+TEST(ShortwaveModel, ComputesEachInstantAsIfItWereAlone) {
+  const FacetViewFactors found = street();
+  const ElementCaster caster(found.mesh);
+  const std::vector<ExposurePoint> points{
+      {.position = {0.5 * width, 5e5, 0.0}, .normal = zenith, .facet = 0}};
+  const ShortwaveModel model(found, caster, points, zenith);
+  const Eigen::Array3d albedo(0.1, 0.6, 0.4);
+  std::vector<SunAndSky> instants;
+  for (int i = 0; i < 40; ++i) {  // more than are computed at the same time
+    instants.push_back(
+        {.sun = sun_over_second_wall(50.0 + i), .direct = 20.0 * i, .diffuse = 100.0 + i});
+  }
+  int seen = 0;
+  model.run(instants, albedo, rays_of_many_suns, [&](int number, const ShortwaveInstant& light) {
+    EXPECT_EQ(number, seen++);
+    const auto h = static_cast<std::size_t>(number);
+    if (number % 13 != 0) return;
+    model.run(std::span(instants).subspan(h, 1), albedo, rays_of_many_suns,
+              [&](int, const ShortwaveInstant& alone) {
+                EXPECT_TRUE((alone.direct == light.direct).all());
+                EXPECT_TRUE((alone.exchange.net == light.exchange.net).all());
+                EXPECT_TRUE((alone.point_reflected == light.point_reflected).all());
+              });
+    const double sky = model.points().sky[0];
+    EXPECT_DOUBLE_EQ(light.point_diffuse[0], (100.0 + number) * sky);
+    // By reciprocity between the point and each of the two walls, F = (1 - sky) / 2 each by
+    // symmetry, to four standard errors of independent rays.
+    const Eigen::ArrayXd E = light.direct + light.diffuse + light.exchange.reflected;
+    const double expected = 0.5 * (1.0 - sky) * (0.6 * E[1] + 0.4 * E[2]);
+    EXPECT_NEAR(light.point_reflected[0], expected,
+                4.0 * std::sqrt(0.25 / 16384.0) * (0.6 * E[1] + 0.4 * E[2]));
+  });
+  EXPECT_EQ(seen, 40);
+}
+
+TEST(ShortwaveModel, StopsWhereProgressSaysSo) {
+  const FacetViewFactors found = street();
+  const ElementCaster caster(found.mesh);
+  const ShortwaveModel model(found, caster, {}, zenith);
+  const Progress stop_at_half = [](std::string_view, double share) { return share < 0.5; };
+  const std::vector<SunAndSky> instants(4, {.direct = 1.0});
+  const auto ignore = [](int, const ShortwaveInstant&) {};
+  EXPECT_THROW(
+      model.run(instants, Eigen::Array3d(0, 0, 0), rays_of_many_suns, ignore, stop_at_half),
+      Interrupted);
+  const Progress never = [](std::string_view, double) { return false; };
+  EXPECT_THROW(sky_view_factors(found, zenith, never), Interrupted);
 }
 
 TEST(ShortwaveExchange, RefusesNumbersOutOfRange) {
