@@ -68,6 +68,11 @@ void add_report(nb::module_& module) {
           "spacing", [](const ReportRequest& r) { return r.grids.spacing; },
           [](ReportRequest& r, double v) { r.grids.spacing = positive("spacing", v); })
       .def_rw("maintenance", &ReportRequest::maintenance_factor)
+      .def_rw("areas", &ReportRequest::areas)
+      .def_rw("activity", &ReportRequest::activity)
+      .def_rw("activities", &ReportRequest::activities)
+      .def_rw("sports", &ReportRequest::sports)
+      .def_rw("colour_samples", &ReportRequest::colours)
       .def_prop_rw(
           "rays", [](const ReportRequest& r) { return r.rays; },
           [](ReportRequest& r, int v) { r.rays = power_of_two("rays", v); })

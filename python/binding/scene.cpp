@@ -81,6 +81,8 @@ struct View {
   std::optional<double> fov_degrees{};
   int width = 512, height = 512;
   std::string projection = "perspective";
+  std::vector<double> shift{0.0, 0.0};
+  std::vector<double> distortion{0.0, 0.0, 0.0, 0.0, 0.0};  ///< k1, k2, k3, p1, p2
 };
 
 Projection projection_of(const View& view) {
@@ -89,6 +91,25 @@ Projection projection_of(const View& view) {
   for (const NamedProjection& each : named_projections) names += fmt::format(" {}", each.name);
   throw InputError(fmt::format("camera '{}': there is no projection '{}'; choose from:{}",
                                view.name, view.projection, names));
+}
+
+void set_lens(const View& view, Camera& camera) {
+  if (view.shift.size() != 2) {
+    throw InputError(fmt::format(
+        "camera '{}': shift has {} numbers; give two, shares of the width and of the height",
+        view.name, view.shift.size()));
+  }
+  if (view.distortion.size() != 5) {
+    throw InputError(
+        fmt::format("camera '{}': distortion has {} numbers; give five, k1, k2, k3, p1 and p2",
+                    view.name, view.distortion.size()));
+  }
+  camera.shift = {view.shift[0], view.shift[1]};
+  camera.distortion = {.k1 = view.distortion[0],
+                       .k2 = view.distortion[1],
+                       .k3 = view.distortion[2],
+                       .p1 = view.distortion[3],
+                       .p2 = view.distortion[4]};
 }
 
 Camera camera_of(const View& view) {
@@ -108,6 +129,7 @@ Camera camera_of(const View& view) {
   camera.fov_degrees = view.fov_degrees.value_or(named(camera.projection).usual);
   camera.width = whole_number("width", view.width, 1, max_picture_edge);
   camera.height = whole_number("height", view.height, 1, max_picture_edge);
+  set_lens(view, camera);
   validate(camera);
   return camera;
 }
@@ -126,7 +148,9 @@ void add_camera(nb::module_& module) {
       .def_rw("fov_degrees", &View::fov_degrees)
       .def_rw("width", &View::width)
       .def_rw("height", &View::height)
-      .def_rw("projection", &View::projection);
+      .def_rw("projection", &View::projection)
+      .def_rw("shift", &View::shift)
+      .def_rw("distortion", &View::distortion);
   module.def("camera_of", camera_of, nb::arg("view"));
   nb::class_<Camera>(module, "Camera")
       .def_prop_ro("name", [](const Camera& c) { return c.name; })
@@ -137,7 +161,15 @@ void add_camera(nb::module_& module) {
       .def_ro("width", &Camera::width)
       .def_ro("height", &Camera::height)
       .def_prop_ro("projection",
-                   [](const Camera& c) { return std::string(named(c.projection).name); });
+                   [](const Camera& c) { return std::string(named(c.projection).name); })
+      .def_prop_ro("shift",
+                   [](const Camera& c) {
+                     return std::vector{c.shift.x(), c.shift.y()};
+                   })
+      .def_prop_ro("distortion", [](const Camera& c) {
+        const LensDistortion& d = c.distortion;
+        return std::vector{d.k1, d.k2, d.k3, d.p1, d.p2};
+      });
 }
 
 SharedScene read(const std::filesystem::path& path, bool inside_folder,

@@ -74,6 +74,10 @@ class Camera:
     height: int = 512
     projection: str = "perspective"
     name: str = "camera"
+    shift: Sequence[float] = (0.0, 0.0)
+    """Shift of the lens to the right and upwards, in shares of the picture's width and height."""
+    distortion: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0)
+    """Coefficients k1, k2, k3, p1, p2 of Brown's lens distortion, of perspective cameras."""
 
     def _compiled(self) -> "_lightwell.Camera":
         view = _lightwell.View()
@@ -85,6 +89,8 @@ class Camera:
         view.width = whole_number("width", self.width, 1, 32768)
         view.height = whole_number("height", self.height, 1, 32768)
         view.projection = str(self.projection)
+        view.shift = _values("shift", self.shift)
+        view.distortion = _values("distortion", self.distortion)
         return _lightwell.camera_of(view)
 
 
@@ -99,6 +105,8 @@ def _camera(compiled: "_lightwell.Camera") -> Camera:
         height=compiled.height,
         projection=compiled.projection,
         name=compiled.name,
+        shift=tuple(compiled.shift),
+        distortion=tuple(compiled.distortion),
     )
 
 
@@ -124,6 +132,7 @@ class Scene:
                 "a Scene is made by lightwell.read(path) or lightwell.Scene.from_arrays(vertices, faces)"
             )
         self._data = data
+        self._first_notes: List[str] = []
         self._triangles: Optional[Tuple[np.ndarray, np.ndarray, np.ndarray]] = None
 
     @classmethod
@@ -288,7 +297,7 @@ class Scene:
     @property
     def notes(self) -> List[str]:
         """Assumptions, repairs and omissions, a sentence each."""
-        return self._data.notes
+        return self._first_notes + self._data.notes
 
     @property
     def losses(self) -> List[str]:

@@ -327,7 +327,12 @@ class Solution:
         watts: Mapping[str, float] = {},
         margin: Optional[float] = None,
         spacing: Optional[float] = None,
-        maintenance: float = 1.0,
+        maintenance: Optional[float] = None,
+        areas: Optional[Path] = None,
+        activity: str = "",
+        activities: Optional[Path] = None,
+        sports: Optional[Path] = None,
+        colour_samples: Optional[Path] = None,
         rays: int = 1024,
         camera: Optional[str] = None,
         language: str = "en",
@@ -341,7 +346,12 @@ class Solution:
         watts: electric power of each luminaire, by its name.
         margin: strip along the outline of planes that is left out, metres (0.5).
         spacing: largest distance between points, metres (by EN 12464-1).
-        maintenance: maintenance factor of electric light, above 0 up to 1.
+        maintenance: maintenance factor of electric light, above 0 up to 1 (that of the design, or 1).
+        areas: .toml with grids and areas of EN 12464-1, EN 1838 and EN 12193, in place of those of the
+            scene's file, which are held to their limits otherwise.
+        activity: of EN 12464-1, to which working planes without an area are held: "writing", ...
+        activities, sports: .toml, tables of limits in place of the program's.
+        colour_samples: .csv, the 99 samples of TM-30, for R_f and R_g of observers.
         rays: of the gather at each point, a power of two.
         camera: of the picture on the page (the first).
         language: of .pdf and .html: "en", "de", "fr" or "es".
@@ -356,9 +366,13 @@ class Solution:
         for name, power in watts.items():
             request.add_watts(str(name), real_number(f"the power of {name}", power))
         request.margin = None if margin is None else at_least_zero("margin", margin)
-        request.maintenance = real_number("maintenance", maintenance)
-        if not 0.0 < request.maintenance <= 1.0:
-            raise InputError(f"maintenance is {maintenance}; a factor above 0 up to 1 is needed")
+        if maintenance is not None:
+            request.maintenance = real_number("maintenance", maintenance)
+            if not 0.0 < request.maintenance <= 1.0:
+                raise InputError(f"maintenance is {maintenance}; a factor above 0 up to 1 is needed")
+        request.activity = str(activity)
+        tables = {"areas": areas, "activities": activities, "sports": sports, "colour_samples": colour_samples}
+        set_options(request, {name: None if file is None else os.fspath(file) for name, file in tables.items()})
         files = [os.fspath(path) for path in paths]
         request.has_picture = any(file.endswith((".html", ".pdf")) for file in files)
         request.camera = "" if camera is None else str(camera)

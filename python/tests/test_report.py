@@ -31,6 +31,33 @@ class Report(unittest.TestCase):
                 self.assertEqual(a.read(), b.read())
         self.assertGreater(os.path.getsize(ours[2]), 10000)
 
+    def test_areas_are_held_to_their_limits(self):
+        folder = scratch(self)
+        areas, vtp, theirs = (os.path.join(folder, name) for name in ("areas.toml", "r.vtp", "r.json"))
+        with open(areas, "w", encoding="utf-8") as file:
+            file.write('[maintenance]\nlamp_flux = 0.7\n')
+            file.write('[[grids]]\nname = "work"\nsurface = "floor"\nheight = 0.75\nspacing = 1\n')
+            file.write('[[areas]]\nname = "desk"\nactivity = "writing"\ngrid = "work"\n')
+        solution = lw.solve(lw.read(ROOM), refine="off", gather_rays=16)
+        solution.save(vtp)
+        run_program("report", ROOM, vtp, "--areas", areas, "--rays", "16", "-o", theirs)
+        figures = solution.report(areas=areas, rays=16)
+        with open(theirs, encoding="utf-8") as file:
+            self.assertEqual(figures, json.load(file))
+        self.assertEqual(figures["maintenance_factor"], 0.7)
+        self.assertEqual({limit["area"] for limit in figures["requirements"]}, {"desk"})
+        self.assertEqual(solution.report(areas=areas, rays=16, maintenance=1)["maintenance_factor"], 1.0)
+        corridor = solution.report(planes={"floor": 0.1}, spacing=1, activity="corridor", rays=16)
+        self.assertIn(corridor["verdict"], ("met", "missed", "too close to tell"))
+        for wrong, sentence in (
+            ({"activity": "sleeping"}, "sleeping"),
+            ({"areas": os.path.join(folder, "none.toml")}, "none.toml"),
+            ({"activities": vtp, "activity": "corridor"}, "r.vtp"),
+            ({"areas": areas, "maintenance": 0}, "maintenance is 0"),
+        ):
+            with self.subTest(wrong), self.assertRaisesRegex(lw.InputError, sentence):
+                solution.report(surfaces=["floor"], rays=16, **wrong)
+
     def test_is_written_as_pdf_in_a_language(self):
         folder = scratch(self)
         pdf, page = (os.path.join(folder, name) for name in ("r.pdf", "r.html"))

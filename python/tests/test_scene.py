@@ -59,6 +59,26 @@ class FromArrays(unittest.TestCase):
             scene.materials[0].reflectance, np.array([0.1, 0.2, 0.25], np.float32)
         )
 
+    def test_cameras_keep_their_lens(self):
+        lens = {"shift": (0.25, -0.5), "distortion": (0.1, -0.02, 0.003, 0.004, -0.005)}
+        camera = lw.Camera(position=(1, 1, 1), target=(2, 1, 1), fov=60.0, width=320, height=240, **lens)
+        vertices, faces = box()
+        scene = lw.Scene.from_arrays(vertices, faces, cameras=camera)
+        self.assertEqual(scene.cameras[0].shift, lens["shift"])
+        self.assertEqual(scene.cameras[0].distortion, lens["distortion"])
+        again = lw.Scene.from_arrays(vertices, faces, cameras=scene.cameras)
+        self.assertEqual(again.cameras[0], scene.cameras[0])
+        for wrong, sentence in (
+            ({"shift": (1,)}, "shift has 1 numbers"),
+            ({"distortion": (1, 2)}, "distortion has 2 numbers"),
+            ({"shift": (float("nan"), 0)}, "shift"),
+            ({"distortion": lens["distortion"], "projection": "fisheye"}, "camera"),
+        ):
+            with self.subTest(wrong), self.assertRaisesRegex(lw.InputError, sentence):
+                lw.Scene.from_arrays(
+                    vertices, faces, cameras=lw.Camera(position=(1, 1, 1), target=(2, 1, 1), **wrong)
+                )
+
     def test_notes(self):
         vertices, faces = box()
         scene = lw.Scene.from_arrays(vertices, np.vstack([faces, [0, 0, 1, 1]]), surface=[0] * 7)
