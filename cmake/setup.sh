@@ -30,6 +30,9 @@ extra_packages=(firefox-esr xdotool)
 python_packages=(python3-dev python3-venv)
 python_modules=(nanobind numpy scipy)
 python_requirements=("nanobind>=3.1" "numpy>=1.22" "scipy>=1.8")
+# For the tests of notebooks and of IFC models, which are skipped without them.
+python_extra_modules=(matplotlib nbclient ipykernel ifcopenshell)
+python_extra_requirements=("matplotlib>=3.6" "nbclient>=0.8" "ipykernel>=6.20" "ifcopenshell>=0.8")
 
 # use_preset NAME: builds with another preset of CMakePresets.json, in build/NAME.
 use_preset() {
@@ -105,6 +108,11 @@ make_python() {
       tail -n 5 build/python.log >&2
       return 1
     }
+  fi
+  if ! "$python" -c "import ${python_extra_modules[*]/%/,} sys" 2>/dev/null; then
+    say "Adding Matplotlib, nbclient and IfcOpenShell to build/python (0.15 GB to download)"
+    "$python" -m pip install --retries 1 --timeout 10 "${python_extra_requirements[@]}" >>build/python.log 2>&1 ||
+      say "Going on without them: notebooks and IFC models are not tested (build/python.log)."
   fi
   python_options=(-DLIGHTWELL_PYTHON=ON "-DPython_EXECUTABLE=$PWD/$python")
 }

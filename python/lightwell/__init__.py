@@ -19,15 +19,17 @@ same bits for any number of threads.
 
 from ._errors import Error, InputError, Interrupted  # isort: skip  (the compiled module needs it)
 from ._form_factors import FormFactors, form_factors
+from ._ifc import convert_ifc, from_ifc
 from ._lightwell import thread_count
 from ._lightwell import version as __version__
 from ._pictures import tone_map, write_picture
 from ._radiation import Radiation, radiation
 from ._scene import Camera, Material, Scene, read
-from ._shortwave import Shortwave, shortwave
+from ._shortwave import PointLight, Shortwave, shortwave
 from ._solution import Readings, Solution
 from ._solve import load, solve
 from ._threads import thread_limit
+from ._weather import Weather, read_weather
 
 __all__ = [
     "Camera",
@@ -36,16 +38,21 @@ __all__ = [
     "InputError",
     "Interrupted",
     "Material",
+    "PointLight",
     "Radiation",
     "Readings",
     "Scene",
     "Shortwave",
     "Solution",
+    "Weather",
     "__version__",
+    "convert_ifc",
     "form_factors",
+    "from_ifc",
     "load",
     "radiation",
     "read",
+    "read_weather",
     "shortwave",
     "solve",
     "thread_count",
