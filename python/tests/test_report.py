@@ -33,14 +33,18 @@ class Report(unittest.TestCase):
 
     def test_areas_are_held_to_their_limits(self):
         folder = scratch(self)
-        areas, vtp, theirs = (os.path.join(folder, name) for name in ("areas.toml", "r.vtp", "r.json"))
+        room, areas, vtp, theirs = (os.path.join(folder, name) for name in ("r.toml", "areas.toml", "r.vtp", "r.json"))
+        with open(room, "w", encoding="utf-8") as file:
+            file.write("materials.white = { reflectance = 0.5 }\nmaterials.panel = { lumens = 4000 }\n[[surfaces]]\n")
+            file.write('name = "floor"\nmaterial = "white"\npolygon = [[0,0,0], [3,0,0], [3,3,0], [0,3,0]]\n[[surfaces]]\n')
+            file.write('name = "panel"\nmaterial = "panel"\npolygon = [[1,1,2.5], [1,2,2.5], [2,2,2.5], [2,1,2.5]]\n')
         with open(areas, "w", encoding="utf-8") as file:
             file.write('[maintenance]\nlamp_flux = 0.7\n')
             file.write('[[grids]]\nname = "work"\nsurface = "floor"\nheight = 0.75\nspacing = 1\n')
             file.write('[[areas]]\nname = "desk"\nactivity = "writing"\ngrid = "work"\n')
-        solution = lw.solve(lw.read(ROOM), refine="off", gather_rays=16)
+        solution = lw.solve(lw.read(room), refine="off", gather_rays=16)
         solution.save(vtp)
-        run_program("report", ROOM, vtp, "--areas", areas, "--rays", "16", "-o", theirs)
+        run_program("report", room, vtp, "--areas", areas, "--rays", "16", "-o", theirs)
         figures = solution.report(areas=areas, rays=16)
         with open(theirs, encoding="utf-8") as file:
             self.assertEqual(figures, json.load(file))

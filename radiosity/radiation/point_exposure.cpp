@@ -12,7 +12,7 @@ namespace lightwell {
 namespace {
 
 constexpr int rays_of_a_point = 16384;
-constexpr std::size_t ray_batch = 64;
+constexpr std::size_t point_ray_batch = 64;
 
 // Numbers of rays of a point by where they end.
 struct RayEnds {
@@ -37,11 +37,11 @@ RayEnds ray_ends(const FacetViewFactors& found, const ElementCaster& caster,
                  const Eigen::Vector3d& up) {
   Eigen::Vector3d a, b;
   tangent_frame(point.normal, a, b);
-  std::array<Ray, ray_batch> rays;
-  std::array<ElementHit, ray_batch> hits;
+  std::array<Ray, point_ray_batch> rays;
+  std::array<ElementHit, point_ray_batch> hits;
   RayEnds ends;
-  for (int first = 0; first < rays_of_a_point; first += static_cast<int>(ray_batch)) {
-    for (std::size_t r = 0; r < ray_batch; ++r) {
+  for (int first = 0; first < rays_of_a_point; first += static_cast<int>(point_ray_batch)) {
+    for (std::size_t r = 0; r < point_ray_batch; ++r) {
       const Eigen::Array4f u = sobol.point(first + static_cast<int>(r), key);
       const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
       rays[r] = {.origin = point.position,
