@@ -63,7 +63,7 @@ CLI::Validator from_zero_to(double most, const char* what) {
           std::string{}};
 }
 
-void add_light(CLI::App& command, ShortwaveArguments& arguments) {
+void add_sun_and_sky(CLI::App& command, ShortwaveArguments& arguments) {
   constexpr double brightest = 1e6;  // W/m^2
   command
       .add_option_function<std::string>(
@@ -173,7 +173,7 @@ void ShortwaveArguments::add_to(CLI::App& command) {
                   "CSV: surface (a name or a pattern), albedo; in place of --albedo")
       ->type_name("FILE")
       ->excludes(given);
-  add_light(command, *this);
+  add_sun_and_sky(command, *this);
   add_hours(command, *this);
   add_points(command, *this);
   add_udales(command, *this);
