@@ -20,6 +20,8 @@ constexpr double least_share_for_guess = 0.02;
 // rest.
 constexpr double recall_seconds = 0.5;
 
+bool is_silent = false;
+
 double seconds_between(std::chrono::steady_clock::time_point a,
                        std::chrono::steady_clock::time_point b) {
   return std::chrono::duration<double>(b - a).count();
@@ -38,7 +40,13 @@ std::string plain_lines(std::string_view text) {
   return lines;
 }
 
+void be_silent() {
+  is_silent = true;
+  static_cast<void>(std::freopen("/dev/null", "w", stdout));
+}
+
 void print_error(std::string_view text) {
+  if (is_silent) return;
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
@@ -68,6 +76,7 @@ Progress Console::progress() {
       say("ending with what there is; another Ctrl-C ends at once");
     }
     show(phase, share);
+    if (processes_) processes_->check();
     return !interrupt_requested();
   };
 }

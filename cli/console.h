@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "radiosity/processes/processes.h"
 #include "scene/progress.h"
 #include "scene/scene.h"
 
@@ -26,6 +27,9 @@ struct CommonOptions {
 /// Lines of text for a terminal: plain_text() of each, since names and files may hold what
 /// terminals obey.
 std::string plain_lines(std::string_view text);
+
+/// Silences standard output and print_error(): for all processes of a run but the first.
+void be_silent();
 
 /// Prints to standard error. A failure, such as a full disk behind a log file, is left out: no
 /// place remains that would report the failure.
@@ -53,7 +57,13 @@ class Console {
   Console& operator=(const Console&) = delete;
 
   const CommonOptions& options() const { return options_; }
-  /// A callback that shows the phase and share, and returns false once interrupt_requested().
+  /// Processes of this run; null if there is only this one.
+  Processes* processes() const { return processes_; }
+  void set_processes(Processes* processes) { processes_ = processes; }
+  /// True in the process that writes files: the only one, or the first.
+  bool is_first() const { return !processes_ || processes_->is_first(); }
+  /// A callback that shows the phase and share, and returns false once interrupt_requested(). Where
+  /// the first of several processes ends the run, the callback throws in the others.
   /// The callback is valid during the console's life.
   Progress progress();
   /// Shows that work without progress of its own has begun. On a file or pipe there is a line only
@@ -76,6 +86,7 @@ class Console {
   void show(std::string_view phase, double share);
 
   CommonOptions options_;
+  Processes* processes_ = nullptr;
   bool on_terminal_ = false;
   void draw(const std::string& line);
 

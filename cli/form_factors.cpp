@@ -12,6 +12,7 @@
 #include "cli/memory_size.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
+#include "cli/several_processes.h"
 #include "cli/steps.h"
 #include "radiosity/form_factors/form_factor_file.h"
 #include "scene/errors.h"
@@ -61,7 +62,8 @@ Computed compute(const FormFactorArguments& arguments, const NumberedScene& numb
       .hemicube_resolution = arguments.hemicube_resolution,
       .two_sided = arguments.two_sided,
       .memory = {.limit = arguments.memory, .folder = fs::path(arguments.output).parent_path()},
-      .progress = console.progress()};
+      .progress = console.progress(),
+      .processes = console.processes()};
   options.rows_found = [&](const ViewFactorRows& rows) {
     if (arguments.show_row <= rows.count()) return;
     throw InputError(fmt::format("{}: there is no row {} to show; there are {}",
@@ -71,6 +73,7 @@ Computed compute(const FormFactorArguments& arguments, const NumberedScene& numb
   Computed computed = facet_view_factors(numbered, check, options);
   console.finish_phase();
   stop_if_interrupted();
+  add_traffic(computed.mesh.patch_count(), feedback);
   report.add_storage(computed.storage);
   return computed;
 }
@@ -179,19 +182,26 @@ std::string shortfall(const FormFactorArguments& arguments, const Computed& comp
       *computed.error, arguments.target_error, FormFactorOptions{}.most_rays_per_patch, remedy);
 }
 
+void require_all_writable(const FormFactorArguments& arguments) {
+  if (arguments.show_row > 0) require_writable(arguments.row_file());
+  if (!arguments.view3d.empty()) require_writable(arguments.view3d);
+  require_writable(arguments.output);
+  require_writable(arguments.json_file());
+}
+
 int form_factors(const FormFactorArguments& arguments, Console& console) {
   Report report(console.options());
   Stopwatch watch;
   const FacetGeometry geometry = read_facet_geometry(arguments.scene, console.options());
   const NumberedScene& numbered = geometry.numbered;
-  if (arguments.show_row > 0) require_writable(arguments.row_file());
-  if (!arguments.view3d.empty()) require_writable(arguments.view3d);
-  require_writable(arguments.output);
-  require_writable(arguments.json_file());
+  agree_on({.scene_hash = scene_hash(numbered.scene), .options = arguments.text()}, TimeLimit(0.0),
+           console);
+  if (console.is_first()) require_all_writable(arguments);
   std::vector<std::string> notes = geometry.notes;
   report.add_phase("read_scene", watch.lap());
 
   Computed computed = compute(arguments, numbered, geometry.check, {console, report});
+  if (!console.is_first()) return exit_done;
   if (computed.factors.entry_count() == 0) {
     notes.push_back(
         "No facet sees another; the front of a facet is where its corners run counter-clockwise.");

@@ -36,6 +36,10 @@ void catch_interrupts() {
   std::signal(SIGXFSZ, SIG_IGN);
 }
 
+void ignore_interrupts() {
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, SIG_IGN);
+}
+
 bool interrupt_requested() {
   return requested != 0 && !early_end_requested();
 }

@@ -12,6 +12,9 @@ namespace lightwell {
 /// - SIGXFSZ is ignored, so that a file at the allowed size fails to be written with an error.
 void catch_interrupts();
 
+/// Ignores SIGINT, SIGTERM and SIGHUP: the first process of several ends the others.
+void ignore_interrupts();
+
 /// True once SIGTERM or SIGHUP has arrived, or SIGINT while no InterruptEndsEarly lives.
 bool interrupt_requested();
 

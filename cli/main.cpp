@@ -19,6 +19,7 @@
 #include "cli/commands.h"
 #include "cli/interrupt.h"
 #include "cli/version.h"
+#include "radiosity/processes/mpi_port.h"
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
 #include "scene/parallel.h"
@@ -68,9 +69,10 @@ struct NamedCommand {
   const char* name;
   Action (*add)(CLI::App&);
   bool reads_scene = true;
+  bool shares_work = false;  // among several processes
 };
-constexpr std::array<NamedCommand, 21> commands = {{{"run", add_run},
-                                                    {"solve", add_solve},
+constexpr std::array<NamedCommand, 21> commands = {{{"run", add_run, true, true},
+                                                    {"solve", add_solve, true, true},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight, false},
                                                     {"render", add_render},
@@ -82,7 +84,7 @@ constexpr std::array<NamedCommand, 21> commands = {{{"run", add_run},
                                                     {"road", add_road, false},
                                                     {"daylight", add_daylight},
                                                     {"compare", add_compare, false},
-                                                    {"form-factors", add_form_factors},
+                                                    {"form-factors", add_form_factors, true, true},
                                                     {"radiation", add_radiation},
                                                     {"shortwave", add_shortwave},
                                                     {"info", add_info},
@@ -193,30 +195,76 @@ int with_all_written(int code) {
                                        std::generic_category().message(errno != 0 ? errno : EIO)));
 }
 
-int act(const Action& action, const CommonOptions& options) {
-  Console console(options);
+// The end of a command that an exception has ended.
+struct Failure {
+  ExitCode code;
+  std::string sentence{};  // to be printed as it is
+  std::string reason{};    // for the first process
+};
+
+// Failure by the exception that is being handled.
+Failure failure() {
+  const auto with_reason = [](ExitCode code, const std::string& reason) {
+    return Failure{code, fmt::format("error: {}\n", plain_lines(reason)), reason};
+  };
   try {
-    const ThreadLimit limit(options.threads);
-    return with_all_written(action(console));
+    throw;
   } catch (const InputError& error) {
-    console.finish_phase();
-    return fail(exit_bad_input, error.what());
+    return with_reason(exit_bad_input, error.what());
   } catch (const InterruptedWith& interrupted) {
-    console.finish_phase();
-    print_error(fmt::format("{}\n", interrupted.what()));
-    return exit_interrupted;
-  } catch (const Interrupted&) {
-    console.finish_phase();
-    print_error("interrupted; nothing is left half-written\n");
-    return exit_interrupted;
+    return {exit_interrupted, fmt::format("{}\n", interrupted.what()), interrupted.what()};
+  } catch (const Interrupted& interrupted) {
+    return {exit_interrupted, "interrupted; nothing is left half-written\n", interrupted.what()};
   } catch (const std::bad_alloc&) {
-    console.finish_phase();
-    return fail(exit_failed,
-                "not enough memory; a larger --max-patch-size or a smaller picture needs less");
+    return with_reason(
+        exit_failed,
+        "not enough memory; a larger --max-patch-size or a smaller picture needs less");
   } catch (const std::exception& error) {
-    console.finish_phase();
-    return fail(exit_failed, error.what());
+    return with_reason(exit_failed, error.what());
   }
+}
+
+struct CommandAction {
+  Action run{};
+  const char* name = "";
+  bool shares_work = false;  // among several processes
+};
+
+// The processes that mpirun started for this command; null if there is only this one.
+std::unique_ptr<Processes> join(const CommandAction& action) {
+  auto port = join_processes();
+  if (!port) return nullptr;
+  auto processes = std::make_unique<Processes>(std::move(port));
+  if (action.shares_work) return processes;
+  const std::string sentence = fmt::format(
+      "'{}' runs in one process; start it without mpirun (run, solve and form-factors share their "
+      "work among processes)",
+      action.name);
+  processes->close(sentence, true);
+  throw InputError(sentence);
+}
+
+int act(const CommandAction& action, const CommonOptions& options) {
+  Console console(options);
+  std::unique_ptr<Processes> processes;
+  int code = exit_done;
+  Failure failed{exit_done};
+  try {
+    processes = join(action);
+    console.set_processes(processes.get());
+    if (processes) processes->require_same("the version", LIGHTWELL_VERSION);
+    const ThreadLimit limit(options.threads);
+    code = with_all_written(action.run(console));
+  } catch (const std::exception&) {
+    failed = failure();
+    code = failed.code;
+    console.finish_phase();
+    print_error(failed.sentence);
+  }
+  if (!processes) return code;
+  processes->close(failed.reason, failed.code == exit_bad_input);
+  // mpirun ends with the code of the first process, unless another has one of its own.
+  return processes->is_first() ? code : exit_done;
 }
 
 // The words of a command line in which "help" and "help COMMAND" are "" and "COMMAND --help".
@@ -237,11 +285,11 @@ int run_program(int argc, char** argv) {
   app.formatter(std::make_shared<TightFormatter>());
   app.get_formatter()->column_width(36);
 
-  std::map<const CLI::App*, Action> actions;
+  std::map<const CLI::App*, CommandAction> actions;
   std::vector<std::string> names;
   for (const NamedCommand& named : commands) {
     CLI::App* const command = app.add_subcommand(named.name);
-    actions[command] = named.add(*command);
+    actions[command] = {named.add(*command), named.name, named.shares_work};
     add_common(*command, options);
     command->get_option("--version")->group("");  // CLI11: hidden, so that the help fits a screen
     if (named.reads_scene) add_reading(*command, options);
@@ -275,7 +323,12 @@ int run_program(int argc, char** argv) {
 }  // namespace lightwell
 
 int main(int argc, char** argv) {
-  lightwell::catch_interrupts();
+  if (lightwell::is_first_by_launcher()) {
+    lightwell::catch_interrupts();
+  } else {
+    lightwell::ignore_interrupts();
+    lightwell::be_silent();
+  }
   try {
     return lightwell::run_program(argc, argv);
   } catch (const std::exception& error) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <optional>
 
 #include "cli/arguments.h"
 #include "cli/checkpoint.h"
@@ -8,9 +9,11 @@
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
+#include "cli/several_processes.h"
 #include "cli/steps.h"
 #include "cli/time_limit.h"
 #include "mesh/patches/patch_textures.h"
+#include "radiosity/solution/solution_file.h"
 #include "raytrace/cameras/camera_ray.h"
 
 namespace lightwell {
@@ -49,16 +52,22 @@ SolvedScene solved_scene(const Job& job) {
   Console& console = feedback.console;
   Report& report = feedback.report;
   const Provenance of = provenance(scene, arguments.solve);
-  if (auto done = finished_solution(arguments.checkpoint, of, outputs.solution, console)) {
+  agree_on(of, time, console);
+  const CheckpointArguments kept = of_first(arguments.checkpoint, console);
+  auto done = finished_solution(kept, of, outputs.solution, console);
+  if (answer_of_first(done.has_value(), console)) {
+    // The file is there for all processes that share the folder.
+    if (!done) done = read_solution(outputs.solution);
     attach_textures(scene, done->mesh);
     report.add_solution(*done, false);
     return std::move(*done);
   }
-  Checkpoint checkpoint(arguments.checkpoint, of, {outputs.solution}, console);
+  Checkpoint checkpoint(kept, of, {outputs.solution}, console);
   // The rest is for pictures. Every picture and number reads the light, so light gets more.
   constexpr double share_of_solve = 0.6;
   SolvedScene solved = solve_step(scene, {arguments.solve, outputs.solution, time, share_of_solve},
                                   checkpoint, feedback);
+  if (!console.is_first()) return solved;
   write_solution_step(outputs.solution, solved, console, report);
   checkpoint.finish(report, solved.solution.outcome != Outcome::cut_short);
   return solved;
@@ -68,7 +77,7 @@ SolvedScene solved_scene(const Job& job) {
 bool render_pictures(const Job& job, const SolvedScene& solved) {
   const auto& [arguments, scene, outputs, time, feedback] = job;
   Console& console = feedback.console;
-  CheckpointArguments kept = arguments.checkpoint;
+  CheckpointArguments kept = of_first(arguments.checkpoint, console);
   kept.reuse.clear();
   const bool holds_the_solve = kept.keep || solved.solution.outcome == Outcome::cut_short;
   if (holds_the_solve) kept.file.clear();
@@ -82,7 +91,8 @@ bool render_pictures(const Job& job, const SolvedScene& solved) {
   bool are_as_asked = true;
   try {
     for (std::size_t i = 0; i < count; ++i) {
-      const RunControl all{.seconds_left = time.seconds_left()};
+      RunControl all;
+      if (!console.processes()) all.seconds_left = time.seconds_left();
       const RunControl own = all.with_share(1.0 / static_cast<double>(count - i));
       const PictureTask task{scene.cameras[i], arguments.render, outputs.pictures[i],
                              own.seconds_left};
@@ -91,7 +101,7 @@ bool render_pictures(const Job& job, const SolvedScene& solved) {
   } catch (const InterruptedWith&) {
     throw;
   } catch (const Interrupted&) {
-    if (arguments.checkpoint.file.empty()) throw;
+    if (kept.file.empty()) throw;
     throw InterruptedWith(
         fmt::format("interrupted; the solution is in '{}'. To resume with the pictures:\n  {}",
                     outputs.solution.string(), command_to_resume(console.options())));
@@ -110,18 +120,28 @@ RunArguments looking_from_cameras(RunArguments arguments, const Scene& scene) {
   return arguments;
 }
 
+void require_all_writable(const Outputs& outputs, const fs::path& report_file) {
+  for (const auto& files : outputs.pictures) {
+    for (const fs::path& picture : files) require_writable(picture);
+  }
+  require_writable(outputs.solution);
+  require_writable(report_file);
+}
+
 int run(const RunArguments& given, Console& console) {
   const TimeLimit time(given.seconds);
   Report report(console.options());
   Scene scene = read_scene_step(given.scene, console, report);
   // At once, so that --look-from spends effort on what the pictures show.
   for (Camera& camera : scene.cameras) camera = given.render.projection.view(camera, scene);
-  const InterruptEndsEarly on_interrupt;
+  const EarlyEnd on_interrupt(console);
   console.show_time_left(time.seconds_left());
   const RunArguments arguments = looking_from_cameras(given, scene);
   choose_camera(scene, "");  // throws before the work if the scene has no camera
-  const OutputFolder folder(arguments.output.empty() ? default_folder(arguments.scene)
-                                                     : fs::path(arguments.output));
+  const fs::path folder =
+      arguments.output.empty() ? default_folder(arguments.scene) : fs::path(arguments.output);
+  std::optional<OutputFolder> made;
+  if (console.is_first()) made.emplace(folder);
   const fs::path report_file = folder / "report.json";
   Outputs outputs{.solution = folder / "solution.vtp"};
   for (const Camera& camera : scene.cameras) {
@@ -129,14 +149,13 @@ int run(const RunArguments& given, Console& console) {
     arguments.render.film.check(scene, outputs.pictures.back());
     static_cast<void>(
         CameraRays(arguments.render.projection.view(camera, scene)));  // throws for a bad camera
-    for (const fs::path& picture : outputs.pictures.back()) require_writable(picture);
   }
-  require_writable(outputs.solution);
-  require_writable(report_file);
+  if (console.is_first()) require_all_writable(outputs, report_file);
 
   const Job job{arguments, scene, outputs, time, {console, report}};
   const SolvedScene solved = solved_scene(job);
   const bool are_as_asked = render_pictures(job, solved);
+  if (!console.is_first()) return exit_done;
   report.add_file(report_file);
   report.write(report_file);
   report.print();

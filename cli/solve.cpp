@@ -7,6 +7,7 @@
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
+#include "cli/several_processes.h"
 #include "cli/steps.h"
 #include "cli/time_limit.h"
 #include "radiosity/solution/solution_file.h"
@@ -26,18 +27,23 @@ int solve(const SolveCommandArguments& arguments, Console& console) {
   const TimeLimit time(arguments.seconds);
   Report report(console.options());
   const Scene scene = read_scene_step(arguments.scene, console, report);
-  const InterruptEndsEarly on_interrupt;
+  const EarlyEnd on_interrupt(console);
   console.show_time_left(time.seconds_left());
-  require_writable(arguments.output);
   const Provenance of = provenance(scene, arguments.solve);
-  if (const auto done = finished_solution(arguments.checkpoint, of, arguments.output, console)) {
+  agree_on(of, time, console);
+  const CheckpointArguments kept = of_first(arguments.checkpoint, console);
+  if (console.is_first()) require_writable(arguments.output);
+  const auto done = finished_solution(kept, of, arguments.output, console);
+  if (answer_of_first(done.has_value(), console)) {
+    if (!done) return exit_done;  // another process than the first
     report.add_solution(*done, false);
     report.print();
     return exit_code(done->solution);
   }
-  Checkpoint checkpoint(arguments.checkpoint, of, {arguments.output}, console);
+  Checkpoint checkpoint(kept, of, {arguments.output}, console);
   const SolvedScene solved =
       solve_step(scene, {arguments.solve, arguments.output, time}, checkpoint, {console, report});
+  if (!console.is_first()) return exit_done;
   write_solution_step(arguments.output, solved, console, report);
   checkpoint.finish(report, solved.solution.outcome != Outcome::cut_short);
   report.print();

@@ -8,6 +8,7 @@
 #include "cli/picture_in_time.h"
 #include "cli/refinement.h"
 #include "cli/scene_hints.h"
+#include "cli/several_processes.h"
 #include "mesh/patches/patch_textures.h"
 #include "radiosity/dark_rooms.h"
 #include "radiosity/solution/solution_file.h"
@@ -192,7 +193,10 @@ SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& ch
     const bool is_nothing_there = phase == "mesh" && early_end_requested();
     return watched(phase, share) && !is_nothing_there;
   };
-  options.run.seconds_left = task.time.seconds_left(task.share_of_time);
+  options.run.processes = console.processes();
+  if (!console.processes()) {
+    options.run.seconds_left = task.time.seconds_left(task.share_of_time);
+  }
   Journal* const journal = checkpoint.journal();
   const bool is_of_another = journal && journal->is_read_only();
   (is_of_another ? options.form_factors.run.journal : options.run.journal) = journal;
@@ -214,6 +218,7 @@ SolvedScene solve_step(const Scene& scene, const SolveTask& task, Checkpoint& ch
     checkpoint.rethrow_stopped();
   }
   console.finish_phase();
+  add_traffic(solved.mesh.patch_count(), feedback);
   note_mesh(scene, solved.mesh, console, report);
   solved.solution.provenance.version = LIGHTWELL_VERSION;
   solved.solution.provenance.options = arguments.text(scene) + task.time.text();
@@ -284,6 +289,7 @@ bool render_step(RenderableScene& renderable, const PictureTask& task, Checkpoin
   options.layers = asked.film.rendered_layers(renderable.scene);
   options.run = {.progress = checkpoint.watched(console.progress()),
                  .journal = checkpoint.journal(),
+                 .processes = console.processes(),
                  .seconds_left = task.seconds_left};
   const Camera view = asked.projection.view(camera, renderable.scene);
   PictureInTime rendered;
@@ -294,6 +300,7 @@ bool render_step(RenderableScene& renderable, const PictureTask& task, Checkpoin
     checkpoint.rethrow_stopped();
   }
   console.finish_phase();
+  if (!console.is_first()) return true;
   const Picture picture{
       .image = rendered.image,
       .solution = renderable.solved.solution,

@@ -15,7 +15,7 @@ struct Library {
 
 constexpr std::string_view jpeg_turbo = LIGHTWELL_JPEG_TURBO;
 
-constexpr std::array<Library, 23> libraries = {
+constexpr std::array<Library, 24> libraries = {
     {{"Embree", LIGHTWELL_EMBREE},
      {"oneTBB", LIGHTWELL_TBB},
      {"CGAL", LIGHTWELL_CGAL},
@@ -32,6 +32,7 @@ constexpr std::array<Library, 23> libraries = {
      {"pugixml", LIGHTWELL_PUGIXML},
      {"muParser", LIGHTWELL_MUPARSER},
      {"GLPK", LIGHTWELL_GLPK},
+     {"MPI", LIGHTWELL_MPI_VERSION},
      {"cairo", LIGHTWELL_CAIRO},
      {"Pango", LIGHTWELL_PANGO},
      {"librsvg", LIGHTWELL_LIBRSVG},

@@ -54,6 +54,15 @@ if(LIGHTWELL_PDF AND NOT lightwell_pdf_FOUND)
                       "On Debian: apt install pkgconf libcairo2-dev libpango1.0-dev librsvg2-dev")
 endif()
 
+# Several processes share the work where a launcher of MPI starts them; needs the C interface alone.
+option(LIGHTWELL_MPI "Share the work among processes that mpirun starts; needs Open MPI or MPICH" OFF)
+if(LIGHTWELL_MPI)
+  find_package(MPI 3.0 COMPONENTS C)
+  if(NOT MPI_C_FOUND)
+    message(FATAL_ERROR "LIGHTWELL_MPI needs MPI, which was not found. On Debian: apt install libopenmpi-dev openmpi-bin")
+  endif()
+endif()
+
 # The window; the tests read files with VTK, too, where there is a window.
 set(vtk_components "")
 set(VTK_VERSION "")

@@ -13,6 +13,8 @@ build_packages=(
   pkgconf libcairo2-dev libpango1.0-dev librsvg2-dev fonts-dejavu-core
   libcli11-dev nlohmann-json3-dev libgtest-dev
 )
+# What -DLIGHTWELL_MPI=ON needs, and what starts several processes.
+mpi_packages=(libopenmpi-dev openmpi-bin)
 # What CPack needs besides to find the libraries that a Debian package depends on.
 deb_packages=(dpkg-dev file)
 # A virtual display and a software OpenGL, for the tests of the viewer.
@@ -48,7 +50,7 @@ need_packages() {
   if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
     say "This is not Debian, so nothing is installed for you. What is needed: a C++20 compiler, CMake 3.25,"
     say "Ninja, Eigen 3.4, oneTBB, fmt, Embree 3.13 or 4, CGAL 5.5 (or CDT 2), OpenMesh, toml++, for the window VTK 9.1,"
-    say "assimp, Draco, meshoptimizer, pugixml, muParser, GLPK, libjpeg, OpenEXR, libpng, zlib, CLI11, nlohmann-json, GoogleTest; for reports in PDF cairo, Pango, librsvg"
+    say "assimp, Draco, meshoptimizer, pugixml, muParser, GLPK, libjpeg, OpenEXR, libpng, zlib, CLI11, nlohmann-json, GoogleTest; for reports in PDF cairo, Pango, librsvg; for several processes MPI"
     say "and the font DejaVu Sans; for the tests Xvfb, Chromium, Firefox, node and poppler-utils."
     return 0
   fi

@@ -71,7 +71,8 @@ SolveOptions effective_options(const SolveOptions& options, double target,
     if (most == 0) most = std::max<std::int64_t>(plenty, 4 * solved.mesh.element_count());
   }
   if (const auto memory = options.form_factors.memory) {
-    effective.refine.room = elements_in(memory->report().limit - resident_memory().now, columns);
+    const std::int64_t room = memory->report().limit - resident_memory().now;
+    effective.refine.room = elements_in(options.run.least(room), columns);
   }
   return effective;
 }

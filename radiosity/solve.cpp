@@ -63,7 +63,7 @@ RadiositySolution shoot(const LitScene& lit, const SolveOptions& options) {
   ProgressiveRadiosity progressive(lit.scene, lit.mesh(),
                                    cast_shots(lit.caster, paths, options.progressive->most_rays),
                                    *options.progressive, options.channels, free_light);
-  JournalPhase phase(options.run.journal, "shots", [&](Fingerprint& print) {
+  JournalPhase phase(options.run, "shots", [&](Fingerprint& print) {
     print.add(lit.mesh());
     print.add(free_light.irradiance);
     print.add(options.form_factors.max_specular_depth);
@@ -187,6 +187,7 @@ SolvedEquations solve_equations(const EquationTask& task, const SolveOptions& op
   form_factor_options.run.progress = options.run.progress;
   form_factor_options.rays_per_patch = rays_per_patch(options);
   if (options.run.journal) form_factor_options.run.journal = options.run.journal;
+  form_factor_options.run.processes = options.run.processes;
   const int bands = scene.bands.count();
   const FreeLight by_channel = cast_free_light(
       scene, lit.caster, LightPaths(scene, lit.caster, options.form_factors.max_specular_depth),
@@ -308,8 +309,12 @@ std::optional<ProgressiveOptions> without_rows(const DirectLight& direct_light,
                         .resident = resident_memory().now,
                         .limit = storage.limit,
                         .disk = room_on_disk(storage.folder)});
-  if (choice.transport != Transport::shooting) return std::nullopt;
-  mesh.notes.push_back(choice.reason);
+  // All processes shoot if one has no room for rows.
+  const bool has_room = choice.transport != Transport::shooting;
+  if (options.run.least(has_room ? 1 : 0) == 1) return std::nullopt;
+  mesh.notes.push_back(has_room ? "one of the processes has no room for form factors; so patches "
+                                  "shoot their light without them (--solver progressive)"
+                                : choice.reason);
   return shooting;
 }
 

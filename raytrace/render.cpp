@@ -64,6 +64,31 @@ std::span<float> rows_of(BandArray& values, int width, int first_row, int rows) 
   return {values.data() + first_row * row, rows * row};
 }
 
+// Calls render_tile(tile, first row, rows) for all tiles of the picture, with progress, and
+// options.rows_done from the top down. Several processes do tiles in any order, so their rows are
+// done at the end. Returns the number of tiles.
+int for_each_tile(const JournalPhase& phase, int tile_rows, const Image& image,
+                  const RenderOptions& options,
+                  const std::function<void(int, int, int)>& render_tile) {
+  const int height = image.height, count = (height + tile_rows - 1) / tile_rows;
+  const bool is_alone = phase.processes() == 1;
+  const auto first_row = [&](int tile) { return std::min(tile * tile_rows, height); };
+  const auto rows = [&](int tile) { return first_row(tile + 1) - first_row(tile); };
+  const auto done = [&](int tile) {
+    if (options.rows_done) options.rows_done(image, first_row(tile), rows(tile));
+  };
+  const auto report_progress = [&](int tile) {
+    report(options.run.progress, "render", static_cast<double>(first_row(tile)) / height);
+  };
+  phase.for_each_in_turn(count, report_progress, [&](int tile) {
+    render_tile(tile, first_row(tile), rows(tile));
+    if (is_alone) done(tile);
+  });
+  for (int tile = 0; tile < count && !is_alone; ++tile) done(tile);
+  report_progress(count);
+  return count;
+}
+
 }  // namespace
 
 Image render(const Scene& scene, const ElementCaster& caster, const DirectLight& direct_light,
@@ -80,7 +105,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   LayerFilm layers(options.layers, image);
 
   std::optional<Exposure> exposure = exposure_of(scene, caster.mesh(), camera);
-  const JournalPhase phase(options.run.journal, "picture", [&](Fingerprint& print) {
+  const JournalPhase phase(options.run, "picture", [&](Fingerprint& print) {
     add_picture_inputs(print, caster, solution, camera, options);
     if (exposure) add_exposure(print, scene, *exposure);
     if (const FacetNormals normals(scene); !normals.is_empty()) print.add(normals.hash());
@@ -94,27 +119,27 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   // of some points twice and that of others not at all.
   const PixelFilter filter = sampled == Sampled::all ? PixelFilter::window : PixelFilter::square;
   const PixelSamples samples(rays, tree, sampling, filter, std::move(exposure));
-  TileRenderer tiles(eye, samples, sampled, options, counters, image, layers);
-  report(options.run.progress, "render", 0.0);
-  int tile = 0, recalled = 0;
-  for (int y = 0; y < camera.height; y += tiles.tile_rows(), ++tile) {
-    const int rows = std::min(tiles.tile_rows(), camera.height - y);
+  // With several processes only the calling thread reports.
+  RenderOptions silent = options;
+  if (phase.processes() > 1) silent.run.progress = {};
+  TileRenderer tiles(eye, samples, sampled, silent, counters, image, layers);
+  int recalled = 0;
+  const auto render_tile = [&](int tile, int y, int rows) {
     auto values = std::tuple(rows_of(image.radiance, camera.width, y, rows),
                              rows_of(image.layers.values, camera.width, y, rows));
     if (phase.recall(tile, values)) {
       ++recalled;
-    } else {
-      tiles.render(y, rows);
-      parallel_for(rows, 1, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-          layers.finish_row(y + i, scene.bands, rays, caster, tree.visible_lamps());
-        }
-      });
-      phase.keep(tile, values);
+      return;
     }
-    if (options.rows_done) options.rows_done(image, y, rows);
-    report(options.run.progress, "render", static_cast<double>(y + rows) / camera.height);
-  }
+    tiles.render(y, rows);
+    parallel_for(rows, 1, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        layers.finish_row(y + i, scene.bands, rays, caster, tree.visible_lamps());
+      }
+    });
+    phase.keep(tile, values);
+  };
+  const int count = for_each_tile(phase, tiles.tile_rows(), image, options, render_tile);
   if (render_report) {
     *render_report = {
         .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
@@ -122,7 +147,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
         .depth_cut = counters.depth_cut,
         .cut_share = static_cast<double>(counters.cut_steps) * RayCounters::weight_step /
                      static_cast<double>(std::max<std::int64_t>(1, counters.eye_rays)),
-        .tiles = tile,
+        .tiles = count,
         .recalled_tiles = recalled};
   }
   return image;

@@ -146,14 +146,15 @@ void analytic_exchange(const PolygonPairs& pairs, const Progress& progress, Anal
                                                      ? 0.1 * pairs.target_error
                                                      : PairExchange::usual_error);
   // A row has up to n entries, so the slices of many patches are short.
-  const int slice = std::clamp((1 << 21) / std::max(n, 1), 4, 64);
+  const int slice = std::clamp((1 << 21) / std::max(n, 1), 4, 64) * phase.processes();
   for (int begin = 0; begin < n; begin += slice) {
     // Row i has n - i pairs.
     const double left = static_cast<double>(n - begin) / n;
-    report(progress, "form factors", 1.0 - left * left);
+    const auto report_progress = [&] { report(progress, "form factors", 1.0 - left * left); };
+    report_progress();
     const int size = std::min(slice, n - begin);
     std::vector<AnalyticRow> rows(static_cast<std::size_t>(size));
-    parallel_for(size, 1, [&](int low, int high) {
+    const auto compute = [&](int low, int high) {
       for (int k = low; k < high; ++k) {
         const int i = begin + k;
         if (!pairs.receives[i] || !pairs.outlines[i].is_polygon()) continue;
@@ -161,7 +162,8 @@ void analytic_exchange(const PolygonPairs& pairs, const Progress& progress, Anal
         rows[k] = analytic_row(pairs, closed_form, visibility, i);
         phase.keep(i, rows[k].entries, rows[k].error, rows[k].bound);
       }
-    });
+    };
+    phase.for_each({begin, size, 1}, compute, report_progress);
     for (int k = 0; k < size; ++k) {
       AnalyticRow& row = rows[k];
       for (std::size_t e = 0; e < row.entries.size(); ++e) {

@@ -145,33 +145,42 @@ void EmitterExchange::compute(const std::vector<char>& receives, const FormFacto
   const SobolPoints sobol(points);
   // About a second per slice, shadow rays included.
   constexpr int slice = 512, grain = 4;
-  for (int begin = 0, block = 0; begin < mesh_.patch_count(); begin += slice, ++block) {
-    report(options.run.progress, "closed forms", static_cast<double>(begin) / mesh_.patch_count());
-    const int end = std::min(begin + slice, mesh_.patch_count());
+  const int patches = mesh_.patch_count();
+  const auto report_progress = [&](int block) {
+    report(options.run.progress, "closed forms", static_cast<double>(block * slice) / patches);
+  };
+  phase.for_each_in_turn((patches + slice - 1) / slice, report_progress, [&](int block) {
+    const int begin = block * slice, end = std::min(begin + slice, patches);
+    if (recall_rows(phase, block, begin, end)) return;
+    parallel_for(end - begin, grain, [&](int low, int high) {
+      for (int i = begin + low; i < begin + high; ++i) {
+        if (receives[i]) from_[i] = row_of(i, sobol, options);
+      }
+    });
+    if (!phase.is_kept()) return;
     std::vector<int> counts;
     Row records;
-    if (!phase.recall(block, counts, records)) {
-      parallel_for(end - begin, grain, [&](int low, int high) {
-        for (int i = begin + low; i < begin + high; ++i) {
-          if (receives[i]) from_[i] = row_of(i, sobol, options);
-        }
-      });
-      if (!phase.is_kept()) continue;
-      for (int i = begin; i < end; ++i) {
-        counts.push_back(static_cast<int>(from_[i].size()));
-        records.insert(records.end(), from_[i].begin(), from_[i].end());
-      }
-      phase.keep(block, counts, records);
-      continue;
-    }
-    auto next = records.begin();
     for (int i = begin; i < end; ++i) {
-      const auto last = next + counts[static_cast<std::size_t>(i - begin)];
-      from_[i].assign(next, last);
-      next = last;
+      counts.push_back(static_cast<int>(from_[i].size()));
+      records.insert(records.end(), from_[i].begin(), from_[i].end());
     }
-  }
+    phase.keep(block, counts, records);
+  });
   turn_over();
+}
+
+// Rows `begin` to `end` - 1 from a block of the phase; false if the block was not kept.
+bool EmitterExchange::recall_rows(const JournalPhase& phase, int block, int begin, int end) {
+  std::vector<int> counts;
+  Row records;
+  if (!phase.recall(block, counts, records)) return false;
+  auto next = records.begin();
+  for (int i = begin; i < end; ++i) {
+    const auto last = next + counts[static_cast<std::size_t>(i - begin)];
+    from_[i].assign(next, last);
+    next = last;
+  }
+  return true;
 }
 
 // Fills `to_` and `lit_of_row_`.

@@ -38,6 +38,7 @@ class EmitterExchange {
   void add_to_patches(int emitter, bool behind, const SurfacePoint& at, double exchange,
                       Found& found) const;
   Row row_of(int patch, const SobolPoints& sobol, const FormFactorOptions& options) const;
+  bool recall_rows(const JournalPhase& phase, int block, int begin, int end);
   void turn_over();
   double share_of_emitter(int patch) const;
   int row_of_lit(int patch) const;

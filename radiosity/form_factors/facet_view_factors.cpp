@@ -105,7 +105,7 @@ FacetViewFactors computed_as(FormFactorMethod method, const Facets& facets,
   options.target_error = asked.target_error;
   options.hemicube_resolution = asked.hemicube_resolution;
   options.memory = std::make_shared<MemoryBudget>(asked.memory);
-  options.run.progress = asked.progress;
+  options.run = {.progress = asked.progress, .processes = asked.processes};
   found.has_rays_alone = method == FormFactorMethod::automatic && !per_patch &&
                          are_facets_shredded(found.mesh, found.rows);
   if (found.has_rays_alone) {

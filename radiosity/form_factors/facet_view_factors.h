@@ -18,6 +18,7 @@ struct FacetViewFactorOptions {
   bool two_sided = false;         ///< backs of facets have rows (see make_view_factor_scene())
   MemoryOptions memory{};
   Progress progress{};
+  Processes* processes = nullptr;  ///< see RunControl
   /// Called with the rows before their factors are computed, to stop early by an exception.
   std::function<void(const ViewFactorRows& rows)> rows_found{};
   /// Called at the end of each phase, "mesh" and "form_factors", once or twice.

@@ -185,7 +185,8 @@ class Estimator {
     const int longest = *std::max_element(rays_of.begin(), rays_of.end());
     const RowCaster caster(caster_, paths_, most_rays(longest), options_.portals.get());
     const JournalPhase phase = phase_of("rays", &rays_of);
-    for_each_row(mesh_, longest, options_.run.progress, [&](int i, RowCaster::Scratch& scratch) {
+    const RowLoop loop{longest, options_.run.progress, phase};
+    for_each_row(mesh_, loop, [&](int i, RowCaster::Scratch& scratch) {
       std::vector<NearExchange::Pair> pairs;
       EstimatedRow row;
       double error = 0.0;
@@ -298,7 +299,7 @@ class Estimator {
   }
 
   JournalPhase phase_of(std::string_view name, const std::vector<int>* rays_of = nullptr) const {
-    return {options_.run.journal, name, [&](Fingerprint& print) {
+    return {options_.run, name, [&](Fingerprint& print) {
               add_form_factor_inputs(print, scene_, direct_light_, mesh_, options_);
               if (rays_of) print.add(*rays_of);
             }};
@@ -336,7 +337,7 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
   const Estimator estimator(lit, options, budget);
   Estimate estimate = estimator.estimate();
   const auto phase_of = [&](std::string_view name) -> JournalPhase {
-    return {options.run.journal, name, [&](Fingerprint& print) {
+    return {options.run, name, [&](Fingerprint& print) {
               add_form_factor_inputs(print, lit.scene, lit.direct_light, mesh, options);
             }};
   };

@@ -144,12 +144,16 @@ void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
   // Progress and interruption are handled between slices, on this thread; each takes a fraction of
   // a second.
   const int cells_per_slice = by_rays ? 1 << 20 : 1 << 24;
-  const int slice =
+  const int of_process =
       std::clamp(cells_per_slice / cells.cell_count(), 2, std::max(64, patches / 100));
-  const int grain = std::clamp(slice / 8, 1, 16);
+  const int grain = std::clamp(of_process / 8, 1, 16);
+  const int slice = of_process * phase.processes();
   for (int begin = 0; begin < patches; begin += slice) {
-    report(progress, "form factors", static_cast<double>(begin) / patches);
-    parallel_for(std::min(slice, patches - begin), grain, [&](int low, int high) {
+    const auto report_progress = [&] {
+      report(progress, "form factors", static_cast<double>(begin) / patches);
+    };
+    report_progress();
+    const auto draw = [&](int low, int high) {
       Tally tally(caster, paths, cells);
       HemicubeScan::Scratch scratch;
       RowCaster::Scratch ray_scratch(mesh);
@@ -179,7 +183,8 @@ void for_each_hemicube_row(const ElementCaster& caster, const LightPaths& paths,
         phase.keep(i, kept_parts(row));
         take(i, row);
       }
-    });
+    };
+    phase.for_each({begin, std::min(slice, patches - begin), grain}, draw, report_progress);
   }
   report(progress, "form factors", 1.0);
 }

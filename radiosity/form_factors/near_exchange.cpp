@@ -109,14 +109,18 @@ void NearExchange::exchange(RecordStore pairs, const Progress& progress,
                             const JournalPhase& phase) const {
   const PairExchange closed_form(outlines_);
   const int n = pairs.row_count();
-  for (const ColumnRange range : column_ranges(pairs, pairs.budget().block_bytes())) {
+  // Ranges are those of the process with the least room, so that all processes go through the same.
+  for (const ColumnRange range : column_ranges(pairs, phase.least(pairs.budget().block_bytes()))) {
     const ColumnBlock block(pairs, range.first, range.last);
-    constexpr int slice = 256;  // rows; a fraction of a second
+    const int slice = 256 * phase.processes();  // rows; a fraction of a second
     for (int begin = range.first; begin < range.last; begin += slice) {
-      report(progress, "closed forms", static_cast<double>(begin) / n);
+      const auto report_progress = [&] {
+        report(progress, "closed forms", static_cast<double>(begin) / n);
+      };
+      report_progress();
       const int size = std::min(slice, range.last - begin);
       std::vector<std::vector<FormFactor>> rows(static_cast<std::size_t>(size));
-      parallel_for(size, 1, [&](int low, int high) {
+      const auto compute = [&](int low, int high) {
         for (int k = low; k < high; ++k) {
           std::vector<FormFactor>& row = rows[static_cast<std::size_t>(k)];
           if (phase.recall(begin + k, row)) continue;
@@ -124,7 +128,8 @@ void NearExchange::exchange(RecordStore pairs, const Progress& progress,
           add_row(closed_form, begin + k, pairs.row(begin + k), block.column(begin + k), row);
           phase.keep(begin + k, row);
         }
-      });
+      };
+      phase.for_each({begin, size, 1}, compute, report_progress);
       for (int k = 0; k < size; ++k) {
         take(begin + k, rows[static_cast<std::size_t>(k)]);
         pairs.release(begin + k);

@@ -259,14 +259,15 @@ void RowCaster::count_hidden(std::span<Ray> rays, std::span<ElementHit> hits,
   }
 }
 
-void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& progress,
+void for_each_row(const PatchMesh& mesh, const RowLoop& loop,
                   const std::function<void(int, RowCaster::Scratch&)>& work) {
   const int patches = mesh.patch_count();
   // Progress and interruption are handled between slices, on this thread; each takes a fraction of
   // a second. Threads wait for each other at the end of a slice, so slices should be few.
   constexpr int rays_per_slice = 1 << 21;
-  const int slice = std::max(2, rays_per_slice / std::max(rays_per_patch, 1));
-  const int grain = std::clamp(slice / 16, 1, 16);
+  const int of_process = std::max(2, rays_per_slice / std::max(loop.rays_per_patch, 1));
+  const int grain = std::clamp(of_process / 16, 1, 16);
+  const int slice = of_process * loop.phase.processes();
   // Scratch memory is proportional to the mesh, so it is reused.
   std::mutex mutex;
   std::vector<std::unique_ptr<RowCaster::Scratch>> idle;
@@ -278,15 +279,19 @@ void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& pro
     return scratch;
   };
   for (int begin = 0; begin < patches; begin += slice) {
-    report(progress, "form factors", static_cast<double>(begin) / patches);
-    parallel_for(std::min(slice, patches - begin), grain, [&](int low, int high) {
+    const auto report_progress = [&] {
+      report(loop.progress, "form factors", static_cast<double>(begin) / patches);
+    };
+    report_progress();
+    const auto cast = [&](int low, int high) {
       auto scratch = borrow();
       for (int i = begin + low; i < begin + high; ++i) work(i, *scratch);
       const std::lock_guard lock(mutex);
       idle.push_back(std::move(scratch));
-    });
+    };
+    loop.phase.for_each({begin, std::min(slice, patches - begin), grain}, cast, report_progress);
   }
-  report(progress, "form factors", 1.0);
+  report(loop.progress, "form factors", 1.0);
 }
 
 std::vector<EstimatedRow> cast_rows(const ElementCaster& caster, const LightPaths& paths,
@@ -295,7 +300,8 @@ std::vector<EstimatedRow> cast_rows(const ElementCaster& caster, const LightPath
   const int most_rays = *std::max_element(rays_of.begin(), rays_of.end());
   const RowCaster row_caster(caster, paths, most_rays);
   std::vector<EstimatedRow> rows(static_cast<std::size_t>(mesh.patch_count()));
-  for_each_row(mesh, most_rays, progress, [&](int i, RowCaster::Scratch& scratch) {
+  const JournalPhase alone;
+  for_each_row(mesh, {most_rays, progress, alone}, [&](int i, RowCaster::Scratch& scratch) {
     rows[i] = row_caster.cast(i, rays_of[i], scratch);
   });
   return rows;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "radiosity/form_factors/estimated_row.h"
+#include "radiosity/journal/journal_phase.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "scene/hemisphere_sets.h"
@@ -116,9 +117,15 @@ class RowCaster {
   SobolPoints aims_;  // of rays aimed at portals
 };
 
+/// How for_each_row() goes through patches.
+struct RowLoop {
+  int rays_per_patch = 0;  ///< approximate rays of one call
+  const Progress& progress;
+  const JournalPhase& phase;  ///< whose block i the call for patch i recalls or keeps
+};
+
 /// Calls `work(i, scratch)` for each patch i, in parallel, with progress between slices.
-/// `rays_per_patch`: approximate rays of one call.
-void for_each_row(const PatchMesh& mesh, int rays_per_patch, const Progress& progress,
+void for_each_row(const PatchMesh& mesh, const RowLoop& loop,
                   const std::function<void(int, RowCaster::Scratch&)>& work);
 
 /// Casts `rays_of[i]` rays from each patch i.

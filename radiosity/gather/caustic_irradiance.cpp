@@ -163,7 +163,7 @@ BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_dep
   const PatchMesh& mesh = lit.mesh();
   const LightPaths paths(lit.scene, lit.caster, max_specular_depth);
   if (!paths.has_specular() || lit.direct_light.light_count() == 0) return {};
-  JournalPhase phase(run.journal, "caustics", [&](Fingerprint& print) {
+  JournalPhase phase(run, "caustics", [&](Fingerprint& print) {
     print.add(mesh);
     print.add(lit.direct_light.column_count());
     print.add(rays);

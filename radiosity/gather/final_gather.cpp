@@ -97,7 +97,7 @@ GatheredIrradiance gather_irradiance(const LitScene& lit, const BandArray& radio
   GatheredIrradiance result{.direct = BandArray::Zero(count, lit.direct_light.column_count()),
                             .indirect = BandArray::Zero(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf::Zero(count)};
-  const JournalPhase phase(options.run.journal, "gather", [&](Fingerprint& print) {
+  const JournalPhase phase(options.run, "gather", [&](Fingerprint& print) {
     add_gather_inputs(print, lit.mesh(), points, options);
     print.add(lit.direct_light.column_count());
     print.add(radiosity);
@@ -121,7 +121,7 @@ BandArray gather_direct(const LitScene& lit, const GatherPoints& points,
   BandArray direct =
       BandArray::Zero(points.size(), lit.direct_light.channel_count() * lit.scene.bands.count());
   if (visibilities) visibilities->assign(static_cast<std::size_t>(points.size()), {});
-  const JournalPhase phase(options.run.journal, visibilities ? "sights" : "direct",
+  const JournalPhase phase(options.run, visibilities ? "sights" : "direct",
                            [&](Fingerprint& print) {
                              add_gather_inputs(print, lit.mesh(), points, options);
                              print.add(lit.direct_light.column_count());
@@ -146,7 +146,7 @@ GatheredIrradiance gather_indirect(const LitScene& lit, const BandArray& radiosi
   const int count = points.size();
   GatheredIrradiance result{.indirect = BandArray(count, radiosity.cols()),
                             .variance = Eigen::ArrayXf(count)};
-  const JournalPhase phase(options.run.journal, "indirect", [&](Fingerprint& print) {
+  const JournalPhase phase(options.run, "indirect", [&](Fingerprint& print) {
     add_gather_inputs(print, lit.mesh(), points, options);
     print.add(lit.direct_light.column_count());
     print.add(radiosity);
@@ -170,7 +170,7 @@ BandArray gather_shares(const LitScene& lit, const GatherPoints& points,
   const HemisphereGather hemisphere(lit, options, points);
   BandArray shares(points.size(),
                    Eigen::Index{lit.mesh().vertex_count()} * lit.scene.bands.count());
-  const JournalPhase phase(options.run.journal, "shares", [&](Fingerprint& print) {
+  const JournalPhase phase(options.run, "shares", [&](Fingerprint& print) {
     add_gather_inputs(print, lit.mesh(), points, options);
   });
   const auto values = [&](int begin, int size) { return std::tuple(rows_of(shares, begin, size)); };

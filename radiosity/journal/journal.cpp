@@ -211,13 +211,16 @@ int Journal::phase(std::string_view name, std::uint64_t fingerprint) {
   return number;
 }
 
-bool Journal::recall(int phase, int block, std::vector<std::byte>& bytes) const {
+bool Journal::holds(int phase, int block) const {
   const auto& phases = impl_->contents.phases;
   const auto p = static_cast<std::size_t>(phase);
-  if (p >= phases.size()) return false;
-  const auto at = phases[p].blocks.find(static_cast<std::uint32_t>(block));
-  if (at == phases[p].blocks.end()) return false;
-  const JournalRange& place = at->second;
+  return p < phases.size() && phases[p].blocks.contains(static_cast<std::uint32_t>(block));
+}
+
+bool Journal::recall(int phase, int block, std::vector<std::byte>& bytes) const {
+  if (!holds(phase, block)) return false;
+  const JournalContents::Phase& of = impl_->contents.phases[static_cast<std::size_t>(phase)];
+  const JournalRange& place = of.blocks.at(static_cast<std::uint32_t>(block));
   bytes.resize(place.size);
   if (!read_at(impl_->file.number(), place.offset, bytes)) return false;
   impl_->recalled += static_cast<std::int64_t>(place.size);

@@ -66,6 +66,8 @@ class Journal {
   /// Number of a phase, begun if it is new.
   int phase(std::string_view name, std::uint64_t fingerprint);
 
+  /// True if recall() finds the block.
+  bool holds(int phase, int block) const;
   /// Reads a block that an earlier process kept. Returns false if there is none.
   bool recall(int phase, int block, std::vector<std::byte>& bytes) const;
   /// Keeps a block, at most once each unless recalled.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "radiosity/processes/processes.h"
+
 namespace lightwell {
 
 double RunControl::time_left() const {
@@ -30,6 +32,10 @@ RunControl RunControl::with_share(double share) const {
     return std::min(left(), allowed - spent);
   };
   return result;
+}
+
+std::int64_t RunControl::least(std::int64_t value) const {
+  return processes ? processes->least(value) : value;
 }
 
 RunControl RunControl::stopping_in_time() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <utility>
 
@@ -9,13 +10,17 @@
 namespace lightwell {
 
 class Journal;
+class Processes;
 
-/// Progress, interruption, journal and time of a run. Only the time affects the result.
+/// Progress, interruption, journal, processes and time of a run. Only the time affects the result.
 struct RunControl {
   Progress progress{};
   /// Journal of the same scene, which keeps finished work and recalls it in a resumed run. Null:
   /// nothing is kept.
   Journal* journal = nullptr;
+  /// Processes that share the work of phases, each of which runs the same program. A journal is the
+  /// first process's, and the time is not limited. Null: this process does all work.
+  Processes* processes = nullptr;
   /// Seconds of wall time that are left, asked for again and again; empty: any time. Infinity means
   /// that there is no limit yet. When no time is left, solve_scene() ends with the best result that
   /// it has; other functions pay no attention.
@@ -28,6 +33,9 @@ struct RunControl {
   bool has_limit() const;
   /// The same run with a `share` of the time that is left now.
   RunControl with_share(double share) const;
+  /// The least value of all processes, for a decision that must be the same in all: to be called by
+  /// all in the same order. The value itself without others.
+  std::int64_t least(std::int64_t value) const;
   /// The same run, whose progress says stop once the time is up.
   RunControl stopping_in_time() const;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "radiosity/journal/journal.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -64,7 +65,7 @@ void SolverRun::keep_passes(SolverMethod method) {
   if (!options.run.journal) return;
   // A product with F is part of the fingerprint, so other form factors have another fingerprint.
   const LightVector E = system.product(system.albedo + system.M);
-  const JournalPhase phase(options.run.journal, "passes", [&](Fingerprint& print) {
+  const JournalPhase phase(options.run, "passes", [&](Fingerprint& print) {
     print.add(method);
     print.add(options.relaxation);
     print.add(options.gmres_restart);

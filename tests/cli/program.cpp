@@ -10,12 +10,18 @@
 
 namespace lightwell {
 
-Running::Running(const std::filesystem::path& folder, const std::vector<std::string>& arguments) {
+Running::Running(const std::filesystem::path& folder, const std::vector<std::string>& arguments)
+    : Running(folder, Words{std::vector<std::string>{LIGHTWELL_PROGRAM} + arguments}) {}
+
+std::unique_ptr<Running> Running::command(const std::filesystem::path& folder,
+                                          const std::vector<std::string>& words) {
+  return std::unique_ptr<Running>(new Running(folder, Words{words}));
+}
+
+Running::Running(const std::filesystem::path& folder, const Words& given) {
   const std::string out = said_ / "out", err = said_ / "err";
   std::vector<char*> words;
-  std::string program = LIGHTWELL_PROGRAM;
-  words.push_back(program.data());
-  std::vector<std::string> copies = arguments;
+  std::vector<std::string> copies = given.of;
   for (std::string& copy : copies) words.push_back(copy.data());
   words.push_back(nullptr);
 

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -23,11 +24,15 @@ struct Ended {
 class Running {
  public:
   Running(const std::filesystem::path& folder, const std::vector<std::string>& arguments);
+  /// Any command: its program and arguments.
+  static std::unique_ptr<Running> command(const std::filesystem::path& folder,
+                                          const std::vector<std::string>& words);
   ~Running();
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
 
   void signal(int number) const;
+  int process() const { return process_; }
   /// Text on standard error so far.
   std::string err() const;
   /// Text on standard output so far.
@@ -35,6 +40,11 @@ class Running {
   Ended wait();
 
  private:
+  struct Words {
+    std::vector<std::string> of{};
+  };
+  Running(const std::filesystem::path& folder, const Words& words);
+
   TemporaryFolder said_;
   int process_ = -1;
 };

@@ -413,7 +413,7 @@ TEST(Journal, AFullDiskStopsItAndNotTheWork) {
 
 TEST(JournalPhase, WithoutAJournalNothingIsKept) {
   bool was_asked = false;
-  JournalPhase phase(nullptr, "rays", [&](Fingerprint&) { was_asked = true; });
+  JournalPhase phase({}, "rays", [&](Fingerprint&) { was_asked = true; });
   int number = 5;
   phase.keep(0, number);
   phase.keep_state(number);
@@ -429,7 +429,7 @@ TEST(JournalPhase, SlicesThatWereKeptAreNotDoneAgain) {
   const auto print = [](Fingerprint& fingerprint) { fingerprint.add(count); };
   const auto run = [&](int stop, std::vector<double>& squares) {
     Journal journal(folder / "C", some_solve(), never);
-    const JournalPhase phase(&journal, "squares", print);
+    const JournalPhase phase({.journal = &journal}, "squares", print);
     std::atomic<int> done = 0;
     squares.assign(count, -1.0);
     try {
