@@ -75,7 +75,7 @@ constexpr std::array<NamedCommand, 21> commands = {{{"run", add_run, true, true}
                                                     {"solve", add_solve, true, true},
                                                     {"mesh", add_mesh},
                                                     {"relight", add_relight, false},
-                                                    {"render", add_render},
+                                                    {"render", add_render, true, true},
                                                     {"probe", add_probe},
                                                     {"view", add_view},
                                                     {"export", add_export},
@@ -237,7 +237,7 @@ std::unique_ptr<Processes> join(const CommandAction& action) {
   auto processes = std::make_unique<Processes>(std::move(port));
   if (action.shares_work) return processes;
   const std::string sentence = fmt::format(
-      "'{}' runs in one process; start it without mpirun (run, solve and form-factors share their "
+      "'{}' runs in one process; start it without mpirun (run, solve, render and form-factors share their "
       "work among processes)",
       action.name);
   processes->close(sentence, true);

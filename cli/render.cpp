@@ -8,9 +8,9 @@
 #include "cli/arguments.h"
 #include "cli/checkpoint.h"
 #include "cli/commands.h"
-#include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "cli/report.h"
+#include "cli/several_processes.h"
 #include "cli/steps.h"
 #include "cli/time_limit.h"
 #include "radiosity/solve.h"
@@ -61,18 +61,21 @@ int render_scene(const RenderCommandArguments& arguments, Console& console) {
   arguments.render.film.check(scene, files);
   static_cast<void>(
       CameraRays(arguments.render.projection.view(camera, scene)));  // throws for a bad camera
-  for (const std::filesystem::path& file : files) require_writable(file);
+  if (console.is_first()) {
+    for (const std::filesystem::path& file : files) require_writable(file);
+  }
   const SolvedScene solved = solved_scene(arguments, scene, console, report);
-  const InterruptEndsEarly on_interrupt;
+  const Provenance of = picture_provenance(scene, solved.solution, arguments.render);
+  agree_on(of, time, console);
+  const EarlyEnd on_interrupt(console);
   console.show_time_left(time.seconds_left());
   report.add("camera", camera.name);
-  Checkpoint checkpoint(arguments.checkpoint,
-                        picture_provenance(scene, solved.solution, arguments.render), files,
-                        console);
+  Checkpoint checkpoint(of_first(arguments.checkpoint, console), of, files, console);
   RenderableScene renderable(scene, solved);
-  const bool is_as_asked =
-      render_step(renderable, {camera, arguments.render, files, time.seconds_left()}, checkpoint,
-                  {console, report});
+  PictureTask task{camera, arguments.render, files};
+  if (!console.processes()) task.seconds_left = time.seconds_left();
+  const bool is_as_asked = render_step(renderable, task, checkpoint, {console, report});
+  if (!console.is_first()) return exit_done;
   checkpoint.finish(report, is_as_asked);
   report.print();
   return is_as_asked ? exit_done : exit_not_accurate;

@@ -120,6 +120,7 @@ void JournalPhase::for_each_in_turn(int count, const std::function<void(int)>& b
     }
     return;
   }
+  if (count == 0) return;
   before(0);
   const auto each = [&](int low, int high) {
     for (int block = low; block < high; ++block) body(block);
