@@ -23,6 +23,11 @@ void request(int signal) {
   ::_exit(exit_interrupted);
 }
 
+// A write beyond the allowed file size fails with EFBIG and is reported, like a full disk.
+void report_full_files() {
+  std::signal(SIGXFSZ, SIG_IGN);
+}
+
 }  // namespace
 
 void catch_interrupts() {
@@ -32,12 +37,12 @@ void catch_interrupts() {
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   sigaction(SIGHUP, &action, nullptr);
-  // A write beyond the allowed file size fails with EFBIG and is reported, like a full disk.
-  std::signal(SIGXFSZ, SIG_IGN);
+  report_full_files();
 }
 
 void ignore_interrupts() {
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) std::signal(number, SIG_IGN);
+  report_full_files();
 }
 
 bool interrupt_requested() {

@@ -12,7 +12,8 @@ namespace lightwell {
 /// - SIGXFSZ is ignored, so that a file at the allowed size fails to be written with an error.
 void catch_interrupts();
 
-/// Ignores SIGINT, SIGTERM and SIGHUP: the first process of several ends the others.
+/// The same for the others of several processes, which the first one ends: ignores SIGINT, SIGTERM,
+/// SIGHUP and SIGXFSZ.
 void ignore_interrupts();
 
 /// True once SIGTERM or SIGHUP has arrived, or SIGINT while no InterruptEndsEarly lives.

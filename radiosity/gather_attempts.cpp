@@ -14,7 +14,7 @@
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/gap_errors.h"
-#include "radiosity/openings/portals.h"
+#include "radiosity/openings/shared_openings.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solution/relight.h"
@@ -83,7 +83,7 @@ SolveOptions with_portals(const GatherSources& sources, const SolvedScene& patch
   const ElementCaster caster(patches.mesh);
   options.gather.portals = find_portals(
       caster, brightness_of_patches(patches.mesh, sources.all, patches.solution.patch_radiosity),
-      sources.openings);
+      sources.openings, options.run);
   return options;
 }
 

@@ -17,7 +17,7 @@
 #include "radiosity/importance/importance.h"
 #include "radiosity/journal/journal.h"
 #include "radiosity/journal/journal_phase.h"
-#include "radiosity/openings/portals.h"
+#include "radiosity/openings/shared_openings.h"
 #include "radiosity/parts/find_parts.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/refine_solution.h"
@@ -90,8 +90,8 @@ RadiositySolution shoot(const LitScene& lit, const SolveOptions& options) {
 // The openings of the scene; none if the time is up before they are found.
 std::vector<Opening> openings_in_time(const Scene& scene, const RunControl& run) {
   std::vector<Opening> openings;
-  finishes_in_time(
-      run, [&](const RunControl& in_time) { openings = find_openings(scene, in_time.progress); });
+  finishes_in_time(run,
+                   [&](const RunControl& in_time) { openings = find_openings(scene, in_time); });
   return openings;
 }
 
@@ -112,7 +112,7 @@ std::shared_ptr<const Portals> portals_of_rows(const EquationTask& task,
       options.method != FormFactorMethod::ray_cast) {
     return nullptr;
   }
-  const std::vector<Opening> openings = narrow_openings(lit.caster, task.openings);
+  const std::vector<Opening> openings = narrow_openings(lit.caster, task.openings, solver.run);
   if (openings.empty()) return nullptr;
   constexpr int few_rays = 32, few_of_emitters = 1024;
   constexpr double tolerance = 1e-3;

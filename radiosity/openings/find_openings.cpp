@@ -9,7 +9,9 @@
 #include <tuple>
 #include <variant>
 
+#include "radiosity/journal/journal_phase.h"
 #include "radiosity/openings/nearest_surface.h"
+#include "radiosity/openings/shared_openings.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -184,22 +186,65 @@ bool is_same(const Opening& opening, const Opening& other) {
          std::abs(to.dot(other.across)) < other.across.squaredNorm();
 }
 
+// The numbers of an opening, for other processes.
+using OpeningNumbers = std::array<double, 12>;
+
+std::vector<OpeningNumbers> numbers_of(const std::vector<Opening>& openings) {
+  std::vector<OpeningNumbers> result;
+  for (const auto& [center, along, across, normal] : openings) {
+    OpeningNumbers& numbers = result.emplace_back();
+    Eigen::Map<Eigen::Matrix<double, 3, 4>>(numbers.data()) << center, along, across, normal;
+  }
+  return result;
+}
+
+std::vector<Opening> openings_of(const std::vector<OpeningNumbers>& all) {
+  std::vector<Opening> result;
+  for (const OpeningNumbers& numbers : all) {
+    const Eigen::Map<const Eigen::Matrix<double, 3, 4>> columns(numbers.data());
+    result.push_back({.center = columns.col(0),
+                      .along = columns.col(1),
+                      .across = columns.col(2),
+                      .normal = columns.col(3)});
+  }
+  return result;
+}
+
 }  // namespace
 
 std::vector<Opening> find_openings(const Scene& scene, const Progress& progress) {
+  return find_openings(scene, RunControl{.progress = progress});
+}
+
+std::vector<Opening> find_openings(const Scene& scene, const RunControl& run) {
   if (scene.surfaces.empty()) return {};
   const std::vector<Edge> edges = long_edges(scene, shortest_edge * scene_bounds(scene).diagonal());
   const OpeningSearch search(scene);
   std::vector<std::vector<Opening>> beside(edges.size());
   const int count = static_cast<int>(edges.size());
-  constexpr int slice = 128;
+  const JournalPhase phase({.processes = run.processes}, "openings", [&](Fingerprint& print) {
+    print.add(scene_hash(scene));
+    print.add(count);
+  });
+  const int slice = 128 * phase.processes();
   for (int first = 0; first < count; first += slice) {
-    report(progress, "openings", static_cast<double>(first) / count);
-    parallel_for(std::min(slice, count - first), 8, [&](int begin, int end) {
+    const auto report_progress = [&] {
+      report(run.progress, "openings", static_cast<double>(first) / count);
+    };
+    report_progress();
+    const auto look = [&](int begin, int end) {
+      std::vector<OpeningNumbers> found;
       for (int i = first + begin; i < first + end; ++i) {
-        search.search(edges[static_cast<std::size_t>(i)], beside[static_cast<std::size_t>(i)]);
+        std::vector<Opening>& here = beside[static_cast<std::size_t>(i)];
+        if (phase.recall(i, found)) {
+          here = openings_of(found);
+          continue;
+        }
+        search.search(edges[static_cast<std::size_t>(i)], here);
+        if (phase.is_kept()) phase.keep(i, numbers_of(here));
       }
-    });
+    };
+    phase.for_each({first, std::min(slice, count - first), 8}, look, report_progress);
   }
   std::vector<Opening> openings;
   for (const auto& of_edge : beside) {

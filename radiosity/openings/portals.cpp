@@ -6,6 +6,8 @@
 #include <numbers>
 #include <ranges>
 
+#include "radiosity/journal/journal_phase.h"
+#include "radiosity/openings/shared_openings.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -324,13 +326,26 @@ bool Portals::is_near(const Vector3d& at, double size) const {
 }
 
 std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings) {
+  return narrow_openings(caster, std::move(openings), RunControl());
+}
+
+std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings,
+                                     const RunControl& run) {
   constexpr int paths = 16;
   constexpr double narrow = 0.1;
   const std::vector<float> dark(static_cast<std::size_t>(caster.mesh().element_count()), 0.0f);
   const Sights sights(caster, dark);
   std::vector<char> is_narrow(openings.size(), 0);
-  parallel_for(static_cast<int>(openings.size()), 4, [&](int begin, int end) {
+  const auto count = static_cast<int>(openings.size());
+  const JournalPhase phase({.processes = run.processes}, "narrow openings",
+                           [&](Fingerprint& print) {
+                             print.add_geometry(caster.mesh());
+                             print.add(count);
+                           });
+  const auto judge = [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
+      char& answer = is_narrow[static_cast<std::size_t>(i)];
+      if (phase.recall(i, answer)) continue;
       const Opening& opening = openings[static_cast<std::size_t>(i)];
       std::array<Sight, 2> sight;
       bool narrow_on_both = true;
@@ -339,9 +354,11 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
         narrow_on_both = narrow_on_both && 2.0 * opening.across.norm() * sight[side].paths <
                                                narrow * sight[side].distance;
       }
-      is_narrow[static_cast<std::size_t>(i)] = narrow_on_both && joins_parts(sight) ? 1 : 0;
+      answer = narrow_on_both && joins_parts(sight) ? 1 : 0;
+      phase.keep(i, answer);
     }
-  });
+  };
+  phase.for_each({0, count, 4}, judge);
   std::vector<Opening> result;
   for (std::size_t i = 0; i < openings.size(); ++i) {
     if (is_narrow[i]) result.push_back(openings[i]);
@@ -352,7 +369,14 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
 std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,
                                             const std::vector<float>& brightness,
                                             const std::vector<Opening>& openings) {
-  const std::vector<Opening> narrow = narrow_openings(caster, openings);
+  return find_portals(caster, brightness, openings, RunControl());
+}
+
+std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,
+                                            const std::vector<float>& brightness,
+                                            const std::vector<Opening>& openings,
+                                            const RunControl& run) {
+  const std::vector<Opening> narrow = narrow_openings(caster, openings, run);
   if (narrow.empty()) return nullptr;
   auto portals = std::make_shared<const Portals>(caster, brightness, narrow);
   return portals->is_empty() ? nullptr : portals;

@@ -98,15 +98,22 @@ class SeveralProcesses : public CommandTest {
 };
 
 TEST_F(SeveralProcesses, SolutionsHaveTheBytesOfOneProcess) {
-  const std::vector<std::pair<std::string, Words>> solves = {
-      {CORNELL_SCENE, {"--max-patch-size", "110", "--rays", "64", "--gather-rays", "32"}},
-      {"boxes.toml", quick()},
-      {"boxes.toml", {"--accuracy", "20%", "--max-patch-size", "1.5"}}};
-  for (const auto& [scene, options] : solves) {
+  struct Case {
+    std::string scene;
+    Words options;
+    std::vector<int> sizes{};
+  };
+  const std::vector<Case> cases = {
+      {CORNELL_SCENE,
+       {"--max-patch-size", "110", "--rays", "64", "--gather-rays", "32"},
+       {1, 2, 7}},
+      {"boxes.toml", quick(), {1, 2, 3, 7}},
+      {"boxes.toml", {"--accuracy", "20%", "--max-patch-size", "1.5"}, {3}}};
+  for (const auto& [scene, options, sizes] : cases) {
     const Words solve = Words{"solve", scene, "-o", "S.vtp"} + options;
     const int code = run(solve).code;
     const std::string alone = timeless("S.vtp");
-    for (const int size : {1, 2, 3, 7}) {
+    for (const int size : sizes) {
       fs::remove(folder / "S.vtp");
       const Ended ended = share(size, solve);
       EXPECT_EQ(ended.code, code) << ended.err;
@@ -216,7 +223,8 @@ TEST_F(SeveralProcesses, WrongInputIsRefusedOnce) {
           "the list of options of process 2 is not that of process 0");
   refused(side_by_side({program(solve), program(missing)}), "process 1: ");
   refused(share(3, missing), "none.toml");
-  refused(share(3, solve + Words{"--time", "5s"}), "--time is for one process");
+  refused(share(3, {"solve", "room.toml", "-o", "S.vtp", "--time", "5s"}),
+          "--time is for one process");
   refused(share(3, {"info", "room.toml"}), "'info' runs in one process");
   refused(share(3, solve + Words{"--acuracy", "1%"}), "there is no option '--acuracy'");
   refused(share(2, Words{"solve", "room.toml", "-o", "no/folder/S.vtp"}), "there is no folder");

@@ -1,6 +1,7 @@
 // A solve whose work several processes share has the bits of a solve by one.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <atomic>
 #include <random>
 
@@ -32,19 +33,18 @@ class SharedSolve : public testing::TestWithParam<Case> {
 
 TEST_P(SharedSolve, HasTheBitsOfASolveByOneProcess) {
   const SolvedScene alone = solve_scene(scene, options());
-  for (const int size : {2, 3}) {
-    std::vector<SolvedScene> solved(static_cast<std::size_t>(size));
-    std::atomic<std::int64_t> of_others = 0;
-    const Ends ends = run_processes(size, [&](Processes& processes) {
-      SolveOptions own = options();
-      own.run.processes = &processes;
-      solved[static_cast<std::size_t>(processes.rank())] = solve_scene(scene, own);
-      if (!processes.is_first()) of_others += processes.traffic().pieces;
-    });
-    EXPECT_GT(of_others, 0) << "the first process did all the work";
-    EXPECT_EQ(ends, Ends(static_cast<std::size_t>(size)));
-    for (const SolvedScene& each : solved) expect_same_solve(each, alone);
-  }
+  constexpr int size = 3;
+  std::array<SolvedScene, size> solved;
+  std::atomic<std::int64_t> of_others = 0;
+  const Ends ends = run_processes(size, [&](Processes& processes) {
+    SolveOptions own = options();
+    own.run.processes = &processes;
+    solved[static_cast<std::size_t>(processes.rank())] = solve_scene(scene, own);
+    if (!processes.is_first()) of_others += processes.traffic().pieces;
+  });
+  EXPECT_GT(of_others, 0) << "the first process did all the work";
+  EXPECT_EQ(ends, Ends(size));
+  for (const SolvedScene& each : solved) expect_same_solve(each, alone);
 }
 
 INSTANTIATE_TEST_SUITE_P(Solves, SharedSolve, testing::ValuesIn(cases),
