@@ -120,8 +120,7 @@ void JournalPhase::for_each_in_turn(int count, const std::function<void(int)>& b
     }
     return;
   }
-  if (count == 0) return;
-  before(0);
+  if (count > 0) before(0);
   const auto each = [&](int low, int high) {
     for (int block = low; block < high; ++block) body(block);
   };
@@ -131,6 +130,11 @@ void JournalPhase::for_each_in_turn(int count, const std::function<void(int)>& b
 void JournalPhase::share(const Blocks& blocks, bool uses_all_threads,
                          const std::function<void(int, int)>& body,
                          const std::function<void(int)>& progress) const {
+  // Others would only wait for a single piece, so each process computes it itself.
+  if (blocks.count <= blocks.grain) {
+    if (blocks.count > 0) body(0, blocks.count);
+    return;
+  }
   Sharing& sharing = *sharing_;
   SharedWork work{.count = blocks.count,
                   .grain = std::max(1, blocks.grain),

@@ -60,8 +60,9 @@ class JournalPhase {
   };
   /// parallel_for(count, grain, body), whose body(low, high) recalls each block from `first` + low
   /// to `first` + high - 1, or computes and keeps the block. With several processes each block is
-  /// computed in one of them. `waits` is called now and then by the calling thread while other
-  /// processes work; an exception of it ends the work.
+  /// computed in one of them, except the blocks of a single grain, which each computes. `waits` is
+  /// called now and then by the calling thread while other processes work; an exception of it ends
+  /// the work.
   void for_each(const Blocks& blocks, const std::function<void(int low, int high)>& body,
                 const std::function<void()>& waits = {}) const;
   /// The same for blocks 0 to count - 1 whose `body(block)` is parallel itself. `before(block)` is
