@@ -122,6 +122,28 @@ TEST(Portals, AreSeenFromTheirDimSide) {
   EXPECT_FALSE(portals->part({2, 2, 1}, {3, 1, 1}));
 }
 
+// Portals out of reach have no part in a view of near ones; with all within reach it is view() of a
+// single ray.
+TEST(Portals, AreNearWithinReach) {
+  const Lit lit(0.05);
+  const auto portals = lit.portals();
+  ASSERT_NE(portals, nullptr);
+  const Vector3d from(5.5, 1.2, 0.7), normal = Vector3d(-1, 1, 0).normalized();
+  // The slit is 1.5 m away along x.
+  EXPECT_TRUE(portals->view_near(from, normal, 1.4).is_empty());
+  const Portals::View all = portals->view(from, normal, 1),
+                      near = portals->view_near(from, normal, 10.0);
+  ASSERT_FALSE(near.is_empty());
+  const SobolPoints aims(64);
+  for (int i = 0; i < aims.count(); ++i) {
+    const Eigen::Array4d u = aims.point(i, 7).cast<double>();
+    const Vector3d direction = portals->draw(near, from, u[0], u[1], u[2]).direction;
+    EXPECT_EQ(portals->draw(all, from, u[0], u[1], u[2]).direction, direction);
+    EXPECT_EQ(portals->density(near, from, direction, 100.0),
+              portals->density(all, from, direction, 100.0));
+  }
+}
+
 // The mean of f / q over drawn directions is the integral of f over the slit's solid angle: f = cos
 // / pi gives the form factor. Here all portals are passed.
 TEST(Portals, HaveDirectionsOfTheStatedDensity) {
