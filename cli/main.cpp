@@ -237,9 +237,8 @@ std::unique_ptr<Processes> join(const CommandAction& action) {
   auto processes = std::make_unique<Processes>(std::move(port));
   if (action.shares_work) return processes;
   const std::string sentence = fmt::format(
-      "'{}' runs in one process; start it without mpirun (run, solve, render and form-factors "
-      "share their "
-      "work among processes)",
+      "'{}' runs in one process; start it without mpirun (only run, solve, render and form-factors "
+      "share work among processes)",
       action.name);
   processes->close(sentence, true);
   throw InputError(sentence);

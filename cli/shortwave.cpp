@@ -256,9 +256,8 @@ int shortwave(const ShortwaveArguments& arguments, Console& console) {
 Action add_shortwave(CLI::App& command) {
   const auto arguments = std::make_shared<ShortwaveArguments>();
   command.description(
-      "Sky view factors of facets and points, and the light of sun and sky that facets absorb, "
-      "with "
-      "all\nreflections: at an instant, or over the hours of a year.");
+      "Sky view factors of facets and points, and the light of sun and sky that facets absorb,\n"
+      "with all reflections: at an instant, or over the hours of a year.");
   arguments->add_to(command);
   command.footer(
       "Example: lightwell shortwave city.stl --albedo 0.2 --sun 45,180 --direct 800 --diffuse 100 "

@@ -14,7 +14,7 @@
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/gap_errors.h"
-#include "radiosity/openings/shared_openings.h"
+#include "radiosity/openings/portals.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solution/relight.h"

@@ -143,14 +143,30 @@ void add_weather(nb::module_& module) {
                      return owned(std::move(dates), {count, 4});
                    })
       // Altitude and azimuth, degrees; direct and diffuse light, W/m^2.
-      .def_prop_ro("light", [](const Weather& w) {
-        std::vector<double> light;
+      .def_prop_ro("light",
+                   [](const Weather& w) {
+                     std::vector<double> light;
+                     for (const SunHour& hour : sun_hours(w)) {
+                       light.insert(light.end(), {hour.altitude_degrees, hour.azimuth_degrees,
+                                                  hour.direct_normal, hour.diffuse_horizontal});
+                     }
+                     const std::size_t count = light.size() / 4;
+                     return owned(std::move(light), {count, 4});
+                   })
+      // Unit vectors to the sun of each hour; `up` and `north` are unit and at right angles.
+      .def("suns", [](const Weather& w, const std::array<double, 3>& up,
+                      const std::array<double, 3>& north) {
+        Sky compass;
+        compass.up = Eigen::Vector3d(up[0], up[1], up[2]);
+        compass.north = Eigen::Vector3d(north[0], north[1], north[2]);
+        std::vector<double> suns;
         for (const SunHour& hour : sun_hours(w)) {
-          light.insert(light.end(), {hour.altitude_degrees, hour.azimuth_degrees,
-                                     hour.direct_normal, hour.diffuse_horizontal});
+          const Eigen::Vector3d sun =
+              sky_direction(compass, hour.azimuth_degrees, hour.altitude_degrees);
+          suns.insert(suns.end(), sun.begin(), sun.end());
         }
-        const std::size_t count = light.size() / 4;
-        return owned(std::move(light), {count, 4});
+        const std::size_t count = suns.size() / 3;
+        return owned(std::move(suns), {count, 3});
       });
   module.def("read_weather", [](const std::filesystem::path& path) {
     return result_of_long(nb::none(), [&](const Progress&) { return read_weather(path); });

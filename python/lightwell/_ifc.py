@@ -1,11 +1,12 @@
 """Models in IFC (ISO 16739) as scene files, read by IfcOpenShell."""
 
+import contextlib
 import csv
 import fnmatch
 import json
 import os
 from dataclasses import dataclass, field
-from typing import Any, Dict, List, Optional, Sequence, TextIO, Tuple, Union
+from typing import Any, Dict, Iterator, List, Optional, Sequence, TextIO, Tuple, Union
 
 import numpy as np
 
@@ -391,14 +392,15 @@ def _text(value: str) -> str:
 
 
 def _write(model: _Model, output: str, source: str) -> None:
+    """Writes the scene last, so that a scene never lacks its geometry."""
     stem = os.path.splitext(os.path.basename(output))[0]
-    mesh = os.path.join(os.path.dirname(output), stem + ".obj")
-    with open(mesh, "w", encoding="utf-8", newline="\n") as file:
-        file.write(f"mtllib {stem}.mtl\n")
-        _write_mesh(model, file)
-    with open(os.path.splitext(mesh)[0] + ".mtl", "w", encoding="utf-8", newline="\n") as file:
+    base = os.path.splitext(output)[0]
+    with _whole_file(base + ".mtl") as file:
         for name, (reflectance, _) in model.materials.items():
             file.write(f"newmtl {name}\nKd {' '.join(map(repr, reflectance))}\n")
+    with _whole_file(base + ".obj") as file:
+        file.write(f"mtllib {stem}.mtl\n")
+        _write_mesh(model, file)
     parts = [f"# Made from {source}, an IFC model.", 'unit = "m"']
     for name, (reflectance, passed) in model.materials.items():
         # A pane has two faces, which light passes one after the other.
@@ -408,9 +410,23 @@ def _write(model: _Model, output: str, source: str) -> None:
             lines.append(f"transparent = {round(share, 9)!r}")
         parts.append("\n".join(lines))
     parts.append(f"[[surfaces]]\nname = \"model\"\nmesh = {_text(stem + '.obj')}")
-    parts += model.lamps + model.grids
-    with open(output, "w", encoding="utf-8", newline="\n") as file:
-        file.write("\n\n".join(parts) + "\n")
+    with _whole_file(output) as file:
+        file.write("\n\n".join(parts + model.lamps + model.grids) + "\n")
+
+
+@contextlib.contextmanager
+def _whole_file(path: str) -> Iterator[TextIO]:
+    """A text file that takes the place of `path` once it is whole."""
+    part = path + ".part"
+    try:
+        with open(part, "w", encoding="utf-8", newline="\n") as file:
+            yield file
+        os.replace(part, path)
+    except OSError as error:
+        raise Error(f"{path}: cannot be written: {error}") from None
+    finally:
+        with contextlib.suppress(OSError):
+            os.remove(part)
 
 
 def _write_mesh(model: _Model, file: TextIO) -> None:

@@ -27,6 +27,7 @@ class Weather:
         """Standard time less UTC."""
         self.notes: List[str] = data.notes
         """What was missing in the file, a sentence each."""
+        self._data = data
         dates, light = data.dates, data.light
         self.month, self.day, self.hour, self.number = (fixed(column.copy()) for column in dates.T)
         """(h,) int32: month, day, hour of the day from 0, and hour of the year from 0."""
@@ -48,11 +49,7 @@ class Weather:
         level = level - zenith * float(level @ zenith)
         if not np.linalg.norm(level) > 1e-9:
             raise InputError("north points up or down; give the direction of north on the ground")
-        level /= np.linalg.norm(level)
-        east = np.cross(level, zenith)
-        altitude, azimuth = np.radians(self.altitude), np.radians(self.azimuth)
-        ground = np.outer(np.cos(azimuth), level) + np.outer(np.sin(azimuth), east)
-        return np.outer(np.sin(altitude), zenith) + np.cos(altitude)[:, np.newaxis] * ground
+        return self._data.suns(tuple(zenith), unit_vector("north", level))
 
     def __repr__(self) -> str:
         return (

@@ -43,6 +43,13 @@ Ray scattered(const SurfacePoint& at, std::uint64_t key) {
           .origin_group = at.facet};
 }
 
+// Distance, metres, of the portals that a ray from where another ended is aimed at. No element is
+// larger than its patch, so the portals of Portals::is_near() are among them. Portals farther
+// away are left to rays that meet them by chance.
+double portal_reach(const PatchMesh& mesh, const ElementHit& hit) {
+  return Portals::near_sizes * std::sqrt(mesh.area[mesh.patch[hit.element]]);
+}
+
 // The share of rays from a surface that is aimed. Light of surfaces that reflect much goes on
 // inside the gap for longer.
 float share_aimed(float reflectance) {
@@ -247,8 +254,7 @@ void GapLight::follow(const ElementCaster& caster, const Ray& ray, const Element
                .facet = stop.hit.facet};
     Portals::View view;
     if (aims.portals && !exits) {
-      const double patch_size = std::sqrt(mesh.area[mesh.patch[stop.hit.element]]);
-      view = aims.portals->view_near(stop.at.position, normal, patch_size);
+      view = aims.portals->view_near(stop.at.position, normal, portal_reach(mesh, stop.hit));
     }
     // Paths end by chance (Arvo & Kirk 1990), at once or after as many bounces as light makes. The
     // rays that are not aimed weigh more, and more paths go on instead.
@@ -296,8 +302,8 @@ void GapLight::add_near_portal(const ElementCaster& caster, const Portals& porta
   const Spectrum rho = mesh.reflectance.row(mesh.patch[first_hit.element]).transpose();
   add_direct(caster, {.at = at, .key = portal_key, .shadows = shadows, .one_stands_for_all = true},
              rho, sum);
-  const double patch_size = std::sqrt(mesh.area[mesh.patch[first_hit.element]]);
-  const Portals::View view = portals.view_near(at.position, at.normal, patch_size);
+  const Portals::View view =
+      portals.view_near(at.position, at.normal, portal_reach(mesh, first_hit));
   const GapAims aims{.portals = &portals};
   Stop stop{.at = at, .key = portal_key};
   const double weight = next_ray(caster, aims, view, view.is_empty() ? 0.0 : 0.5, stop);

@@ -11,7 +11,6 @@
 
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/openings/nearest_surface.h"
-#include "radiosity/openings/shared_openings.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 
@@ -211,10 +210,6 @@ std::vector<Opening> openings_of(const std::vector<OpeningNumbers>& all) {
 }
 
 }  // namespace
-
-std::vector<Opening> find_openings(const Scene& scene, const Progress& progress) {
-  return find_openings(scene, RunControl{.progress = progress});
-}
 
 std::vector<Opening> find_openings(const Scene& scene, const RunControl& run) {
   if (scene.surfaces.empty()) return {};

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "scene/progress.h"
+#include "radiosity/journal/run_control.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -28,8 +28,8 @@ struct Opening {
 ///
 /// Openings are at most a tenth of the scene's diagonal wide and at least a millionth. Only the
 /// 4096 longest edges are looked at, and those longer than 0.2 % of the diagonal. Clear surfaces
-/// leave light through and are looked through; surfaces that move are left out. Throws Interrupted
-/// when progress says stop.
-std::vector<Opening> find_openings(const Scene& scene, const Progress& progress = {});
+/// leave light through and are looked through; surfaces that move are left out. The processes of
+/// `run` share the edges; no journal keeps them. Throws Interrupted when progress says stop.
+std::vector<Opening> find_openings(const Scene& scene, const RunControl& run = {});
 
 }  // namespace lightwell

@@ -7,7 +7,6 @@
 #include <ranges>
 
 #include "radiosity/journal/journal_phase.h"
-#include "radiosity/openings/shared_openings.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -308,8 +307,8 @@ bool Portals::part(const Vector3d& a, const Vector3d& b) const {
 }
 
 bool Portals::is_near(const Vector3d& at, double size) const {
-  constexpr double sizes = 2.0, least_height = 1e-3;
-  const double reach = sizes * size;
+  constexpr double least_height = 1e-3;
+  const double reach = near_sizes * size;
   thread_local std::vector<int> around;
   const Vector3d all_ways = Vector3d::Constant(reach);
   boxes_.find_overlaps({at - all_ways, at + all_ways}, around);
@@ -323,10 +322,6 @@ bool Portals::is_near(const Vector3d& at, double size) const {
     const Vector3d from_portal = to - u * portal.shape.along - v * portal.shape.across;
     return from_portal.squaredNorm() < reach * reach && std::abs(height) > least_height * size;
   });
-}
-
-std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings) {
-  return narrow_openings(caster, std::move(openings), RunControl());
 }
 
 std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings,
@@ -364,12 +359,6 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
     if (is_narrow[i]) result.push_back(openings[i]);
   }
   return result;
-}
-
-std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,
-                                            const std::vector<float>& brightness,
-                                            const std::vector<Opening>& openings) {
-  return find_portals(caster, brightness, openings, RunControl());
 }
 
 std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,

@@ -53,7 +53,7 @@ class Portals {
   /// irradiance, and falls with the number of those rays that pass it.
   View view(const Eigen::Vector3d& from, const Eigen::Vector3d& normal, int rays) const;
   /// view() of the portals within about `reach`, metres, alone: for a single ray from a place where
-  /// light varies fast because of them. Its cost does not grow with the portals of the scene.
+  /// light varies fast because of them. The cost grows with these portals, not with all.
   View view_near(const Eigen::Vector3d& from, const Eigen::Vector3d& normal, double reach) const;
   /// The view of the sender of a row of form factors, from either side of portals: the probability
   /// of a portal is proportional to its approximate form factor.
@@ -78,8 +78,10 @@ class Portals {
   /// True if the two points, such as centres of patches, lie in the two parts that a portal joins.
   bool part(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
-  /// True if a point on the dim side of a portal is nearer to the portal than twice `size`, metres,
-  /// and not in the portal's plane. There light varies too fast for elements of that size.
+  /// Distance from a portal, in sizes of an element, below which light varies too fast for it.
+  static constexpr double near_sizes = 2.0;
+  /// True if a point on the dim side of a portal is nearer to the portal than near_sizes times
+  /// `size`, metres, and not in the portal's plane.
   bool is_near(const Eigen::Vector3d& at, double size) const;
 
   /// Number of aimed rays beside `rays` cosine-distributed ones.
@@ -107,14 +109,17 @@ class Portals {
 };
 
 /// The openings that are narrow: less wide than a tenth of the mean distance to what is seen
-/// through either side. Rays over a hemisphere meet wider ones often enough for form factors.
-std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings);
+/// through either side. Rays over a hemisphere meet wider ones often enough for form factors. The
+/// processes of `run` share the openings; no journal keeps the result.
+std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings,
+                                     const RunControl& run = {});
 
 /// The narrow ones of `openings` that are portals; null if there are none. `brightness` as in
 /// Portals.
 std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,
                                             const std::vector<float>& brightness,
-                                            const std::vector<Opening>& openings);
+                                            const std::vector<Opening>& openings,
+                                            const RunControl& run = {});
 
 /// The portals of a scene, among its find_openings().
 std::shared_ptr<const Portals> find_portals(const Scene& scene, const ElementCaster& caster,

@@ -85,9 +85,9 @@ struct Processes::Impl {
   }
 
   [[noreturn]] static void throw_failure(const Message& failure) {
-    const std::string text = text_of(failure.bytes);
+    const std::string text = text_of(failure.bytes);  // begins with a mark
     const std::string sentence = fmt::format("process {}: {}", failure.from, text.substr(1));
-    if (!text.empty() && text[0] == input_error_mark) throw InputError(sentence);
+    if (text[0] == input_error_mark) throw InputError(sentence);
     throw std::runtime_error(sentence);
   }
 

@@ -81,7 +81,8 @@ class Processes {
 
   /// Ends the run of this process, with the reason if it failed, and returns once all have ended.
   /// If the first process has failed, the others are dismissed, and all are aborted unless they end
-  /// within `patience` seconds. To be called once, also after Dismissed.
+  /// within `patience` seconds: they look between pieces of work, which take a second or two. To be
+  /// called once, also after Dismissed.
   void close(std::string_view failure, bool is_input_error, double patience = 20.0);
 
   const Traffic& traffic() const;

@@ -71,7 +71,7 @@ class RoundOfWork {
   const SharedWork& work_;
   int pieces_, threads_;
 
-  // Of the calling thread.
+  // Members that the calling thread alone uses.
   int next_ = 0;                  // first: next piece to hand out
   std::deque<int> waiting_{};     // first: processes without an answer
   std::vector<char> has_come_{};  // first: processes that have come to this round

@@ -33,7 +33,7 @@ void count_ends(const FacetViewFactors& found, const Eigen::Vector3d& up, std::s
 }
 
 RayEnds ray_ends(const FacetViewFactors& found, const ElementCaster& caster,
-                 const SobolPoints& sobol, const ExposurePoint& point, std::uint64_t key,
+                 const SobolPoints& sobol, const SurfacePoint& point, std::uint64_t key,
                  const Eigen::Vector3d& up) {
   Eigen::Vector3d a, b;
   tangent_frame(point.normal, a, b);
@@ -57,7 +57,7 @@ RayEnds ray_ends(const FacetViewFactors& found, const ElementCaster& caster,
 }  // namespace
 
 PointViews point_views(const FacetViewFactors& found, const ElementCaster& caster,
-                       std::span<const ExposurePoint> points, const Eigen::Vector3d& up,
+                       std::span<const SurfacePoint> points, const Eigen::Vector3d& up,
                        const Progress& progress) {
   const SobolPoints sobol(rays_of_a_point);
   const int count = static_cast<int>(points.size());
@@ -81,13 +81,13 @@ PointViews point_views(const FacetViewFactors& found, const ElementCaster& caste
   return views;
 }
 
-Eigen::ArrayXd point_sun_factors(const ElementCaster& caster, std::span<const ExposurePoint> points,
+Eigen::ArrayXd point_sun_factors(const ElementCaster& caster, std::span<const SurfacePoint> points,
                                  const Eigen::Vector3d& sun) {
   Eigen::ArrayXd factors(static_cast<Eigen::Index>(points.size()));
   constexpr int grain = 256;
   parallel_for(static_cast<int>(points.size()), grain, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) {
-      const ExposurePoint& point = points[static_cast<std::size_t>(p)];
+      const SurfacePoint& point = points[static_cast<std::size_t>(p)];
       const Ray ray{.origin = point.position, .direction = sun, .origin_group = point.facet};
       std::uint8_t blocked = 0;
       caster.occluded({&ray, 1}, {&blocked, 1});

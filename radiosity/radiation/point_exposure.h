@@ -7,15 +7,9 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/form_factors/facet_view_factors.h"
 #include "scene/progress.h"
+#include "scene/surface_point.h"
 
 namespace lightwell {
-
-/// A point at which light of sun and sky is measured: in the air, or on a facet.
-struct ExposurePoint {
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< metres
-  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< unit, direction that the point faces
-  int facet = -1;  ///< scene-wide facet that the point lies on; -1: none
-};
 
 /// Shares of the hemisphere of points, weighted by the cosine, that sky and rows cover.
 struct PointViews {
@@ -29,12 +23,12 @@ struct PointViews {
 ///
 /// `up`: unit, to the zenith. Throws Interrupted if `progress` requests a stop.
 PointViews point_views(const FacetViewFactors& found, const ElementCaster& caster,
-                       std::span<const ExposurePoint> points, const Eigen::Vector3d& up,
+                       std::span<const SurfacePoint> points, const Eigen::Vector3d& up,
                        const Progress& progress = {});
 
 /// Cosine to the sun at each point that sees the middle of the sun, 0 at others, [0, 1]. `sun`:
 /// unit, towards the sun.
-Eigen::ArrayXd point_sun_factors(const ElementCaster& caster, std::span<const ExposurePoint> points,
+Eigen::ArrayXd point_sun_factors(const ElementCaster& caster, std::span<const SurfacePoint> points,
                                  const Eigen::Vector3d& sun);
 
 /// Irradiance of each point by what rows reflect, sum_j F_j albedo_j E_j, W/m^2. `E`: irradiance of

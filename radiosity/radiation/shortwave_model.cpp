@@ -7,7 +7,7 @@
 namespace lightwell {
 
 ShortwaveModel::ShortwaveModel(const FacetViewFactors& found, const ElementCaster& caster,
-                               std::span<const ExposurePoint> points, const Eigen::Vector3d& up,
+                               std::span<const SurfacePoint> points, const Eigen::Vector3d& up,
                                const Progress& progress)
     : found_(found),
       caster_(caster),

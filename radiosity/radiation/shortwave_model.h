@@ -31,7 +31,7 @@ class ShortwaveModel {
  public:
   /// `up`: unit, to the zenith. Throws Interrupted if `progress` requests a stop.
   ShortwaveModel(const FacetViewFactors& found, const ElementCaster& caster,
-                 std::span<const ExposurePoint> points, const Eigen::Vector3d& up,
+                 std::span<const SurfacePoint> points, const Eigen::Vector3d& up,
                  const Progress& progress = {});
 
   const Eigen::ArrayXd& sky_view() const { return sky_view_; }
@@ -47,7 +47,7 @@ class ShortwaveModel {
  private:
   const FacetViewFactors& found_;
   const ElementCaster& caster_;
-  std::vector<ExposurePoint> points_;
+  std::vector<SurfacePoint> points_;
   Eigen::ArrayXd sky_view_;
   PointViews views_;
 };

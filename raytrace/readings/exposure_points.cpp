@@ -4,9 +4,9 @@
 
 namespace lightwell {
 
-std::vector<ExposurePoint> exposure_points(const ElementCaster& caster,
-                                           std::span<const Probe> probes) {
-  std::vector<ExposurePoint> points;
+std::vector<SurfacePoint> exposure_points(const ElementCaster& caster,
+                                          std::span<const Probe> probes) {
+  std::vector<SurfacePoint> points;
   for (const GatherPoint& point : probe_points(caster, probes)) {
     points.push_back({.position = point.position, .normal = point.normal, .facet = point.facet});
   }

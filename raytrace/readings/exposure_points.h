@@ -10,7 +10,7 @@ namespace lightwell {
 
 /// The points at which sun and sky are measured for probes: on the facet that a probe lies on, or
 /// in the air (see ProbeSurface).
-std::vector<ExposurePoint> exposure_points(const ElementCaster& caster,
-                                           std::span<const Probe> probes);
+std::vector<SurfacePoint> exposure_points(const ElementCaster& caster,
+                                          std::span<const Probe> probes);
 
 }  // namespace lightwell

@@ -151,8 +151,11 @@ TEST_F(SeveralProcesses, TheReportCountsTheWorkOfEach) {
     received += each["received_mb"].get<double>();
   }
   EXPECT_GT(sent, 0.0);
-  // Requests and answers of the last round, of a few bytes, may be under way.
-  EXPECT_NEAR(received, sent, 0.01);
+  // Requests of the last round may be under way: at most two of 16 bytes, one for the thread and
+  // one ahead, from each of the two other processes. Ten digits of megabytes in JSON: 1e-9.
+  const double under_way = 2 * 2 * 16.0 / (1 << 20);
+  EXPECT_LE(received, sent + 1e-9);
+  EXPECT_GE(received, sent - under_way - 1e-9);
 }
 
 // Kills one of the processes of mpirun.
@@ -269,10 +272,6 @@ TEST(SeveralProcesses, AreRefusedOnceWithoutMpi) {
     EXPECT_EQ(count_of(ended.err, "was built without MPI"), rank[0] == '0' ? 1 : 0) << ended.err;
     EXPECT_FALSE(fs::exists(folder / "S.vtp"));
   }
-}
-
-TEST(SeveralProcesses, ShareTheirWorkWithMpi) {
-  GTEST_SKIP() << "this build has no MPI (-DLIGHTWELL_MPI=ON)";
 }
 
 #endif

@@ -127,7 +127,8 @@ TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
               1e-6 * arriving);
   const auto rows = table(5);  // sky_view_factor, then kWh/m2: direct, diffuse, reflected, net
   ASSERT_EQ(rows.size(), 3u);
-  for (const auto& row : rows) EXPECT_NEAR(row[2], 1.6 * row[0], 1e-8);
+  // Nine digits of two numbers below 1.
+  for (const auto& row : rows) EXPECT_NEAR(row[2], 1.6 * row[0], 5e-10 + 1.6 * 5e-10);
   // hours.csv, and net.npy of 128 bytes and 16 x 3 floats, hold the same.
   std::istringstream lines(content_of(folder / "hours/hours.csv"));
   std::string line;
@@ -143,7 +144,7 @@ TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
     sum += std::stod(cells[8]);
     up += std::sin(std::stod(cells[4]) * std::numbers::pi / 180.0);
   }
-  EXPECT_NEAR(sum / 1000.0, arriving, 1e-8 * arriving);
+  EXPECT_NEAR(sum / 1000.0, arriving, 5e-9 * arriving);  // nine digits
   const std::string net = content_of(folder / "hours/net.npy");
   ASSERT_EQ(net.size(), 128 + 16 * 3 * sizeof(float));
   double of_road = 0.0;
@@ -152,7 +153,8 @@ TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
     std::memcpy(&value, net.data() + 128 + h * 3 * sizeof(float), sizeof(float));
     of_road += double{value};
   }
-  EXPECT_NEAR(of_road / 1000.0, rows[0][4], 16 * 500e-3 * 6e-8 + 1e-8);  // floats; nine digits
+  // Roundings of 16 floats below 500 W/m2, in kWh, and of nine digits of a number below 10.
+  EXPECT_NEAR(of_road / 1000.0, rows[0][4], 16 * 0.5 * 0x1p-24 + 5e-9);
   // The second point, above the roofs, has all of the sun and all of the sky, and no wall in view.
   std::istringstream points(content_of(folder / "q.csv"));
   std::getline(points, line);
@@ -160,9 +162,9 @@ TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
   std::getline(points, line);
   std::getline(points, line);
   EXPECT_TRUE(line.starts_with("5,500,20,0,0,1,1,"));
-  // Angles have four decimals: 5e-5 degrees in each of 16 hours.
+  // Angles have four decimals: 5e-5 degrees in each of 16 hours. Nine digits of a number below 10.
   EXPECT_NEAR(std::stod(line.substr(std::string("5,500,20,0,0,1,1,").size())), 0.5 * up,
-              0.5 * 16 * 5e-5 * std::numbers::pi / 180.0 + 1e-8);
+              0.5 * 16 * 5e-5 * std::numbers::pi / 180.0 + 5e-9);
   EXPECT_NE(line.find(",1.6,0,"), std::string::npos);
   // Without days the year has the same 16 hours.
   ASSERT_EQ(shortwave(wanted).code, 0);
@@ -186,10 +188,11 @@ TEST_F(Shortwave, PointsOfAnInstantHaveSunSkyAndReflections) {
   // Five metres below the tops the sky ends at atan(5 / 10) above the horizon.
   const double sky = 0.5 * (1.0 - 5.0 / std::hypot(5.0, 10.0));
   EXPECT_NEAR(cells[6], sky, 4.0 * std::sqrt(sky * (1.0 - sky) / 16384.0));
-  EXPECT_NEAR(cells[7], 800 * std::sqrt(0.5), 1e-6);
-  EXPECT_NEAR(cells[8], 100 * cells[6], 1e-6);
+  // Nine digits: 5e-7 of hundreds, 5e-8 of tens, 5e-10 of the view factor, which counts 100 times.
+  EXPECT_NEAR(cells[7], 800 * std::sqrt(0.5), 5e-7);
+  EXPECT_NEAR(cells[8], 100 * cells[6], 5e-8 + 100 * 5e-10);
   EXPECT_GT(cells[9], 0.0);
-  EXPECT_NEAR(cells[10], cells[7] + cells[8] + cells[9], 1e-5);
+  EXPECT_NEAR(cells[10], cells[7] + cells[8] + cells[9], 2 * 5e-7 + 2 * 5e-8);
 }
 
 TEST_F(Shortwave, WrongOptionsAndTablesAreRefused) {

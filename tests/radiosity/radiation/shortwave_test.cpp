@@ -143,7 +143,7 @@ TEST(PointViews, OfAStreetAreThoseOfItsClosedForm) {
   const FacetViewFactors found = street();
   const ElementCaster caster(found.mesh);
   const double y = 5e5, x = 2.5, z = 6.0;
-  const std::vector<ExposurePoint> points{
+  const std::vector<SurfacePoint> points{
       {.position = {x, y, 0.0}, .normal = zenith, .facet = 0},
       {.position = {0.0, y, z}, .normal = Eigen::Vector3d::UnitX(), .facet = 1},
       {.position = {x, y, height + 1.0}, .normal = zenith},
@@ -177,7 +177,7 @@ TEST(PointViews, OfAStreetAreThoseOfItsClosedForm) {
 TEST(ShortwaveModel, ComputesEachInstantAsIfItWereAlone) {
   const FacetViewFactors found = street();
   const ElementCaster caster(found.mesh);
-  const std::vector<ExposurePoint> points{
+  const std::vector<SurfacePoint> points{
       {.position = {0.5 * width, 5e5, 0.0}, .normal = zenith, .facet = 0}};
   const ShortwaveModel model(found, caster, points, zenith);
   const Eigen::Array3d albedo(0.1, 0.6, 0.4);
@@ -199,8 +199,8 @@ TEST(ShortwaveModel, ComputesEachInstantAsIfItWereAlone) {
               });
     const double sky = model.points().sky[0];
     EXPECT_DOUBLE_EQ(light.point_diffuse[0], (100.0 + number) * sky);
-    // By reciprocity between the point and each of the two walls, F = (1 - sky) / 2 each by
-    // symmetry, to four standard errors of independent rays.
+    // Symmetry gives each of the two walls half of what the sky leaves, F = (1 - sky) / 2; four
+    // standard errors of independent rays.
     const Eigen::ArrayXd E = light.direct + light.diffuse + light.exchange.reflected;
     const double expected = 0.5 * (1.0 - sky) * (0.6 * E[1] + 0.4 * E[2]);
     EXPECT_NEAR(light.point_reflected[0], expected,
