@@ -23,6 +23,7 @@
 #include "radiosity/refine/refine_solution.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solve_equations.h"
+#include "radiosity/solvers/solve_channels.h"
 #include "radiosity/solvers/solve_radiosity.h"
 #include "radiosity/stopwatch.h"
 #include "scene/errors.h"
