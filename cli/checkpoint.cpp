@@ -171,7 +171,7 @@ void Checkpoint::rethrow_stopped() {
     console_.finish_phase();
     throw InterruptedWith(
         fmt::format("interrupted; finished work is in '{}' ({}). To resume:\n  {}", file,
-                    bytes_text(journal_->size()), command_to_resume(console_.options())));
+                    bytes_text(journal_->size()), command_to_resume(console_)));
   } catch (...) {
     // An empty checkpoint would only be refused at the next start without --resume.
     if (!Journal::holds_work(arguments_.file)) {
@@ -211,7 +211,7 @@ void Checkpoint::finish(Report& report, bool is_whole, const std::string& key) {
                    {"resumed_mb", static_cast<double>(journal_->found()) / mebibyte}});
   if (!is_whole) {
     console_.say(fmt::format("finished work is in '{}' ({}). To resume:\n  {}", file, size,
-                             command_to_resume(console_.options())));
+                             command_to_resume(console_)));
   } else if (arguments_.keep) {
     const std::string failure = journal_->failure();
     if (!failure.empty() && !has_warned_) console_.say("warning: " + failure);
@@ -254,10 +254,13 @@ std::optional<SolvedScene> finished_solution(const CheckpointArguments& argument
   return solved;
 }
 
-std::string command_to_resume(const CommonOptions& options) {
+std::string command_to_resume(const Console& console) {
   std::string text;
+  if (const Processes* processes = console.processes()) {
+    text = fmt::format("mpirun -n {}", processes->size());
+  }
   bool resumes = false;
-  for (const std::string& word : options.command_line) {
+  for (const std::string& word : console.options().command_line) {
     if (!text.empty()) text += ' ';
     text += quoted(word);
     resumes = resumes || word == "--resume";

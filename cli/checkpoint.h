@@ -76,7 +76,7 @@ std::optional<SolvedScene> finished_solution(const CheckpointArguments& argument
                                              const Provenance& of,
                                              const std::filesystem::path& output, Console& console);
 
-/// The command line with --resume, quoted for a shell.
-std::string command_to_resume(const CommonOptions& options);
+/// The command line with --resume, quoted for a shell; with several processes for `mpirun`.
+std::string command_to_resume(const Console& console);
 
 }  // namespace lightwell

@@ -104,7 +104,7 @@ bool render_pictures(const Job& job, const SolvedScene& solved) {
     if (kept.file.empty()) throw;
     throw InterruptedWith(
         fmt::format("interrupted; the solution is in '{}'. To resume with the pictures:\n  {}",
-                    outputs.solution.string(), command_to_resume(console.options())));
+                    outputs.solution.string(), command_to_resume(console)));
   }
   checkpoint.finish(feedback.report, are_as_asked, "picture_checkpoint");
   return are_as_asked;

@@ -17,12 +17,29 @@ namespace lightwell {
 /// subdivision, so a finer picture keeps the samples of a coarser one.
 inline constexpr int lattice_steps = 1 << deepest_subdivision;
 
+/// Counts of rays. The weight of cut branches is in integer steps, so that sums do not depend on
+/// the order.
+struct RayCounts {
+  static constexpr double weight_step = 0x1p-30;
+  std::int64_t eye_rays = 0, depth_cut = 0, cut_steps = 0;
+};
+
 /// Counts of a picture's rays, added up by all threads.
 struct RayCounters {
-  std::atomic<std::int64_t> eye_rays{0}, depth_cut{0};
-  /// Weight of cut branches in integer steps, whose sum does not depend on the order.
-  static constexpr double weight_step = 0x1p-30;
-  std::atomic<std::int64_t> cut_steps{0};
+  static constexpr double weight_step = RayCounts::weight_step;
+  std::atomic<std::int64_t> eye_rays{0}, depth_cut{0}, cut_steps{0};
+
+  /// Returns the counts since `before`.
+  RayCounts since(const RayCounts& before) const {
+    return {.eye_rays = eye_rays - before.eye_rays,
+            .depth_cut = depth_cut - before.depth_cut,
+            .cut_steps = cut_steps - before.cut_steps};
+  }
+  void add(const RayCounts& counts) {
+    eye_rays += counts.eye_rays;
+    depth_cut += counts.depth_cut;
+    cut_steps += counts.cut_steps;
+  }
 
   void add_cut(double weight) {
     if (weight > 0.0) cut_steps += std::llround(weight / weight_step);
@@ -46,6 +63,8 @@ class Eye {
     counters_.add_cut(double{sample.cut_weight});
     return sample;
   }
+  /// Returns the same eye with counters of its own.
+  Eye counting_in(RayCounters& counters) const { return {rays_, tree_, counters}; }
   std::uint64_t fingerprint(double x, double y, int panel) const {
     const auto ray = ray_at(x, y, panel);
     return ray ? tree_.fingerprint(*ray, rays_.cone(step * x, step * y, panel)) : 0;

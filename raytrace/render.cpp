@@ -127,17 +127,20 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   const auto render_tile = [&](int tile, int y, int rows) {
     auto values = std::tuple(rows_of(image.radiance, camera.width, y, rows),
                              rows_of(image.layers.values, camera.width, y, rows));
-    if (phase.recall(tile, values)) {
+    RayCounts of_tile;
+    if (phase.recall(tile, values, of_tile)) {
+      counters.add(of_tile);
       ++recalled;
       return;
     }
+    const RayCounts before = counters.since({});
     tiles.render(y, rows);
     parallel_for(rows, 1, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         layers.finish_row(y + i, scene.bands, rays, caster, tree.visible_lamps());
       }
     });
-    phase.keep(tile, values);
+    phase.keep(tile, values, counters.since(before));
   };
   const int count = for_each_tile(phase, tiles.tile_rows(), image, options, render_tile);
   if (render_report) {

@@ -17,7 +17,7 @@ struct RenderReport {
   /// Mean weight of cut branches per sample: the share of the picture that is missing, if the cut
   /// light is as bright as the rest.
   double cut_share = 0.0;
-  /// All tiles, and tiles recalled from the journal, which trace no rays.
+  /// All tiles, and tiles recalled from the journal, whose rays count too.
   int tiles = 0, recalled_tiles = 0;
 };
 

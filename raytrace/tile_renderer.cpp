@@ -132,7 +132,12 @@ void TileRenderer::sample(int first_row, int rows, const GlossMask* only) {
 
 void TileRenderer::subdivide(int first_row, int rows, const GlossMask* mask) {
   const auto count = static_cast<std::size_t>(rows);
-  if (row_of_corners_ != first_row) trace_corners(eye_, first_row, {corners_.data(), 1}, mask);
+  if (row_of_corners_ != first_row) {
+    // The tile above counts these corners.
+    RayCounters unread;
+    const Eye eye = first_row > 0 ? eye_.counting_in(unread) : eye_;
+    trace_corners(eye, first_row, {corners_.data(), 1}, mask);
+  }
   trace_corners(eye_, first_row + 1, {corners_.data() + 1, count}, mask);
   std::optional<SampledPixels> sampled;
   if (mask) sampled.emplace(SampledPixels{.samples = samples_, .mask = *mask});

@@ -206,6 +206,7 @@ TEST_F(SeveralProcesses, AnInterruptSaysOnceHowToGoOn) {
   EXPECT_NE(ended.code, 0);
   EXPECT_FALSE(fs::exists(folder / "S.vtp"));
   EXPECT_EQ(count_of(ended.err, "To resume:"), 1) << ended.err;
+  EXPECT_EQ(count_of(ended.err, "mpirun -n 2"), 1) << ended.err;
 }
 
 // Each of these is refused by one sentence, however many processes there are.

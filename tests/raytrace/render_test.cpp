@@ -236,7 +236,8 @@ TEST(Render, StoppedAnywhereAndGoneOnWithItHasTheSameBits) {
   RenderOptions options{.pass = Pass::interpolate,
                         .max_subdivision = 1,
                         .layers = {Layer::normal, Layer::depth, Layer::luminance}};
-  const Image whole = lit.render(camera, options);
+  RenderReport of_whole;
+  const Image whole = lit.render(camera, options, &of_whole);
   const TemporaryFolder folder;
   const Provenance of{.version = "1", .scene_hash = 7};
   // 3000 rows of 8 pixels are 3 tiles of 8192 pixels. Each run resumes with one more finished tile,
@@ -259,6 +260,7 @@ TEST(Render, StoppedAnywhereAndGoneOnWithItHasTheSameBits) {
   EXPECT_TRUE((image.layers.values == whole.layers.values).all());
   EXPECT_EQ(report.tiles, 3);
   EXPECT_EQ(report.recalled_tiles, 3);
+  EXPECT_EQ(report.eye_rays, of_whole.eye_rays);
 }
 
 TEST(Render, TilesOfAnotherPictureAreNotTaken) {
