@@ -52,6 +52,25 @@ def readable_copy(scene, folder, is_matt):
     return copy
 
 
+def comparable_copy(mi, file):
+    """The scene as Mitsuba is to read it, beside `file`. A pixel is the mean over its square, as Lightwell's are: a wider filter spreads the
+    light of windows over the squares beside them. Pictures with an alpha channel cover by that channel; Mitsuba would take their colours, and
+    the white around a leaf for the leaf."""
+    def alpha_alone(match):
+        picture = mi.Bitmap(str(file.parent / match[2]))
+        if picture.pixel_format() != mi.Bitmap.PixelFormat.RGBA:
+            return match[0]
+        name = "alpha_of_" + match[2].replace("/", "_")
+        mi.Bitmap(np.ascontiguousarray(np.array(picture)[..., 3:])).write(str(file.parent / name))
+        return f'{match[1]}{name}"/>\n<boolean name="raw" value="true"/>'
+
+    text = re.sub(r'(<rfilter [^>]*type=")[^"]*"', r'\1box"', file.read_text())
+    text = re.sub(r'(<texture name="opacity" type="bitmap"\s*>\s*<string name="filename" value=")([^"]*)"\s*/>', alpha_alone, text)
+    copy = file.with_name("comparable.xml")
+    copy.write_text(text)
+    return copy
+
+
 def seconds(who=resource.RUSAGE_SELF):
     used = resource.getrusage(who)
     return used.ru_utime + used.ru_stime
@@ -140,21 +159,22 @@ def main(arguments):
         home = pathlib.Path(folder) / name
         file = readable_copy(scene, home / "scene", is_matt)
         ours, spent, report = lightwell_picture(mi, program, file, home / "lightwell", size, options)
-        pairs = [mitsuba_picture(mi, file, width, height, int(samples), seed) for seed in (1, 2)]
+        theirs = comparable_copy(mi, file)
+        pairs = [mitsuba_picture(mi, theirs, width, height, int(samples), seed) for seed in (1, 2)]
         a, b = (luminance_of_squares(picture) for picture, _ in pairs)
         p, reference = luminance_of_squares(ours), 0.5 * (a + b)
         shown = reference < 8.0 * np.median(reference)
         mean = reference[shown].mean()
         error = np.sqrt(max(((p - a) * (p - b))[shown].mean(), 0.0)) / mean
-        theirs = np.sqrt((((a - b) ** 2)[shown] / 2.0).mean()) / mean
+        their_error = np.sqrt((((a - b) ** 2)[shown] / 2.0).mean()) / mean
         median = np.median(np.abs(p / np.maximum(reference, 1e-12) - 1.0)[shown])
         mottle, slope = mottle_and_slope(ours, [picture for picture, _ in pairs])
         their_seconds = 0.5 * (pairs[0][1] + pairs[1][1])
-        equal = their_seconds * (theirs / max(error, 1e-12)) ** 2 / spent
+        equal = their_seconds * (their_error / max(error, 1e-12)) ** 2 / spent
         print(f"| {name} | {spent:.0f} | {report['peak_memory_mb']:.0f} | {report['elements']} | "
               f"{100.0 * (p[shown].mean() / mean - 1.0):+.1f} % | {100.0 * error:.1f} % | {100.0 * median:.1f} % | "
               f"{100.0 * mottle:.1f} % | {100.0 * slope:.1f} % | "
-              f"{their_seconds:.0f} | {100.0 * theirs:.1f} % | {equal:.2g} | "
+              f"{their_seconds:.0f} | {100.0 * their_error:.1f} % | {equal:.2g} | "
               f"{beside_its_own(mi, ours, scene.parent / 'TungstenRender.exr')} |", flush=True)
 
 

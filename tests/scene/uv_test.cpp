@@ -127,6 +127,28 @@ materials.rug = { reflectance = [0.8, 0.4, 0.2], texture = { file = "two pixels.
   EXPECT_NEAR(FacetTextures(scene).reflectance(0, {0.5, 0.5, 0})[2], 0.2f, 1e-5f);
 }
 
+// What a mask cuts out has no colour, neither in the mean nor in filters that reach beyond the cut.
+TEST_F(Pictures, ThatAreCutShowTheColourOfWhatIsCovered) {
+  const std::string square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+  folder.write("leaf.mtl",
+               "newmtl leaf\nKd .8 .8 .8\nmap_Kd two pixels.png\nmap_d two pixels.png\n");
+  const std::string laid = "uv = [[0,0],[1,0],[1,1],[0,1]]\n";
+  for (const Scene& scene :
+       {read_file("leaf.toml",
+                  R"(materials.rug = { reflectance = 0.8, texture = "two pixels.png", mask =
+                                  "two pixels.png" })" +
+                      toml_square + laid),
+        read_file("leaf.obj", "mtllib leaf.mtl\nusemtl leaf\n" + square + "f 1/1 2/2 3/3 4/4\n")}) {
+    EXPECT_FLOAT_EQ(first_material(scene).reflectance[0], 0.8f);
+    for (const double x : {0.5, 1.0, 1.5}) {
+      // A code of a texel is exact to 1e-5 of 1.
+      EXPECT_NEAR(rho(scene, {x, 0.5, 0}), 0.8f, 1e-5f) << x;
+    }
+    EXPECT_TRUE(FacetTextures(scene).is_hole(0, {1.5, 0.5, 0}));
+    EXPECT_FALSE(FacetTextures(scene).is_hole(0, {0.5, 0.5, 0}));
+  }
+}
+
 TEST_F(Pictures, WithoutCoordinatesCountByTheirMean) {
   const Scene scene =
       read_file("a.toml", "materials.rug = { texture = 'two pixels.png' }\n" + toml_square);

@@ -116,8 +116,7 @@ Spectrum GltfMaterials::base_color(const JsonObject& from) {
   const BaseColor color_from(from);
   Spectrum result = gltf_color(color_from.owner, color_from.factor, 4);
   if (const auto picture = base_picture(from)) {
-    result *=
-        (is_cut_by_alpha(from) ? picture->mean.covered_color : picture->mean.color).cast<float>();
+    result *= picture->mean_shown(is_cut_by_alpha(from)).cast<float>();
   } else if (color_from.info()) {
     result *= 0.5f;
   }

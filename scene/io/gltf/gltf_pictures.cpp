@@ -141,7 +141,7 @@ std::optional<ReflectanceTexture> GltfMaterials::base_texture(const JsonObject& 
   if (!picture) return std::nullopt;
   const BaseColor color_from(from);
   return ReflectanceTexture{
-      .image = laid_on(*color_from.info(), picture->color),
+      .image = laid_on(*color_from.info(), picture->shown(is_cut_by_alpha(from))),
       .factor = gltf_color(color_from.owner, color_from.factor, 4).max(0.0f).min(1.0f)};
 }
 
@@ -153,7 +153,7 @@ void GltfMaterials::lay_on_picture(const JsonObject& from, const Spectrum& base,
   if (picture && (material.reflectance > 0.0f).any()) {
     const Spectrum factor = gltf_color(color_from.owner, color_from.factor, 4).max(0.0f).min(1.0f);
     const Spectrum diffuse = (base > 0.0f).select(material.reflectance / base, 0.0f);
-    material.texture = {.image = laid_on(*color_from.info(), picture->color),
+    material.texture = {.image = laid_on(*color_from.info(), picture->shown(is_cut_by_alpha(from))),
                         .factor = factor * diffuse.min(1.0f)};
   } else if (picture) {
     remarks_.add("Textures were read as their mean colour", material.name);

@@ -188,9 +188,10 @@ void InterchangeMaterials::lay_on_picture(const aiMaterial& from, Material& mate
     if (!file_.is_fbx()) material.reflectance.setConstant(0.5f);
     return;
   }
-  named->image.picture = picture->color;
+  const bool is_cut = picture_of(from, opacity_pictures).has_value();
+  named->image.picture = picture->shown(is_cut);
   material.texture = {.image = named->image, .factor = Spectrum::Ones(3)};
-  material.reflectance = picture->mean.color.cast<float>();
+  material.reflectance = picture->mean_shown(is_cut).cast<float>();
 }
 
 void InterchangeMaterials::set_emission(const aiMaterial& from, Material& material) {

@@ -266,10 +266,10 @@ SurfaceTexture MitsubaColors::laid_on(const MitsubaNode& node,
 std::optional<MitsubaTexture> MitsubaColors::bitmap(const MitsubaNode& node, Pixels pixels) {
   const auto picture = picture_of(node, code_of(node));
   if (!picture) return std::nullopt;
-  const auto& mean =
-      pixels == Pixels::by_opacity ? picture->mean.covered_color : picture->mean.color;
-  return MitsubaTexture{.texture = {.image = laid_on(node, picture->color), .factor = grey(1.0)},
-                        .mean = spectrum_of(mean)};
+  const bool is_cut = pixels == Pixels::by_opacity;
+  return MitsubaTexture{
+      .texture = {.image = laid_on(node, picture->shown(is_cut)), .factor = grey(1.0)},
+      .mean = spectrum_of(picture->mean_shown(is_cut))};
 }
 
 float MitsubaColors::brightest_of_checkerboard(const MitsubaNode& node) {
@@ -426,8 +426,7 @@ Spectrum MitsubaColors::read_bitmap(const MitsubaNode& node, Pixels pixels) {
   if (!picture) return grey(0.5);
   remarks_.add("Pictures on surfaces were read as their mean colour",
                node.string_or("filename", ""));
-  return spectrum_of(pixels == Pixels::by_opacity ? picture->mean.covered_color
-                                                  : picture->mean.color);
+  return spectrum_of(picture->mean_shown(pixels == Pixels::by_opacity));
 }
 
 namespace {

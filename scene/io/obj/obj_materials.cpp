@@ -320,9 +320,10 @@ class MapReader {
     const Spectrum most = Spectrum::Ones(3) - material.specular;
     if (!b.diffuse) material.reflectance = picture ? most : Spectrum(0.5f * most);
     if (!picture) return;
-    map.image.picture = picture->color;
+    const bool is_cut = !b.dissolve_map.empty();
+    map.image.picture = picture->shown(is_cut);
     material.texture = {.image = map.image, .factor = material.reflectance};
-    material.reflectance *= picture->mean.color.cast<float>();
+    material.reflectance *= picture->mean_shown(is_cut).cast<float>();
   }
 
   // Without Ke the picture is the radiance, as programs mean it that write map_Ke alone.

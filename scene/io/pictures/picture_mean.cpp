@@ -16,6 +16,7 @@
 #include <jpeglib.h>
 
 #include "scene/errors.h"
+#include "scene/io/pictures/covered_colors.h"
 #include "scene/io/pictures/environment_file.h"
 #include "scene/io/text_file.h"
 
@@ -222,7 +223,12 @@ std::shared_ptr<const Texture> texture_of(const PicturePixels& pixels, std::size
 
 Picture picture_of(const PicturePixels& pixels, PictureCode code) {
   Picture picture{.color = texture_of(pixels, 0, 3, code), .mean = mean_of_pixels(pixels, code)};
-  if (picture.mean.alpha < 1.0) picture.alpha = texture_of(pixels, 3, 1, PictureCode::linear);
+  if (!(picture.mean.alpha < 1.0)) return picture;
+  picture.alpha = texture_of(pixels, 3, 1, PictureCode::linear);
+  const RgbaView rgba{.bytes = pixels.bytes, .width = pixels.width, .height = pixels.height};
+  picture.covered = std::make_shared<const Texture>(static_cast<int>(pixels.width),
+                                                    static_cast<int>(pixels.height), 3,
+                                                    covered_colors(rgba, linear_values(code)));
   return picture;
 }
 

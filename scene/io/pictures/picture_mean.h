@@ -26,9 +26,18 @@ struct PictureMean {
 
 /// A picture's pixels as textures, and their mean.
 struct Picture {
-  std::shared_ptr<const Texture> color{};  ///< not null
-  std::shared_ptr<const Texture> alpha{};  ///< one channel; null: opaque throughout
+  std::shared_ptr<const Texture> color{};    ///< not null
+  std::shared_ptr<const Texture> alpha{};    ///< one channel; null: opaque throughout
+  std::shared_ptr<const Texture> covered{};  ///< see covered_colors(); null: opaque throughout
   PictureMean mean{};
+
+  /// Colours for a surface, which a mask or the picture's alpha cuts if `is_cut`, and their mean.
+  const std::shared_ptr<const Texture>& shown(bool is_cut) const {
+    return is_cut && covered ? covered : color;
+  }
+  const Eigen::Array3d& mean_shown(bool is_cut) const {
+    return is_cut ? mean.covered_color : mean.color;
+  }
 };
 
 /// A picture of light, whose values have no bound.

@@ -110,10 +110,11 @@ void read_toml_pictures(const TomlTable& table, const TomlBands& bands, PictureF
     if (!has_reflectance) material.reflectance = 1.0f - material.specular;
     Laid laid = read_laid(*texture, table_of(*texture, {"file", "wrap", "filter"}),
                           PictureCode::srgb, pictures);
-    laid.image.picture = laid.picture.color;
+    const bool is_cut = table.has("mask");
+    laid.image.picture = laid.picture.shown(is_cut);
     material.texture = {.image = laid.image, .factor = material.reflectance};
     material.reflectance *=
-        RgbBasis(bands.bands).reflectance(laid.picture.mean.color.cast<float>());
+        RgbBasis(bands.bands).reflectance(laid.picture.mean_shown(is_cut).cast<float>());
   }
   if (const auto mask = table.find("mask")) {
     for (const char* other :
