@@ -19,6 +19,13 @@ constexpr double widest_covered = 0.15;  // width of a gap as a share of a patch
 constexpr int gap_rays = 64;
 constexpr std::uint64_t gap_replica = 4000;
 
+// Elements that two million rays measure: those of the hemisphere, and shadow rays to each light. A
+// cut through many lights asks some 50 of them.
+int elements_in_budget(int light_count) {
+  constexpr int budget = 1 << 21, most_asked = 50;
+  return budget / (point_count * gap_rays * (1 + std::min(light_count, most_asked)));
+}
+
 // A point inside an element.
 struct InnerPoint {
   int element = -1;
@@ -166,6 +173,7 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
     if (dark != corners && reference[e] > 0.0) lit_elements.push_back({e});
   }
   const auto all = static_cast<int>(lit_elements.size());
+  most = std::min(most, elements_in_budget(lit.direct_light.light_count()));
   const auto step = static_cast<std::size_t>(std::max(1, (all + most - 1) / most));
   std::vector<InnerPoint> inner;
   for (std::size_t i = 0; i < lit_elements.size(); i += step) {

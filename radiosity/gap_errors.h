@@ -6,8 +6,8 @@
 
 namespace lightwell {
 
-/// Elements in gaps that are measured one by one: two million rays. Models of many crumbs have a
-/// hundred thousand elements in gaps, and those of a surface are much alike.
+/// Elements in gaps that are measured one by one. Models of many crumbs have a hundred thousand
+/// elements in gaps, and those of a surface are much alike.
 inline constexpr int most_gap_elements = 2048;
 
 /// Raises RadiositySolution::interpolation_error of the elements that lie in narrow gaps, at least
@@ -15,11 +15,14 @@ inline constexpr int most_gap_elements = 2048;
 /// falls off within about the gap's width, which the vertices of larger elements do not sample.
 /// Inside these elements irradiance is gathered at four points, and the RMS difference from the
 /// interpolated one becomes the element's error where it is greater. An element with a dark corner
-/// has the error of light that the corners' rays may have missed. Of more than `most` such elements
-/// every second, third, ... is measured, and the others of a surface get the RMS of those that are.
-/// Does nothing without an error
-/// estimate. The caster of `lit` is of the solution's mesh; `gather` decides the shadow rays.
-/// Throws Interrupted when progress says stop.
+/// has the error of light that the corners' rays may have missed.
+///
+/// At most `most` elements are measured, and fewer where lights are many: two million rays in all.
+/// Of more such elements every second, third, ... is measured, and the others of a surface get the
+/// RMS of those that are.
+///
+/// Does nothing without an error estimate. The caster of `lit` is of the solution's mesh; `gather`
+/// decides the shadow rays. Throws Interrupted when progress says stop.
 void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiositySolution& solution,
                     int most = most_gap_elements);
 

@@ -161,7 +161,7 @@ class GatherAttempts {
       most.gather_rays = std::max(most.gather_rays, efforts_[p].gather_rays);
       options_.refine.efforts.push_back({.tolerance = efforts_[p].refine_tolerance,
                                          .noise = noise_share(targets_[p]),
-                                         .sky_noise = sky_noise_share(targets_[p]),
+                                         .sky_noise = sky_noise_share(p),
                                          .rays = efforts_[p].gather_rays,
                                          .irradiance = irradiances_[p]});
     }
@@ -173,11 +173,14 @@ class GatherAttempts {
   }
 
   // The noise that the sky's light may have: without a target, that of the default's rays in a
-  // typical room, so that they are not cast where fewer will do.
-  double sky_noise_share(double target) const {
+  // typical room, so that they are not cast where fewer will do; or, once refinement has left a
+  // larger error, that of a target as large.
+  double sky_noise_share(std::size_t part) const {
+    if (targets_[part] > 0.0) return noise_share(targets_[part]);
     const int rays = options_.gather.shadows.sky_rays;
-    if (target > 0.0) return noise_share(target);
-    return rays > 0 ? noise_share(target_of_sky_rays(rays)) : 0.0;
+    if (rays <= 0) return 0.0;
+    const double left = part < refinement_.parts.size() ? refinement_.parts[part].estimate : 0.0;
+    return noise_share(std::max(target_of_sky_rays(rays), left));
   }
 
   // Splits elements and gathers to their vertices with few rays.
@@ -246,7 +249,7 @@ class GatherAttempts {
     constexpr double far_apart = 0.1;
     const ErrorEstimate& estimate = estimates_[part];
     const double least = estimate.least(), error = estimate.error(), target = targets_[part];
-    return estimate.batches > 0 && target < error &&
+    return target > 0.0 && estimate.batches > 0 && target < error &&
            (least < target || error - least > far_apart * target);
   }
 
