@@ -106,15 +106,25 @@ class CausticPower {
   };
 
   // Sends rays r = 0 ... count - 1; first(r) returns a ray and its power, W. The rays deposit in
-  // the columns from `column` on. Each piece of rays has a list of its own, and the lists are added
-  // in order, so that the sum does not depend on the number of threads.
+  // the columns from `column` on. Deposits of a round are kept at a time, since a ray between
+  // mirrors leaves one at each.
   template <class First>
   void send(int count, std::uint64_t key, int column, First&& first) {
+    constexpr int round = 1 << 16;
+    for (int begin = 0; begin < count; begin += round) {
+      send_round(begin, std::min(round, count - begin), key, column, first);
+    }
+  }
+
+  // Sends `count` rays from number `start` on. Each piece of rays has a list of its own, and the
+  // lists are added in order, so that the sum does not depend on the number of threads.
+  template <class First>
+  void send_round(int start, int count, std::uint64_t key, int column, First&& first) {
     constexpr int piece = 2048;
     std::vector<std::vector<Deposit>> deposits((count + piece - 1) / piece);
     parallel_for(count, piece, [&](int begin, int end) {
       auto& list = deposits[begin / piece];
-      for (int r = begin; r < end; ++r) {
+      for (int r = start + begin; r < start + end; ++r) {
         const auto [ray, watts] = first(r);
         ElementHit hit;
         lit_.caster.closest_hits({&ray, 1}, {&hit, 1});
@@ -161,7 +171,8 @@ BandArray vertex_irradiance(const PatchMesh& mesh, const BandArray& power) {
 BandArray caustic_irradiance(const LitScene& lit, int rays, int max_specular_depth,
                              const RunControl& run) {
   const PatchMesh& mesh = lit.mesh();
-  const LightPaths paths(lit.scene, lit.caster, max_specular_depth);
+  const LightPaths paths(lit.scene, lit.caster, max_specular_depth, PathDetail::patches,
+                         PathArrivals::all);
   if (!paths.has_specular() || lit.direct_light.light_count() == 0) return {};
   JournalPhase phase(run, "caustics", [&](Fingerprint& print) {
     print.add(mesh);

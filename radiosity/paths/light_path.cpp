@@ -11,12 +11,17 @@
 
 namespace lightwell {
 
+bool takes_diffuse_light(const Material& material) {
+  return material.is_diffuse() || material.is_emitter() || !material.is_specular();
+}
+
 LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
-                       PathDetail detail)
+                       PathDetail detail, PathArrivals arrivals)
     : scene_(scene),
       caster_(caster),
       max_depth_(max_depth),
       detail_(detail),
+      arrivals_(arrivals),
       patterns_(caster.mesh().patterns),
       bases_(scene.materials),
       round_(scene) {
@@ -28,7 +33,7 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
     const auto* polygons = std::get_if<PolygonMesh>(&surface.shape);
     material_.push_back(surface.material);
     specular_.push_back(material.is_specular());
-    diffuse_.push_back(material.is_diffuse() || material.is_emitter() || !material.is_specular());
+    diffuse_.push_back(takes_diffuse_light(material));
     normal_.push_back(polygons ? facet_normal(*polygons, polygons->facets[ref.facet])
                                : Eigen::Vector3d::Zero());
     has_specular_ = has_specular_ || material.is_specular();
@@ -202,7 +207,8 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
       }
       return losses;
     }
-    if (is_diffuse(hit.facet) && hit.element >= 0) {
+    const bool arrives = is_diffuse(hit.facet) || arrivals_ == PathArrivals::all;
+    if (arrives && hit.element >= 0) {
       arrive({.hit = hit,
               .throughput = throughput,
               .base_factor = base_factor(caster, ray, hit),

@@ -27,7 +27,7 @@ struct PathLosses {
   Eigen::Vector3d exit = Eigen::Vector3d::Zero();
 };
 
-/// An arrival of light at a diffuse surface behind mirrors and clear surfaces.
+/// An arrival of light behind mirrors and clear surfaces, at one of PathArrivals.
 struct LightArrival {
   const ElementHit& hit;
   const Spectrum& throughput;
@@ -45,6 +45,16 @@ enum class PathDetail {
             ///< FacetNormals); patterns as they are at the point met
 };
 
+/// True for a surface that reflects or emits diffusely, and for black ones that do not mirror: rays
+/// read the light there, and photons stay there.
+bool takes_diffuse_light(const Material& material);
+
+/// Surfaces at which light that follows a path is told to arrive.
+enum class PathArrivals {
+  diffuse,  ///< surfaces that reflect or emit diffusely, whose light the ray reads or feeds
+  all,      ///< mirrors and glass along the path, too, whose irradiance is to be measured
+};
+
 /// Follows rays through mirrors and clear glass to diffuse surfaces (extended form factors, Sillion
 /// & Puech 1989). One scattering sample continues each ray: a branch of glass with Fresnel's
 /// probability, a direction of a rough surface's lobe (see sample_scattering). The mean is exact.
@@ -57,7 +67,8 @@ enum class PathDetail {
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
-             PathDetail detail = PathDetail::patches);
+             PathDetail detail = PathDetail::patches,
+             PathArrivals arrivals = PathArrivals::diffuse);
 
   /// True if the scene has a mirror or glass.
   bool has_specular() const { return has_specular_; }
@@ -75,7 +86,7 @@ class LightPaths {
   /// True if the facet reflects or emits diffusely.
   bool is_diffuse(int facet) const { return diffuse_[facet] != 0; }
 
-  /// Calls `arrive` for every diffuse arrival behind the specular facet at `hit` of `ray`. The
+  /// Calls `arrive` for every arrival behind the specular facet at `hit` of `ray`. The
   /// facet's own diffuse share, if any, is left to the caller. `key` decides the branches.
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const LightArrival&)>& arrive) const;
@@ -109,6 +120,7 @@ class LightPaths {
   const ElementCaster& caster_;
   int max_depth_ = 8;
   PathDetail detail_ = PathDetail::patches;
+  PathArrivals arrivals_ = PathArrivals::diffuse;
   std::shared_ptr<const FacetTextures> textures_{};  // null: no facet has a pattern
   std::shared_ptr<const PatchPatterns> patterns_{};  // null with textures_
   bool has_specular_ = false, absorbs_ = false;

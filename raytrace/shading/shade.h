@@ -397,6 +397,7 @@ class RayTree {
                                    const TreeState& state) const;
   Spectrum indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
                             const std::optional<ReliefSlope>& relief) const;
+  bool has_photons(const ElementHit& hit) const;
   void add_caustics(const ElementHit& hit, const ShadingPoint& at, Spectrum& indirect) const;
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
                    const Spectrum& rho, const Scattered& scattered, const Arriving& E,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "radiosity/paths/light_path.h"
 #include "raytrace/shading/shade.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
@@ -319,11 +320,16 @@ float RayTree::indirect_gain(const ElementHit& hit, const ShadingPoint& at,
   return static_cast<float>(std::clamp(1.0 - relief->rise.dot(at.turned(slant)), 0.0, 2.0));
 }
 
+// Returns whether photons replace the solution's caustics: mirrors and glass let photons pass.
+bool RayTree::has_photons(const ElementHit& hit) const {
+  return caustics_ && takes_diffuse_light(scene_.materials[facets_[hit.facet].material]);
+}
+
 // The solution's indirect light, without its own caustics if photons replace these.
 Spectrum RayTree::indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
                                    const std::optional<ReliefSlope>& relief) const {
   Spectrum E = interpolate(caster_.mesh(), solution_.indirect_irradiance, hit);
-  if (caustics_ && solution_.caustic_irradiance.size() > 0) {
+  if (has_photons(hit) && solution_.caustic_irradiance.size() > 0) {
     // The difference may be slightly negative by rounding.
     E = (E - interpolate(caster_.mesh(), solution_.caustic_irradiance, hit)).max(0.0f);
   }
@@ -334,7 +340,7 @@ Spectrum RayTree::indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at
 void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at,
                            Spectrum& indirect) const {
   if (solution_.caustic_irradiance.size() == 0) return;
-  if (!caustics_) {
+  if (!has_photons(hit)) {
     if (gather_) indirect += interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
     return;
   }

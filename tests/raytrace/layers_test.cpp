@@ -186,5 +186,16 @@ TEST(Layers, IlluminanceIsSeenThroughGlassButNotInMirrors) {
   EXPECT_GT(layer(image, Layer::specular)(0, 0), 0.0f);
 }
 
+TEST(Layers, IlluminanceOfAMirrorHasTheSolutionsCaustics) {
+  TracedScene lit(SceneBuilder().square({.specular = 0.9f}, {0, 0, 0}, {0, 0, 1}, 9).build());
+  lit.set_indirect([](const auto&) { return 5.0f; });
+  lit.solution.caustic_irradiance = lit.solution.indirect_irradiance;
+  const Camera camera = camera_towards({0, 0, 3}, {0, 0, 0}, 20, 2);
+  const Image image =
+      lit.render(camera, {.pass = Pass::direct, .photons = 1 << 10, .layers = all_layers()});
+  // Photons, which find no lamp here, pass mirrors, so they replace no caustics there.
+  EXPECT_LT((layer(image, Layer::illuminance) / (683.0f * 5.0f) - 1.0f).abs().maxCoeff(), 1e-5f);
+}
+
 }  // namespace
 }  // namespace lightwell::layers_test
