@@ -278,6 +278,10 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOption
   return best;
 }
 
+bool is_sphere(const Surface& surface) {
+  return std::holds_alternative<Sphere>(surface.shape);
+}
+
 }  // namespace
 
 CutSize cut_size(const Scene& scene, const MeshOptions& options) {
@@ -315,11 +319,13 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Pr
                        {.patch_size = size, .angle_degrees = options.curve_angle_degrees});
   const std::vector<FacetRef> facets = scene_facets(scene);
   const NearEmitters near_emitters(scene);
+  const auto spheres = static_cast<int>(std::ranges::count_if(scene.surfaces, is_sphere));
   int plane = 0;
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
     const Surface& surface = scene.surfaces[facets[f].surface];
     if (const auto shape = round_shape(surface)) {
-      const CutSize size_here = near_emitters.cut(*shape, facets[f].surface, round_cut);
+      CutSize size_here = near_emitters.cut(*shape, facets[f].surface, round_cut);
+      if (options.to_be_refined) size_here = fine_enough(*shape, size_here, spheres);
       builder.add_round(f, facets[f].surface, *shape, round_elements(*shape, size_here));
       continue;
     }

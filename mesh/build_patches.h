@@ -23,8 +23,8 @@ struct MeshOptions {
   double max_element_size = 0.0;
   int most_patches = 6400;
   /// True: elements of polygons are twice as long, since RefinedElements will split those that
-  /// matter (odd numbers per patch edge are rounded up). Elements of round shapes are never split
-  /// and keep their size.
+  /// matter (odd numbers per patch edge are rounded up). Elements of round shapes are never split:
+  /// they keep their size, and those of spheres are fine_enough().
   bool to_be_refined = false;
   /// True: receivers are cut along the critical lines of emitters, those of greatest weight first:
   /// D1, and D2 where the penumbra is not much wider than the elements.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <utility>
 #include <variant>
 
@@ -82,6 +83,22 @@ CutSize NearEmitters::cut(const RoundShape& shape, int surface, const CutSize& s
   CutSize finer = size;
   finer.elements_per_edge *= static_cast<int>(std::ceil(std::max(1.0, h / wanted)));
   return finer;
+}
+
+CutSize fine_enough(const RoundShape& shape, const CutSize& size, int spheres) {
+  constexpr double most_elements = 65536.0, most_rings = 8.0;
+  const auto* sphere = std::get_if<Sphere>(&shape);
+  if (!sphere) return size;
+  // Elements about as long as wide: 2 n^2 for n rings.
+  const double rings = std::floor(std::min(most_rings, std::sqrt(most_elements / (2.0 * spheres))));
+  // Inverse of CutSize::pieces() for a meridian.
+  const double meridian = std::numbers::pi * sphere->radius;
+  const double per_edge = meridian < size.patch_size
+                              ? std::floor(rings * size.patch_size / meridian)
+                              : std::ceil(rings / size.patches(meridian));
+  CutSize fine = size;
+  fine.elements_per_edge = std::max(size.elements_per_edge, static_cast<int>(per_edge));
+  return fine;
 }
 
 }  // namespace lightwell

@@ -4,7 +4,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
+#include "mesh/build_patches.h"
+#include "mesh/patches/round_grid.h"
 #include "tests/mesh/mesh_scenes.h"
 
 namespace lightwell::near_emitters_test {
@@ -78,6 +81,55 @@ TEST(NearEmitters, AtTheShapeMakeElementsATwelfthOfItAtLeast) {
   EXPECT_EQ(
       near.cut(Sphere{.center = {radius, 0, 0.15}, .radius = 0.02}, 1, size).elements_per_edge,
       size.elements_per_edge);
+}
+
+// A ball of 10 cm above ground of 80 m, in sunlight askew to its axis: E = max(cos, 0). Linear
+// elements of d = pi / 8 are off by twice d^2 / 8 where the cosine is smooth. Along the bound of
+// sunlight, where its slope drops by 1 at most, they are off by d / 4 in either direction, on cells
+// within sqrt(2) d of the bound: sin(sqrt(2) d) of the area.
+TEST(FineEnough, SmallBallsFollowSunlight) {
+  Scene scene = empty_scene();
+  scene.surfaces.push_back(
+      {.name = "ground",
+       .material = 0,
+       .shape = PolygonMesh{.vertices = {{-40, -40, 0}, {40, -40, 0}, {40, 40, 0}, {-40, 40, 0}},
+                            .facets = {Facet{.boundary = {0, 1, 2, 3}}}}});
+  const Sphere ball{.center = {0, 0, 1}, .radius = 0.1};
+  add_sphere(scene, "ball", ball);
+  const PatchMesh mesh = build_patches(scene, {.to_be_refined = true});
+  ASSERT_EQ(mesh.round_grids.size(), 1u);
+  const RoundGrid& grid = mesh.round_grids.front();
+  const Eigen::Vector3d sun = Eigen::Vector3d(2, 1, 2) / 3.0;
+  const auto E = [&](const Eigen::Vector3d& p) {
+    return std::max(sun.dot(p - ball.center) / ball.radius, 0.0);
+  };
+  constexpr int steps = 128;  // even in area: z, and the longitude
+  double square = 0.0;
+  for (int i = 0; i < steps * steps; ++i) {
+    const double z = -1.0 + 2.0 * (i % steps + 0.5) / steps;
+    const double phi = 2.0 * std::numbers::pi * (i / steps + 0.5) / steps, r = std::sqrt(1 - z * z);
+    const Eigen::Vector3d p =
+        ball.center + ball.radius * Eigen::Vector3d(r * std::cos(phi), r * std::sin(phi), z);
+    const RoundGridPoint place = round_grid_point(grid, p);
+    const int e = grid.element[static_cast<std::size_t>(place.ring) * grid.sectors + place.sector];
+    const Eigen::Array4f w = round_weights(grid, place);
+    double interpolated = 0.0;
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      interpolated += double{w[c]} * E(mesh.position(mesh.corners[e][c]));
+    }
+    square += std::pow(interpolated - E(p), 2) / (steps * steps);
+  }
+  const double d = std::numbers::pi / 8.0;
+  const double smooth = 2.0 * d * d / 8.0, bound = 2.0 * d / 4.0;
+  EXPECT_LT(square, smooth * smooth + std::sin(std::numbers::sqrt2 * d) * bound * bound);
+}
+
+// 2 n^2 elements of each of 8192 balls are to be no more than 65536: n = 2 rings.
+TEST(FineEnough, ManyBallsHaveFewElements) {
+  const CutSize of_many = fine_enough(Sphere{.radius = 0.01}, size, 8192);
+  EXPECT_LE(of_many.pieces(std::numbers::pi * 0.01), 2);
+  EXPECT_EQ(fine_enough(Sphere{.radius = 0.01}, size, 1).pieces(std::numbers::pi * 0.01), 8);
+  EXPECT_EQ(fine_enough(Sphere{.radius = 9.0}, size, 1).elements_per_edge, size.elements_per_edge);
 }
 
 }  // namespace
