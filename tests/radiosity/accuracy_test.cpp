@@ -364,6 +364,25 @@ TEST(ErrorEstimate, BatchesJoin) {
   EXPECT_GT(spread, 0.0);
 }
 
+// Further batches decide whether a target is met. Without one they would cost and decide nothing.
+TEST(ErrorEstimate, IsMadeOfOneBatchWithoutATarget) {
+  const Scene scene = test::two_lamps({.reflectance = 0.5f});
+  SolveOptions options;
+  options.gather.rays = 64;
+  const SolvedScene solved = solve_scene(scene, options);
+  const ElementCaster caster(solved.mesh);
+  const DirectLight direct_light(scene, solved.mesh);
+  const auto batch = [&](int number) {
+    return estimate_errors({scene, caster, direct_light}, options, solved.solution, nullptr, number)
+        .front();
+  };
+  const ErrorEstimate one = batch(0);
+  ErrorEstimate four = one;
+  for (int number = 1; number < 4; ++number) four = joined(four, batch(number));
+  const double error = solved.solution.error_estimate;
+  EXPECT_LT(std::abs(error - one.error()), std::abs(error - four.error()));
+}
+
 // All light is 5 % too dim, as if interpolation had cut peaks off. The gathers of the estimate, in
 // that light, are too dim as well, but for the part straight from the lamps.
 TEST(ErrorEstimate, SeesWhatReflectionsHide) {
