@@ -26,7 +26,6 @@ struct RayCounts {
 
 /// Counts of a picture's rays, added up by all threads.
 struct RayCounters {
-  static constexpr double weight_step = RayCounts::weight_step;
   std::atomic<std::int64_t> eye_rays{0}, depth_cut{0}, cut_steps{0};
 
   /// Returns the counts since `before`.
@@ -42,7 +41,7 @@ struct RayCounters {
   }
 
   void add_cut(double weight) {
-    if (weight > 0.0) cut_steps += std::llround(weight / weight_step);
+    if (weight > 0.0) cut_steps += std::llround(weight / RayCounts::weight_step);
   }
 };
 

@@ -148,7 +148,7 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
         .seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(),
         .eye_rays = counters.eye_rays,
         .depth_cut = counters.depth_cut,
-        .cut_share = static_cast<double>(counters.cut_steps) * RayCounters::weight_step /
+        .cut_share = static_cast<double>(counters.cut_steps) * RayCounts::weight_step /
                      static_cast<double>(std::max<std::int64_t>(1, counters.eye_rays)),
         .tiles = count,
         .recalled_tiles = recalled};

@@ -127,7 +127,8 @@ TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
               1e-6 * arriving);
   const auto rows = table(5);  // sky_view_factor, then kWh/m2: direct, diffuse, reflected, net
   ASSERT_EQ(rows.size(), 3u);
-  // Nine digits of two numbers below 1.
+  // Both are written with nine digits. The sky fills less than 0.6 of any view here, so both are
+  // below 1 and rounded by 5e-10; a rounded view factor counts 16 h x 100 W/m2 = 1.6 kWh/m2 times.
   for (const auto& row : rows) EXPECT_NEAR(row[2], 1.6 * row[0], 5e-10 + 1.6 * 5e-10);
   // hours.csv, and net.npy of 128 bytes and 16 x 3 floats, hold the same.
   std::istringstream lines(content_of(folder / "hours/hours.csv"));
@@ -144,7 +145,9 @@ TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
     sum += std::stod(cells[8]);
     up += std::sin(std::stod(cells[4]) * std::numbers::pi / 180.0);
   }
-  EXPECT_NEAR(sum / 1000.0, arriving, 5e-9 * arriving);  // nine digits
+  // Each hour is written with nine digits, so that it is rounded by 5e-9 of itself at most; the
+  // total comes with all digits. The sum of all hours is then off by 5e-9 of the total at most.
+  EXPECT_NEAR(sum / 1000.0, arriving, 5e-9 * arriving);
   const std::string net = content_of(folder / "hours/net.npy");
   ASSERT_EQ(net.size(), 128 + 16 * 3 * sizeof(float));
   double of_road = 0.0;
@@ -153,8 +156,9 @@ TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
     std::memcpy(&value, net.data() + 128 + h * 3 * sizeof(float), sizeof(float));
     of_road += double{value};
   }
-  // Roundings of 16 floats below 500 W/m2, in kWh, and of nine digits of a number below 10.
-  EXPECT_NEAR(of_road / 1000.0, rows[0][4], 16 * 0.5 * 0x1p-24 + 5e-9);
+  // Each of 16 floats is below 512 W/m2 and rounded by half of its last place, 2^-24 x 512 W/m2 at
+  // most; over 1000 that is 0.512 x 2^-24 kWh/m2. The sum is below 10 and has nine digits: 5e-9.
+  EXPECT_NEAR(of_road / 1000.0, rows[0][4], 16 * 0.512 * 0x1p-24 + 5e-9);
   // The second point, above the roofs, has all of the sun and all of the sky, and no wall in view.
   std::istringstream points(content_of(folder / "q.csv"));
   std::getline(points, line);
@@ -188,7 +192,9 @@ TEST_F(Shortwave, PointsOfAnInstantHaveSunSkyAndReflections) {
   // Five metres below the tops the sky ends at atan(5 / 10) above the horizon.
   const double sky = 0.5 * (1.0 - 5.0 / std::hypot(5.0, 10.0));
   EXPECT_NEAR(cells[6], sky, 4.0 * std::sqrt(sky * (1.0 - sky) / 16384.0));
-  // Nine digits: 5e-7 of hundreds, 5e-8 of tens, 5e-10 of the view factor, which counts 100 times.
+  // All numbers have nine digits. The sun and the total are hundreds of W/m2, rounded by 5e-7; sky
+  // and reflections are tens, rounded by 5e-8; the view factor is rounded by 5e-10, and counts 100
+  // times. The sun's 800 sin(45 degrees) is exact but for doubles.
   EXPECT_NEAR(cells[7], 800 * std::sqrt(0.5), 5e-7);
   EXPECT_NEAR(cells[8], 100 * cells[6], 5e-8 + 100 * 5e-10);
   EXPECT_GT(cells[9], 0.0);

@@ -193,8 +193,9 @@ TEST(Layers, IlluminanceOfAMirrorHasTheSolutionsCaustics) {
   const Camera camera = camera_towards({0, 0, 3}, {0, 0, 0}, 20, 2);
   const Image image =
       lit.render(camera, {.pass = Pass::direct, .photons = 1 << 10, .layers = all_layers()});
-  // Photons, which find no lamp here, pass mirrors, so they replace no caustics there.
-  EXPECT_LT((layer(image, Layer::illuminance) / (683.0f * 5.0f) - 1.0f).abs().maxCoeff(), 1e-5f);
+  // Photons, which find no lamp here, pass mirrors, so they replace no caustics there. Some 16
+  // operations in single precision (corners, bands, samples of a pixel) round by 6e-8 each.
+  EXPECT_LT((layer(image, Layer::illuminance) / (683.0f * 5.0f) - 1.0f).abs().maxCoeff(), 1e-6f);
 }
 
 }  // namespace

@@ -127,7 +127,7 @@ materials.rug = { reflectance = [0.8, 0.4, 0.2], texture = { file = "two pixels.
   EXPECT_NEAR(FacetTextures(scene).reflectance(0, {0.5, 0.5, 0})[2], 0.2f, 1e-5f);
 }
 
-// What a mask cuts out has no colour, neither in the mean nor in filters that reach beyond the cut.
+// Pixels that a mask cuts out have no part in the mean, nor in filters that reach beyond the cut.
 TEST_F(Pictures, ThatAreCutShowTheColourOfWhatIsCovered) {
   const std::string square = "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
   folder.write("leaf.mtl",

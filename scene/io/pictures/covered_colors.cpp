@@ -40,16 +40,16 @@ void push(const Level& coarse, Level& fine) {
 
 }  // namespace
 
-std::vector<Texture::Code> covered_colors(const RgbaView& picture,
+std::vector<Texture::Code> covered_colors(std::span<const unsigned char> rgba, std::size_t width,
                                           std::span<const double, 256> linear) {
+  const std::size_t height = rgba.size() / 4 / width;
   const auto pixel = [&](std::size_t x, std::size_t y) -> Eigen::Array4f {
-    const unsigned char* rgba = &picture.bytes[4 * (y * picture.width + x)];
-    const float alpha = static_cast<float>(rgba[3]) / 255.0f;
-    return {alpha * static_cast<float>(linear[rgba[0]]),
-            alpha * static_cast<float>(linear[rgba[1]]),
-            alpha * static_cast<float>(linear[rgba[2]]), alpha};
+    const unsigned char* at = &rgba[4 * (y * width + x)];
+    const float alpha = static_cast<float>(at[3]) / 255.0f;
+    return {alpha * static_cast<float>(linear[at[0]]), alpha * static_cast<float>(linear[at[1]]),
+            alpha * static_cast<float>(linear[at[2]]), alpha};
   };
-  std::vector<Level> levels{pulled(picture.width, picture.height, pixel)};
+  std::vector<Level> levels{pulled(width, height, pixel)};
   while (levels.back().texels.size() > 1) {
     const Level& fine = levels.back();
     levels.push_back(pulled(fine.width, fine.height,
@@ -59,9 +59,9 @@ std::vector<Texture::Code> covered_colors(const RgbaView& picture,
   if (all[3] > 0.0f) all /= all[3];
   for (std::size_t i = levels.size() - 1; i-- > 0;) push(levels[i + 1], levels[i]);
   std::vector<Texture::Code> colors;
-  colors.reserve(3 * picture.width * picture.height);
-  for (std::size_t y = 0; y < picture.height; ++y) {
-    for (std::size_t x = 0; x < picture.width; ++x) {
+  colors.reserve(3 * width * height);
+  for (std::size_t y = 0; y < height; ++y) {
+    for (std::size_t x = 0; x < width; ++x) {
       const Eigen::Array4f own = pixel(x, y);
       const Eigen::Array4f filled = own + (1.0f - own[3]) * levels.front().at(x / 2, y / 2);
       for (int c = 0; c < 3; ++c) colors.push_back(Texture::encode(filled[c]));

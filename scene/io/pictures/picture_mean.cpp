@@ -225,10 +225,9 @@ Picture picture_of(const PicturePixels& pixels, PictureCode code) {
   Picture picture{.color = texture_of(pixels, 0, 3, code), .mean = mean_of_pixels(pixels, code)};
   if (!(picture.mean.alpha < 1.0)) return picture;
   picture.alpha = texture_of(pixels, 3, 1, PictureCode::linear);
-  const RgbaView rgba{.bytes = pixels.bytes, .width = pixels.width, .height = pixels.height};
-  picture.covered = std::make_shared<const Texture>(static_cast<int>(pixels.width),
-                                                    static_cast<int>(pixels.height), 3,
-                                                    covered_colors(rgba, linear_values(code)));
+  picture.covered = std::make_shared<const Texture>(
+      static_cast<int>(pixels.width), static_cast<int>(pixels.height), 3,
+      covered_colors(pixels.bytes, pixels.width, linear_values(code)));
   return picture;
 }
 

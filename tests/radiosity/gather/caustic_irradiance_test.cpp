@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <string>
 
 #include "mesh/build_patches.h"
@@ -86,7 +87,7 @@ TEST(CausticIrradiance, OfAMirrorIsThatOfTheLampsImages) {
   // lamp's power that arrives. Four standard deviations. Light of the 17th image and on is less
   // than 0.4^8 of the first.
   const auto expect = [&](double found, double expected) {
-    const double p = expected / (4.0 * M_PI * double{I});
+    const double p = expected / (4.0 * std::numbers::pi * double{I});
     EXPECT_NEAR(found / expected, 1.0, 4.0 * std::sqrt(4.0 / 3.0 / (p * rays)));
   };
   expect(at_left, double{I} * power_of_images(lamp, -end, double{left}, double{right}, depth));

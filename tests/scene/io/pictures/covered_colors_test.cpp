@@ -20,14 +20,16 @@ std::vector<Texture::Code> codes_of(const std::vector<Rgba>& pixels, std::size_t
   for (std::size_t i = 0; i < linear.size(); ++i) linear[i] = static_cast<double>(i) / 255.0;
   std::vector<unsigned char> bytes;
   for (const Rgba& p : pixels) bytes.insert(bytes.end(), {p.r, p.g, p.b, p.a});
-  return covered_colors({.bytes = bytes, .width = width, .height = pixels.size() / width}, linear);
+  return covered_colors(bytes, width, linear);
 }
 
 Texture::Code code(int byte) {
   return Texture::encode(static_cast<float>(byte / 255.0));
 }
 
-// Means of one colour differ from it by the rounding of single precision: a code at most.
+// Means of one colour differ from it by roundings: a code is 65535 sqrt(share), so that some 100
+// roundings of 6e-8 of the share (ten levels of a few operations) move a code of at most 65535 by
+// 65535 / 2 x 6e-6 = 0.2, and what is rounded to a whole code by one at most.
 TEST(CoveredColors, OneColourFillsWhateverIsClear) {
   constexpr std::size_t width = 37, height = 21;
   std::vector<Rgba> pixels;
