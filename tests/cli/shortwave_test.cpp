@@ -156,9 +156,9 @@ TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
     std::memcpy(&value, net.data() + 128 + h * 3 * sizeof(float), sizeof(float));
     of_road += double{value};
   }
-  // Each of 16 floats is below 512 W/m2 and rounded by half of its last place, 2^-24 x 512 W/m2 at
-  // most; over 1000 that is 0.512 x 2^-24 kWh/m2. The sum is below 10 and has nine digits: 5e-9.
-  EXPECT_NEAR(of_road / 1000.0, rows[0][4], 16 * 0.512 * 0x1p-24 + 5e-9);
+  // The place of the last bit of a float below 512 is 2^-15, so each of 16 hours is rounded by
+  // 2^-16 W/m2 at most. The sum is below 10 kWh/m2 and has nine digits: 5e-9.
+  EXPECT_NEAR(of_road / 1000.0, rows[0][4], 16 * 0x1p-16 / 1000.0 + 5e-9);
   // The second point, above the roofs, has all of the sun and all of the sky, and no wall in view.
   std::istringstream points(content_of(folder / "q.csv"));
   std::getline(points, line);
