@@ -10,8 +10,7 @@ namespace lightwell {
 GatherPoints vertex_points(const ElementCaster& caster) {
   const auto all = std::make_shared<VertexGatherPoints>(caster.mesh());
   return {caster.mesh().vertex_count(), [all, &caster](int v) {
-            constexpr double inset = 0.02;  // of vertex_gather_points
-            return moved_into_gap(caster, caster.mesh().position(v), inset, (*all)[v]);
+            return moved_into_gap(caster, caster.mesh().position(v), all->center(v), (*all)[v]);
           }};
 }
 

@@ -23,11 +23,14 @@ struct EdgeAbove {
   double height(double t) const { return start_height + t * (end_height - start_height); }
 };
 
-// The part of [0, 1] in which the edge is `narrowest` to `widest` above the plane.
+// The part of [0, 1] in which the edge is up to `widest` above the plane; empty if the edge is
+// nowhere more than `narrowest` above. A gap that closes is cut as far as its end, where contact
+// lines meet: a line that ended a little before would leave elements as narrow as the distance.
 std::optional<std::array<double, 2>> part_within(const EdgeAbove& edge, const GapLimits& limits) {
+  if (!(std::max(edge.start_height, edge.end_height) > limits.narrowest)) return std::nullopt;
   double from = 0.0, to = 1.0;
   const double slope = edge.end_height - edge.start_height;
-  for (const auto& [limit, sign] : {std::pair(limits.narrowest, 1.0), {limits.widest, -1.0}}) {
+  for (const auto& [limit, sign] : {std::pair(0.0, 1.0), {limits.widest, -1.0}}) {
     const double at_start = sign * (edge.start_height - limit), along = sign * slope;
     if (at_start < 0.0 && at_start + along < 0.0) return std::nullopt;
     if (at_start < 0.0) from = std::max(from, -at_start / along);

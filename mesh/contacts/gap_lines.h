@@ -25,9 +25,9 @@ double widest_covered(const FacetPlane& facet, const GapLimits& limits);
 /// monitor. Light falls off within about the width of the gap behind such a line, so to elements
 /// that are much larger the line is a discontinuity like a contact line.
 ///
-/// Left out are parts of the outline nearer than `narrowest` or farther than widest_covered() of
-/// `over`, facets that do not face each other (within 60 degrees), and lines along the boundary of
-/// `on`, nearer than twice their distance from `over`.
+/// Left out are edges nowhere farther than `narrowest`, parts of the outline farther than
+/// widest_covered() of `over`, facets that do not face each other (within 60 degrees), and lines
+/// along the boundary of `on`, nearer than twice their distance from `over`.
 std::vector<ContactSegment> gap_lines(const FacetPlane& on, const FacetPlane& over,
                                       const GapLimits& limits);
 

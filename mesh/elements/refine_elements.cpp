@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "mesh/elements/closure_pieces.h"
+#include "mesh/patches/inset.h"
 #include "mesh/patches/round_grid.h"
 
 namespace lightwell {
@@ -66,11 +67,12 @@ void copy_patches(const PatchMesh& base, const std::vector<int>& first, PatchMes
 
 }  // namespace
 
-RefinedElements::RefinedElements(const PatchMesh& base) : base_(&base) {
+RefinedElements::RefinedElements(const PatchMesh& base)
+    : base_(&base), least_inset_(least_inset(base)) {
   vertices_.resize(base_->vertex_count());
-  for (int v = 0; v < base_->vertex_count(); ++v) vertices_[v].position = base_->position(v);
-  for (int e = base_->element_count() - 1; e >= 0; --e) {
-    for (int i = 0; i < base_->corner_count(e); ++i) vertices_[base_->corners[e][i]].element = e;
+  const std::vector<int> elements = vertex_elements(*base_);
+  for (int v = 0; v < base_->vertex_count(); ++v) {
+    vertices_[v] = {.position = base_->position(v), .element = elements[v]};
   }
   const std::vector<int> places = vertex_places(*base_);
   add_base_cells(places);
@@ -244,18 +246,17 @@ std::array<int, 4> RefinedElements::ends(int vertex) const {
   return sides_[-2 - v.from].vertex;
 }
 
-PatchPoint RefinedElements::inside(int vertex, double inset) const {
+PatchPoint RefinedElements::inside(int vertex, double share) const {
   const Vertex& v = vertices_[vertex];
   const PatchPoint center = element_center(*base_, v.element);
+  const Vector3d near = v.position + inset(v.position, center.position, share, least_inset_);
   if (const RoundGrid* grid = round_grid_of(*base_, base_->facet[v.element])) {
     // A sphere has no rim at which something else could stand.
     const bool has_rim = !std::holds_alternative<Sphere>(grid->shape);
-    const Vector3d at =
-        has_rim ? nearest_on(grid->shape, v.position + inset * (center.position - v.position))
-                : v.position;
+    const Vector3d at = has_rim ? nearest_on(grid->shape, near) : v.position;
     return {v.element, at, round_normal(*base_, *grid, base_->patch[v.element], at)};
   }
-  return {v.element, v.position + inset * (center.position - v.position), center.normal};
+  return {v.element, near, center.normal};
 }
 
 // The vertices of a piece on the given side, counter-clockwise there.

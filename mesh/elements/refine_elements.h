@@ -92,9 +92,9 @@ class RefinedElements {
   /// The vertices half-way between which `vertex` was made (2 or 4, the rest -1), all of lower
   /// numbers; none for a vertex of the base.
   std::array<int, 4> ends(int vertex) const;
-  /// A place near a vertex: `inset` of the way to the middle of a base element that has the vertex,
-  /// with that element and its normal; on spheres the vertex itself.
-  PatchPoint inside(int vertex, double inset) const;
+  /// A place near a vertex: `share` of the way to the middle of a base element that has the vertex,
+  /// or least_inset(), with that element and its normal; on spheres the vertex itself.
+  PatchPoint inside(int vertex, double share) const;
 
  private:
   // Vertices and cells are as many as elements or several times as many, so values that can be
@@ -153,6 +153,7 @@ class RefinedElements {
   std::array<int, 4> piece_vertices(int cell, int side, const std::array<int, 4>& piece);
 
   const PatchMesh* base_;
+  double least_inset_;
   std::vector<Vertex> vertices_;
   // Per base vertex, the lowest vertex of its reflex corner, or the vertex itself.
   std::vector<int> reflex_;

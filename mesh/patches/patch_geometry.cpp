@@ -162,4 +162,23 @@ std::vector<int> vertex_patches(const PatchMesh& mesh) {
   return patch;
 }
 
+std::vector<int> vertex_elements(const PatchMesh& mesh) {
+  // Refinement leaves areas of a 16th beside each other, and halves some of them.
+  constexpr double least_share = 1.0 / 64.0;
+  std::vector<double> largest(static_cast<std::size_t>(mesh.vertex_count()), 0.0);
+  const auto for_each_corner = [&](auto&& visit) {
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      for (int c = 0; c < mesh.corner_count(e); ++c) {
+        visit(e, mesh.corners[e][c], mesh.element_area[e]);
+      }
+    }
+  };
+  for_each_corner([&](int, int v, double area) { largest[v] = std::max(largest[v], area); });
+  std::vector<int> element(static_cast<std::size_t>(mesh.vertex_count()), -1);
+  for_each_corner([&](int e, int v, double area) {
+    if (element[v] < 0 && area >= least_share * largest[v]) element[v] = e;
+  });
+  return element;
+}
+
 }  // namespace lightwell

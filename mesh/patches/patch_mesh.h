@@ -155,6 +155,11 @@ PatchPoint element_center(const PatchMesh& mesh, int element);
 /// smoothly.
 std::vector<int> vertex_patches(const PatchMesh& mesh);
 
+/// An element of each vertex in which its light is gathered; -1: no element has the vertex. The
+/// first one is taken, unless its area is less than a 64th of another's: a point inside such an
+/// element may lie nearer to its border than single precision tells.
+std::vector<int> vertex_elements(const PatchMesh& mesh);
+
 /// Rebuilds `elements` from `positions` (metres) and `corners`, and vertex normals from faces
 /// (weighted by area; exact on round shapes): completes a PatchMesh read from a file. Throws
 /// std::runtime_error if an element names a vertex that does not exist or does not fit its

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "mesh/patches/inset.h"
 #include "mesh/patches/patch_patterns.h"
 #include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/patch_textures.h"
@@ -247,20 +248,17 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 }
 
 VertexGatherPoints::VertexGatherPoints(const PatchMesh& mesh)
-    : mesh_(mesh), element_(mesh.vertex_count(), -1) {
-  for (int e = mesh.element_count() - 1; e >= 0; --e) {
-    for (int c = 0; c < mesh.corner_count(e); ++c) element_[mesh.corners[e][c]] = e;
-  }
-}
+    : mesh_(mesh), element_(vertex_elements(mesh)), least_inset_(least_inset(mesh)) {}
 
 GatherPoint VertexGatherPoints::operator[](int vertex) const {
   // Share of the way to the element's centre: far enough for the float rounding of a room-sized
   // scene, and near enough to stand for the vertex.
-  constexpr double inset = 0.02;
+  constexpr double share = 0.02;
   const int e = element_[vertex];
   if (e < 0) return {};
   const PatchPoint center = element_center(mesh_, e);
-  const Eigen::Vector3d p = mesh_.position(vertex), inwards = inset * (center.position - p);
+  const Eigen::Vector3d p = mesh_.position(vertex),
+                        inwards = inset(p, center.position, share, least_inset_);
   // The element of a round shape is a chord of it, so the point is moved to the surface.
   if (const RoundGrid* grid = round_grid_of(mesh_, mesh_.facet[e])) {
     const Eigen::Vector3d at = nearest_on(grid->shape, p + inwards);
@@ -277,6 +275,11 @@ GatherPoint VertexGatherPoints::operator[](int vertex) const {
     return {.position = p + inwards + inwards.norm() * of_all, .normal = of_all};
   }
   return {.position = p + inwards, .normal = center.normal, .facet = mesh_.facet[e]};
+}
+
+Eigen::Vector3d VertexGatherPoints::center(int vertex) const {
+  const int e = element_[vertex];
+  return e < 0 ? mesh_.position(vertex) : element_center(mesh_, e).position;
 }
 
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {

@@ -58,13 +58,13 @@ float share_aimed(float reflectance) {
 
 }  // namespace
 
-GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex, double inset,
-                           const GatherPoint& point) {
+GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex,
+                           const Eigen::Vector3d& center, const GatherPoint& point) {
   if (point.facet < 0) return point;
   const Eigen::Vector3d way = point.position - vertex;
-  const double to_center = way.norm() / inset;
+  const double to_center = (center - vertex).norm();
   constexpr double narrow = 0.3, nearest = 1e-4;  // shares of the way to the element's centre
-  if (!(to_center > 0.0)) return point;
+  if (!(to_center > 0.0 && way.norm() > 0.0)) return point;
   const Ray ray{.origin = point.position,
                 .direction = point.normal,
                 .t_max = narrow * to_center,

@@ -17,12 +17,12 @@
 
 namespace lightwell {
 
-/// The gather point of a vertex, `inset` of the way from `vertex` to the centre of an element.
-/// Where another surface is above the point, and nearer than 0.3 of that way, the point is moved
-/// further inside, to as far from the vertex as the gap is wide: light falls off steeply where a
-/// gap begins, and light at its brink would be interpolated far inside.
-GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex, double inset,
-                           const GatherPoint& point);
+/// The gather point of a vertex, a little way from `vertex` towards the `center` of an element.
+/// Where another surface is above the point, and nearer than 0.3 of the whole way, the point is
+/// moved further inside, to as far from the vertex as the gap is wide: light falls off steeply
+/// where a gap begins, and light at its brink would be interpolated far inside.
+GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex,
+                           const Eigen::Vector3d& center, const GatherPoint& point);
 
 /// Aims of the rays of paths in a gap, beside cosine-distributed ones.
 struct GapAims {

@@ -111,7 +111,8 @@ void VertexGathers::share_pilot_rays() {
 GatherPoint VertexGathers::gather_point(int vertex) const {
   const PatchPoint at = elements_.inside(vertex, inset_);
   const GatherPoint point{at.position, at.normal, elements_.base().facet[at.element]};
-  return moved_into_gap(caster_, elements_.position(vertex), inset_, point);
+  const Eigen::Vector3d center = element_center(elements_.base(), at.element).position;
+  return moved_into_gap(caster_, elements_.position(vertex), center, point);
 }
 
 // A gather point with random numbers of the vertex's own.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <map>
 #include <set>
@@ -110,6 +111,34 @@ TEST(GapLines, AreMadeOfGapsThatAreNarrowAgainstElementsAlone) {
   };
   EXPECT_GT(count(0.009), count(0.011));
   EXPECT_EQ(count(0.011), count(0.5));
+}
+
+// A plate that is tilted and runs through the floor: under its upper part a gap closes in a wedge,
+// whose lines end where contact lines do. Two ends a little apart would leave an element as narrow
+// as that.
+TEST(GapLines, EndInTheCornersOfContactLines) {
+  for (const double tilt : {0.1, 0.3, 0.6}) {
+    Scene scene = floor_and_plate(0.003, 0.7);
+    Vector3d axis(std::cos(0.4), std::sin(0.4), 0.0);
+    for (Vector3d& v : std::get<PolygonMesh>(scene.surfaces[1].shape).vertices) {
+      v = Vector3d(1, 1, 0) + Eigen::AngleAxisd(tilt, axis) * (v - Vector3d(1, 1, 0));
+    }
+    const PatchMesh mesh = build_patches(scene, {.max_patch_size = patch});
+    double least = 1.0;
+    for (int e = 0; e < mesh.element_count(); ++e) {
+      if (mesh.facet[e] != 0) continue;
+      double boundary = 0.0;
+      for (int i = 0, n = mesh.corner_count(e); i < n; ++i) {
+        boundary +=
+            (mesh.position(mesh.corners[e][i]) - mesh.position(mesh.corners[e][(i + 1) % n]))
+                .norm();
+      }
+      least = std::min(least, mesh.element_area[e] / (boundary * boundary));
+    }
+    // A square has 1/16. With ends 6e-7 m apart, twice the tolerance of 1e-7 of the diagonal, an
+    // element of 0.1 m has less than 6e-7 * 0.1 / 2 / 0.2^2 = 8e-7.
+    EXPECT_GT(least, 1e-4) << tilt;
+  }
 }
 
 }  // namespace

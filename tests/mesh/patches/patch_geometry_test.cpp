@@ -22,6 +22,28 @@ void for_each_sample(int n, Visit&& visit) {
   }
 }
 
+// Two triangles with a common edge, the first of which is a needle.
+TEST(VertexElements, AreNoNeedles) {
+  for (const double width : {0.5, 1e-5}) {
+    Scene scene = empty_scene();
+    const PolygonMesh sheet{.vertices = {{0, 0, 0}, {width, 0, 0}, {0, 1, 0}, {-1, 0, 0}},
+                            .facets = {Facet{.boundary = {0, 1, 2}}, Facet{.boundary = {0, 2, 3}}}};
+    scene.surfaces.push_back({.name = "sheet", .material = 1, .shape = sheet});
+    PatchMesh mesh = build_patches(scene, {.max_patch_size = 4.0, .elements_per_patch_edge = 1});
+    ASSERT_EQ(mesh.element_count(), 2);
+    std::vector<Eigen::Vector3d> positions;
+    for (int v = 0; v < mesh.vertex_count(); ++v) positions.push_back(mesh.position(v));
+    const std::vector<int> elements = vertex_elements(mesh);
+    int shared = 0;
+    for (int v = 0; v < mesh.vertex_count(); ++v) {
+      if (positions[v].x() != 0.0) continue;
+      ++shared;
+      EXPECT_EQ(elements[v], width == 0.5 ? 0 : 1) << width;
+    }
+    EXPECT_EQ(shared, 2) << "the vertices of the common edge";
+  }
+}
+
 TEST(PatchSampler, IsUniformByAreaOnAnyPatch) {
   Scene scene = empty_scene();
   add_polygon(scene, "kite", {{0, 0, 1}, {2, 0.3, 1}, {2.5, 2, 1}, {0.2, 1.1, 1}}, {}, 1);
