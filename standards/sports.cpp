@@ -1,14 +1,11 @@
 #include "standards/sports.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "scene/errors.h"
-#include "scene/io/nearest_name.h"
+#include "standards/table_key.h"
 
 namespace lightwell {
 namespace {
@@ -46,17 +43,9 @@ void add_camera_limits(const CameraField& camera, const TelevisionLimits& limits
 
 const SportLimits& sport_limits(const std::vector<Sport>& sports, const std::string& key,
                                 int sport_class, const std::string& asked_by) {
-  const auto at = std::ranges::find(sports, key, &Sport::key);
-  if (at != sports.end()) return at->classes[static_cast<std::size_t>(sport_class - 1)];
-  std::string known;
-  std::vector<std::string> keys;
-  for (const Sport& sport : sports) {
-    known += (known.empty() ? "" : ", ") + sport.key;
-    keys.push_back(sport.key);
-  }
-  throw InputError(fmt::format(
-      "{}: there is no sport '{}'.{} The table has {}; '--sports FILE' reads another table.",
-      asked_by, key, did_you_mean(key, keys), known));
+  const Sport& sport =
+      find_entry(sports, {.key = key, .asked_by = asked_by, .noun = "sport", .option = "--sports"});
+  return sport.classes[static_cast<std::size_t>(sport_class - 1)];
 }
 
 LuxGrid sport_grid(const LuxGrid& area) {
