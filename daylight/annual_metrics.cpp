@@ -115,7 +115,7 @@ void AnnualMetrics::add(const HourBlock& block, std::span<const float> factors, 
     const auto column = static_cast<Eigen::Index>(h);
     const float sunlight = block.sunlight(i, column);
     const float factor = factors.empty() ? 1.0f : factors[h];
-    const float E = sunlight + factor * (block.total(i, column) - sunlight);
+    const float E = block.light(i, column, factor);
     count_(i, lux) += double{E};
     if (occupancy_.holds(number)) count_occupied(E, sunlight, count_, i);
     if (is_bright_[static_cast<std::size_t>(number)] == 0) continue;
