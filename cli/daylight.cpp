@@ -83,6 +83,28 @@ int daylight(const DaylightArguments& arguments, Console& console) {
                       : daylight_of_year(arguments, inputs, console, report);
 }
 
+// Options on rooms that are judged.
+void add_rooms(CLI::App& command, const std::shared_ptr<DaylightArguments>& arguments) {
+  CLI::Option* const rating =
+      command
+          .add_option("--rating", arguments->ratings,
+                      "hold the rooms to a rating: leed, breeam-office, ...; may be repeated")
+          ->type_name("KEY")
+          ->type_size(1)
+          ->allow_extra_args(false);
+  command
+      .add_option("--ratings", arguments->rating_table,
+                  "table of ratings in place of the program's")
+      ->type_name("FILE.toml")
+      ->needs(rating);
+  CLI::Option* const rooms =
+      command
+          .add_option("--rooms", arguments->rooms,
+                      "use of rooms, and their lamps, whose energy daylight saves (EN 15193-1)")
+          ->type_name("FILE.toml");
+  command.get_option("--at")->excludes(rating)->excludes(rooms);
+}
+
 // Options on what people do and see.
 void add_people(CLI::App& command, const std::shared_ptr<DaylightArguments>& arguments) {
   command
@@ -182,6 +204,7 @@ Action add_daylight(CLI::App& command) {
       ->type_name("LENGTH")
       ->check(positive());
   add_people(command, arguments);
+  add_rooms(command, arguments);
   command.add_flag("--hourly", arguments->hourly,
                    "also write illuminance.npy and sunlight.npy: hours of hours.csv x sensors, lx");
   command

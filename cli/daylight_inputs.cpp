@@ -63,15 +63,31 @@ OperatedWindows read_operated_windows(const DaylightArguments& arguments, const 
   return windows;
 }
 
+// The ratings of --rating, of the program's table or of --ratings.
+std::vector<DaylightRating> asked_ratings(const DaylightArguments& arguments) {
+  std::vector<DaylightRating> asked;
+  if (arguments.ratings.empty()) return asked;
+  const std::vector<DaylightRating> known = arguments.rating_table.empty()
+                                                ? usual_daylight_ratings()
+                                                : read_daylight_ratings(arguments.rating_table);
+  for (const std::string& key : arguments.ratings) {
+    asked.push_back(find_daylight_rating(known, key, "--rating"));
+  }
+  return asked;
+}
+
 }  // namespace
 
 DaylightInputs read_daylight_inputs(const DaylightArguments& arguments, Console& console,
                                     Report& report) {
   for (const std::string* file :
-       {&arguments.weather, &arguments.points, &arguments.windows, &arguments.sun_points}) {
+       {&arguments.weather, &arguments.points, &arguments.windows, &arguments.sun_points,
+        &arguments.rooms, &arguments.rating_table}) {
     if (!file->empty()) note_input(*file);
   }
   DaylightInputs inputs{.weather = read_weather(arguments.weather)};
+  if (!arguments.rooms.empty()) inputs.rooms = read_room_uses(arguments.rooms);
+  inputs.ratings = asked_ratings(arguments);
   inputs.scene = read_scene_step(arguments.scene, console, report, &inputs.clean_up);
   inputs.windows = read_operated_windows(arguments, inputs.scene, console);
   refuse_joined_windows(inputs);
@@ -192,7 +208,8 @@ YearReport daylight_report(const DaylightArguments& arguments, const DaylightInp
                   .occupancy = arguments.occupancy,
                   .north = inputs.north,
                   .metres_per_unit = scene.metres_per_unit,
-                  .unit_name = scene.unit_name};
+                  .unit_name = scene.unit_name,
+                  .ratings = inputs.ratings};
   made.notes.insert(made.notes.end(), scene.notes.begin(), scene.notes.end());
   return made;
 }

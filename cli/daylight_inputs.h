@@ -15,6 +15,7 @@
 #include "daylight/window_operation.h"
 #include "mesh/cleaning/planar_regions.h"
 #include "raytrace/readings/probe.h"
+#include "scene/io/room_use.h"
 #include "scene/io/sensor_grids.h"
 #include "scene/io/weather/weather_file.h"
 #include "scene/io/window_states.h"
@@ -26,7 +27,8 @@ namespace lightwell {
 /// Arguments of 'lightwell daylight'.
 struct DaylightArguments {
   std::string scene, weather, points, windows, sun_points, output, walk;
-  std::vector<std::string> observers{};
+  std::string rooms{}, rating_table{};
+  std::vector<std::string> observers{}, ratings{};
   GridArguments grids{};
   MeshArguments mesh{};
   double north_degrees = 0.0, ground = 0.2;
@@ -49,7 +51,9 @@ struct DaylightInputs {
   std::vector<Camera> eyes{};                 ///< observers of glare
   std::vector<Eigen::Vector3d> sun_points{};  ///< m, of exposure to sunlight
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), north = Eigen::Vector3d::UnitY();
-  bool has_north = false;  ///< by a sky of the scene
+  bool has_north = false;                 ///< by a sky of the scene
+  std::vector<RoomUse> rooms{};           ///< of --rooms
+  std::vector<DaylightRating> ratings{};  ///< that are asked for
 
   /// The scene with the surfaces of its file, which the clean-up may have joined.
   Scene scene_apart() const;

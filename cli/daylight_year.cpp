@@ -2,11 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
 #include <memory>
 
 #include "cli/commands.h"
+#include "cli/daylight_count.h"
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
 #include "daylight/glare_of_year.h"
@@ -16,102 +15,24 @@
 #include "daylight/year_files.h"
 #include "raytrace/readings/probe_surface.h"
 #include "viewer/export/write_whole.h"
+#include "viewer/report/year_ratings.h"
+#include "viewer/report/year_rooms.h"
 
 namespace lightwell {
 namespace {
 
-// Files of every hour and sensor, where they are asked for.
-class HourlyFiles {
- public:
-  HourlyFiles(const OutputFolder& folder, int sensors)
-      : sensors_(sensors),
-        total_(folder / "illuminance.npy", sensors),
-        sunlight_(folder / "sunlight.npy", sensors) {}
-
-  void append(const HourBlock& block) {
-    total_.append(block.total.topRows(sensors_));
-    sunlight_.append(block.sunlight.topRows(sensors_));
-  }
-  void commit() {
-    total_.commit();
-    sunlight_.commit();
-  }
-
- private:
-  int sensors_;
-  NumpyRows total_, sunlight_;
-};
+// True where ratings or lamps are asked for, whose figures have a file of their own.
+bool has_rooms_file(const DaylightArguments& arguments) {
+  return !arguments.ratings.empty() || !arguments.rooms.empty();
+}
 
 // The files that the command will write.
 std::vector<std::string> files_of(const DaylightArguments& arguments) {
   std::vector<std::string> files = {"sensors.csv", "hours.csv", "year.html", "year.json"};
   if (arguments.hourly) files.insert(files.end(), {"illuminance.npy", "sunlight.npy"});
   if (!arguments.observers.empty()) files.emplace_back("glare.csv");
+  if (has_rooms_file(arguments)) files.emplace_back("rooms.csv");
   return files;
-}
-
-// The measures of all rooms.
-void set_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_factor,
-                 RoomMetrics YearRoom::*which, std::vector<YearRoom>& rooms) {
-  for (YearRoom& room : rooms) {
-    room.*which = room_metrics(sensors, daylight_factor, room.first, room.count);
-  }
-}
-
-// Measures of a year and of its rooms, hour by hour.
-class YearCount {
- public:
-  YearCount(std::span<const SkyHour> hours, int sensors, HourlyFiles* files, YearReport& made)
-      : made_(made),
-        files_(files),
-        metrics_(sensors, hours, static_cast<int>(made.weather.hours.size()), made.occupancy),
-        least_(metrics_),
-        most_(metrics_) {
-    for (YearRoom& room : made_.rooms) room.mean_of_hours.assign(made_.weather.hours.size(), 0.0f);
-  }
-
-  // Adds a block of hours, with the bound of each hour's light.
-  void add(const HourBlock& block, const std::vector<double>& errors) {
-    std::vector<float> less, more;
-    for (const double error : errors) {
-      less.push_back(static_cast<float>(1.0 - std::min(1.0, error)));
-      more.push_back(static_cast<float>(1.0 + error));
-    }
-    metrics_.add(block);
-    least_.add(block, less);
-    most_.add(block, more);
-    for (YearRoom& room : made_.rooms) {
-      for (std::size_t h = 0; h < block.hours.size(); ++h) {
-        room.mean_of_hours[static_cast<std::size_t>(block.hours[h].number)] =
-            block.total.col(static_cast<Eigen::Index>(h)).segment(room.first, room.count).mean();
-      }
-    }
-    if (files_) files_->append(block);
-  }
-
-  // Fills in the measures. `open_sun_hours`, if not null, are those of windows without blinds,
-  // which ASE asks for.
-  void finish(const Eigen::ArrayXd* open_sun_hours) {
-    const auto with_sun = [&](const AnnualMetrics& metrics) {
-      SensorMetrics sensors = metrics.sensors();
-      if (open_sun_hours) sensors.sun_hours = *open_sun_hours;
-      return sensors;
-    };
-    made_.sensors = with_sun(metrics_);
-    set_metrics(made_.sensors, made_.daylight_factor, &YearRoom::metrics, made_.rooms);
-    set_metrics(with_sun(least_), made_.daylight_factor, &YearRoom::least, made_.rooms);
-    set_metrics(with_sun(most_), made_.daylight_factor, &YearRoom::most, made_.rooms);
-  }
-
- private:
-  YearReport& made_;
-  HourlyFiles* files_;
-  AnnualMetrics metrics_, least_, most_;
-};
-
-int occupied_hours_of(const YearReport& made) {
-  return static_cast<int>(made.weather.hours.size()) / hours_a_day *
-         (made.occupancy.to - made.occupancy.from);
 }
 
 // Hours of each group of windows in its states.
@@ -134,44 +55,6 @@ std::vector<YearWindows> hours_in_states(const OperatedWindows& windows,
   }
   return all;
 }
-
-// The year with windows that change: its measures, and those of each computation.
-class OperatedCount {
- public:
-  OperatedCount(std::span<const SkyHour> hours, int sensors, const YearReport& made)
-      : hours_(hours), sensors_(sensors), made_(made) {}
-
-  void add(const ComputedYear& year, const HourBlock& block) { count_of(year.number).add(block); }
-
-  Eigen::ArrayXd open_sun_hours() { return count_of(0).sensors().sun_hours; }
-
-  std::vector<YearInStates> years(const OperatedYear& year, const OperatedWindows& windows) {
-    std::vector<YearInStates> all;
-    for (std::size_t number = 0; number < year.plan.computations.size(); ++number) {
-      YearInStates in_states{.states = states_text(windows, year.plan.computations[number]),
-                             .error = year.errors[number]};
-      const SensorMetrics sensors = count_of(number).sensors();
-      for (const YearRoom& room : made_.rooms) {
-        in_states.rooms.push_back(
-            room_metrics(sensors, year.daylight_factor, room.first, room.count));
-      }
-      all.push_back(std::move(in_states));
-    }
-    return all;
-  }
-
- private:
-  // The measures of a computation. A year without light adds no hours to them.
-  AnnualMetrics& count_of(std::size_t number) {
-    const auto year_hours = static_cast<int>(made_.weather.hours.size());
-    return counts_.try_emplace(number, sensors_, hours_, year_hours, made_.occupancy).first->second;
-  }
-
-  std::span<const SkyHour> hours_;
-  int sensors_;
-  const YearReport& made_;
-  std::map<std::size_t, AnnualMetrics> counts_{};
-};
 
 // Counts the year that is put together from the computations, with the bound of each hour.
 void count_operated(const OperatedYear& year, std::span<const SkyHour> hours, YearCount& count,
@@ -209,8 +92,8 @@ bool finish_walk(const DaylightArguments& arguments, const DaylightInputs& input
 
 void add_figures(const YearReport& made, Report& report) {
   const Json figures = year_json(made);
-  for (const char* key : {"relative_error", "rooms", "windows", "method", "superposition_error",
-                          "states", "glare", "exposure_to_sunlight"}) {
+  for (const char* key : {"relative_error", "rooms", "ratings", "windows", "method",
+                          "superposition_error", "states", "glare", "exposure_to_sunlight"}) {
     if (figures.contains(key)) report.add(key, figures[key]);
   }
 }
@@ -288,6 +171,7 @@ struct WrittenYear {
   const DaylightInputs& inputs;
   std::span<const SkyHour> hours{};
   std::span<const Probe> probes{};
+  bool has_rooms = false;  // a file of them
 };
 
 constexpr const char* metrics_folder = "metrics";
@@ -340,8 +224,19 @@ void write_files(const WrittenYear& written, const YearReport& made, const Opera
   if (const auto grids = metric_grids(inputs, made); !grids.empty()) {
     write_honeybee_metrics(folder / metrics_folder, grids, made.sensors);
   }
+  if (written.has_rooms) write_whole(folder / "rooms.csv", {rooms_csv(made)});
   write_whole(folder / "year.html", {year_page(made)});
   write_json(folder / "year.json", year_json(made));
+}
+
+// Refuses tables of rooms that do not fit the sensors, before form factors, which take long.
+void check_rooms(const DaylightArguments& arguments, const DaylightInputs& inputs,
+                 const DaylightOptions& options) {
+  if (inputs.rooms.empty()) return;
+  const PatchMesh mesh = build_patches(inputs.scene, options.mesh);
+  std::vector<YearRoom> rooms = daylight_sensors(arguments, inputs, ElementCaster(mesh)).rooms;
+  use_rooms(inputs.rooms, rooms);
+  if (!inputs.ratings.empty()) require_occupied_rooms(rooms);
 }
 
 }  // namespace
@@ -362,6 +257,7 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
     constexpr int fewest_bands = 1;  // of a grey scene; find_year_basis() knows them
     check_year_basis(build_patches(inputs.scene, options.mesh), fewest_bands, hours);
   }
+  check_rooms(arguments, inputs, options);
   DaylightModel model(inputs.scene, inputs.up, inputs.north, options);
   DaylightSensors sensors = daylight_sensors(arguments, inputs, model.caster());
   model.set_sensors(probe_points(model.caster(), sensors.all()));
@@ -369,6 +265,7 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   made.conventions = conventions_of_year(arguments, inputs, model.sky());
   const std::vector<SensorRange> ranges = sensors.ranges();
   made.rooms = std::move(sensors.rooms);
+  use_rooms(inputs.rooms, made.rooms);
   std::optional<HourlyFiles> files;
   if (arguments.hourly) files.emplace(folder, static_cast<int>(sensors.probes.size()));
   const OperatedYear year = go_through_year(inputs, model,
@@ -388,8 +285,12 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
   stop_if_interrupted();
   report.add_phase("year", watch.lap());
 
-  write_files({.folder = folder, .inputs = inputs, .hours = hours, .probes = sensors.probes}, made,
-              year);
+  write_files({.folder = folder,
+               .inputs = inputs,
+               .hours = hours,
+               .probes = sensors.probes,
+               .has_rooms = has_rooms_file(arguments)},
+              made, year);
   if (files) files->commit();
   for (const std::string& file : files_of(arguments)) report.add_file(folder / file);
   if (const auto grids = metric_grids(inputs, made); !grids.empty()) {

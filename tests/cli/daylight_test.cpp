@@ -449,4 +449,102 @@ TEST_F(DaylightCommand, RefusesToWriteOverItsSchedule) {
   EXPECT_NE(outside.err.find("outside of its folder"), std::string::npos) << outside.err;
 }
 
+// The court of three hours of light in a year has daylight factors above 2 % everywhere, and none
+// of the hours that ratings count: LEED gives nothing, and BREEAM its credits by daylight factors.
+TEST_F(DaylightCommand, HoldsRoomsToRatings) {
+  const Words grid = {"--plane", "floor@0.8", "--spacing", "1"};
+  const Json json =
+      run_json(command(grid + Words{"--rating", "leed", "--rating", "breeam-office"}));
+  ASSERT_EQ(json["ratings"].size(), 2u);
+  const Json &leed = json["ratings"][0], &breeam = json["ratings"][1];
+  EXPECT_EQ(leed["points"]["most"], 0);
+  EXPECT_EQ(leed["points"]["available"], 3);
+  EXPECT_EQ(leed["weights"], "area");
+  EXPECT_EQ(breeam["points"]["least"], 2);
+  const auto limit = [&](const Json& rating, const char* figure) {
+    for (const Json& one : rating["limits"]) {
+      if (one["figure"] == figure) return one;
+    }
+    return Json();
+  };
+  const Json factor = limit(breeam, "mean_daylight_factor");
+  EXPECT_EQ(factor["value"], json["rooms"][0]["mean_daylight_factor"]);
+  EXPECT_EQ(factor["at_least"], 2.0);
+  EXPECT_EQ(factor["verdict"], "met");
+  EXPECT_EQ(limit(breeam, "by_daylight_factors")["verdict"], "met");
+  const Json hours = limit(breeam, "hours_of_mean");
+  EXPECT_LE(hours["most"], 3.0);
+  EXPECT_EQ(hours["verdict"], "missed");
+  EXPECT_EQ(limit(leed, "sDA300_50")["verdict"], "missed");
+  // A line of titles, LEED's five limits (of the room two) and BREEAM's eight (of the room seven).
+  EXPECT_EQ(lines_of(text_of("rooms.csv")), 1 + 5 + 8);
+  const std::string page = text_of("year.html");
+  for (const char* part : {"LEED v4.1 daylight, option 1: 0 of 3 points", "2 of 2 credits"}) {
+    EXPECT_NE(page.find(part), std::string::npos) << part;
+  }
+}
+
+// Of 10 hours a day two are lit in June and one in December; lamps that daylight does not dim take
+//
+//     100 W * 3650 h / (1000 * 16 m^2) = 22.8125 kWh/m^2
+//
+// in a year, and for 1 lx of maintained illuminance, which any of these hours gives, they are off
+// in three of the 3650 hours.
+TEST_F(DaylightCommand, FindsTheEnergyThatDaylightSaves) {
+  const auto lighting_of = [&](const std::string& keys) {
+    folder.write("rooms.toml", "[[rooms]]\nsensors = \"floor*\"\nlighting = { " + keys + " }\n");
+    return run_json(command({"--plane", "floor@0.8", "--spacing", "1", "--rooms",
+                             "rooms.toml"}))["rooms"][0]["lighting"];
+  };
+  const Json off = lighting_of("watts = 100, lux = 1, control = \"on/off\"");
+  EXPECT_EQ(off["daylight_hours"], 3);
+  EXPECT_EQ(off["night_hours"], 3647);
+  EXPECT_EQ(off["area_m2"], 16.0);
+  EXPECT_EQ(off["daylight_dependency"]["value"], 0.0);
+  EXPECT_EQ(off["daylight_dependency"]["most"], 0.0);
+  // Each of five operations rounds at 2^-53 of 22.8.
+  constexpr double rounding = 5 * 22.8 / (1LL << 53);
+  EXPECT_NEAR(off["LENI_kWh_per_m2"]["value"].get<double>(), 22.8125 * 3647.0 / 3650.0, rounding);
+  EXPECT_NEAR(off["saved_kWh_per_m2"]["value"].get<double>(), 22.8125 * 3.0 / 3650.0,
+              2.0 * rounding);
+  EXPECT_NE(text_of("rooms.csv").find("LENI_kWh_per_m2"), std::string::npos);
+  EXPECT_NE(text_of("year.html").find("Energy of lamps"), std::string::npos);
+  // Lamps for a million lux are never off, and stay so within the bound.
+  const Json on = lighting_of("lux = 1e6, control = \"on/off\"");
+  EXPECT_EQ(on["daylight_dependency"]["value"], 1.0);
+  EXPECT_EQ(on["saved_share"]["most"], 0.0);
+  EXPECT_FALSE(on.contains("LENI_kWh_per_m2"));
+  // Dimmed lamps take less where there is more light.
+  const Json dimmed = lighting_of("lux = 1e5, control = \"dimmed\"");
+  EXPECT_LT(dimmed["daylight_dependency"]["least"], dimmed["daylight_dependency"]["value"]);
+  EXPECT_LT(dimmed["daylight_dependency"]["value"], dimmed["daylight_dependency"]["most"]);
+}
+
+TEST_F(DaylightCommand, RefusesRoomsThatDoNotFit) {
+  folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,0.8,0,0,1\n");
+  const auto expect_refused = [&](const std::string& rooms, const std::string& sentence) {
+    folder.write("rooms.toml", rooms);
+    const Ended ended = run(command({"--points", "p.csv", "--rooms", "rooms.toml"}));
+    EXPECT_EQ(ended.code, 3) << ended.err;
+    EXPECT_NE(ended.err.find(sentence), std::string::npos) << ended.err;
+    EXPECT_FALSE(std::filesystem::exists(folder / "year/year.json"));
+  };
+  const std::string room = "[[rooms]]\nsensors = \"p.csv\"\n";
+  expect_refused("[[rooms]]\nsensors = \"q.csv\"\n", "no sensors are left for 'q.csv'");
+  expect_refused(room + "lighting = { watts = 50, lux = 500, control = \"dimmed\" }\n",
+                 "no area to relate its energy to");
+  expect_refused(room + "lighting = { watts = -50, lux = 500, control = \"dimmed\" }\n",
+                 "rooms.toml:3");
+  expect_refused(room + "lighting = { lux = 500, control = \"manual\" }\n",
+                 "'on/off', 'stepped' or 'dimmed'");
+  folder.write("rooms.toml", room + "regularly_occupied = false\n");
+  const Ended empty =
+      run(command({"--points", "p.csv", "--rooms", "rooms.toml", "--rating", "leed"}));
+  EXPECT_EQ(empty.code, 3);
+  EXPECT_NE(empty.err.find("no room is regularly occupied"), std::string::npos) << empty.err;
+  const Ended unknown = run(command({"--points", "p.csv", "--rating", "lead"}));
+  EXPECT_EQ(unknown.code, 3);
+  EXPECT_NE(unknown.err.find("Did you mean 'leed'?"), std::string::npos) << unknown.err;
+}
+
 }  // namespace lightwell::daylight_command_test

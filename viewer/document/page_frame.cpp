@@ -20,7 +20,7 @@ p, figcaption {{ color: #444; max-width: 50rem; }}
 table {{ border-collapse: collapse; font-variant-numeric: tabular-nums; margin: .6rem 0; }}
 th, td {{ padding: .25rem .9rem .25rem 0; text-align: right; border-bottom: 1px solid #ddd; vertical-align: top; }}
 th:first-child, td:first-child, .text {{ text-align: left; }} th {{ font-weight: 600; border-bottom-color: #888; }}
-tr.total td {{ font-weight: 600; }} .kind td:first-child {{ padding-left: 1rem; color: #444; }}
+tr.total td {{ font-weight: 600; }} tr.total small {{ font-weight: 400; }} .kind td:first-child {{ padding-left: 1rem; color: #444; }}
 small {{ color: #666; white-space: nowrap; }} figure {{ margin: 1rem 0 1.6rem; }} svg {{ max-width: 100%; height: auto; }} figure img {{ width: 100%; height: auto; display: block; }}
 .heading {{ display: grid; grid-template-columns: max-content auto; gap: .1rem 1rem; margin: .8rem 0; }} .heading dt {{ color: #666; }} .heading dd {{ margin: 0; }}
 .luminaire-card {{ display: flex; gap: 1.5rem; align-items: center; }}

@@ -2,6 +2,7 @@
 
 #include <iterator>
 
+#include "viewer/report/year_ratings.h"
 #include "viewer/report/year_report.h"
 
 namespace lightwell {
@@ -27,6 +28,7 @@ Json room_json(const YearRoom& room) {
   json["en_17037"] = Json{{"level", room.metrics.en_level},
                           {"least", room.least.en_level},
                           {"most", room.most.en_level}};
+  if (room.lighting) json["lighting"] = lighting_json(room);
   return json;
 }
 
@@ -123,6 +125,7 @@ nlohmann::ordered_json year_json(const YearReport& report) {
   json["notes"] = report.notes;
   json["rooms"] = Json::array();
   for (const YearRoom& room : report.rooms) json["rooms"].push_back(room_json(room));
+  if (!report.ratings.empty()) json["ratings"] = ratings_json(report);
   add_windows_and_people(report, json);
   return json;
 }
@@ -145,6 +148,7 @@ std::string year_text(const YearReport& report) {
                        : fmt::format(" (from {} to {})", room.least.en_level, room.most.en_level),
                    m.mean_daylight_factor, m.median_daylight_factor);
   }
+  text += ratings_text(report);
   for (const YearWindows& windows : report.windows) {
     fmt::format_to(std::back_inserter(text), "windows {}: {}\n", windows.name, windows.operation);
     for (const YearWindows::State& state : windows.states) {

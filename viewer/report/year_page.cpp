@@ -9,6 +9,7 @@
 #include "viewer/report/heat_map.h"
 #include "viewer/report/plan_svg.h"
 #include "viewer/report/year_operation.h"
+#include "viewer/report/year_ratings.h"
 #include "viewer/report/year_report.h"
 
 namespace lightwell {
@@ -131,6 +132,7 @@ std::string year_page(const YearReport& report) {
   std::string page = page_begin(report.title);
   add_heading(report, page);
   add_table(report, page);
+  page += rating_sections(report);
   page += operation_sections(report);
   add_rooms(report, page);
   page += list_section("What is assumed", report.conventions);

@@ -9,10 +9,23 @@
 #include "daylight/daylight_glare.h"
 #include "daylight/sun_exposure.h"
 #include "raytrace/readings/lux_grid.h"
+#include "scene/io/room_use.h"
 #include "scene/io/weather/weather_file.h"
+#include "standards/daylight_rating.h"
 #include "viewer/report/plan_lines.h"
 
 namespace lightwell {
+
+/// Hours of the year in which a room has the illuminances of a rating.
+struct RatedHours {
+  BoundedFigure mean{}, point{};
+};
+
+/// Occupied hours of a room's lamps.
+struct LampHours {
+  int daylight_hours = 0, night_hours = 0;  ///< t_D and t_N
+  BoundedFigure daylight_dependency{};      ///< F_D, see LampUse
+};
 
 /// Sensors that are judged together: those of a grid, or of a file of points.
 struct YearRoom {
@@ -22,7 +35,12 @@ struct YearRoom {
   Eigen::Index first = 0, count = 0;  ///< of all sensors
   /// The measures, and those of less and of more light by the bound of its error.
   RoomMetrics metrics{}, least{}, most{};
-  std::vector<float> mean_of_hours{};  ///< lx, for every hour of the year
+  std::vector<float> mean_of_hours{};      ///< lx, for every hour of the year
+  double area = 0.0;                       ///< of the floor, m^2; 0: not known
+  bool is_regularly_occupied = true;       ///< false: ratings do not count the room
+  std::vector<RatedHours> rated_hours{};   ///< like YearReport::ratings
+  std::optional<RoomLighting> lighting{};  ///< empty: not asked for
+  LampHours lamps{};                       ///< of `lighting`
 };
 
 /// A group of windows that is operated, and the hours that it spends in its states.
@@ -71,6 +89,7 @@ struct YearReport {
   std::vector<int> hour_numbers{};     ///< of the hours with light, see SkyHour
   std::vector<GlareOfYear> glare{};    ///< of observers
   std::optional<YearExposure> exposure{};
+  std::vector<DaylightRating> ratings{};  ///< that the rooms are held to
 };
 
 /// Measures, bounds and conventions.
