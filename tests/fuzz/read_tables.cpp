@@ -1,5 +1,8 @@
-// Targets of files that standards are held to: roads, road surfaces, sports, samples of colours.
+// Targets of files that standards are held to: roads, road surfaces, sports, ratings,
+// rooms, samples of colours.
+#include "scene/io/room_use.h"
 #include "standards/colour_fidelity.h"
+#include "standards/daylight_rating.h"
 #include "standards/road/road.h"
 #include "standards/sports.h"
 #include "tests/fuzz/input_file.h"
@@ -17,6 +20,14 @@ void read_road_surface(std::string_view bytes) {
 
 void read_sport_table(std::string_view bytes) {
   read_sports(input_file("sports.toml", bytes));
+}
+
+void read_rating_table(std::string_view bytes) {
+  read_daylight_ratings(input_file("ratings.toml", bytes));
+}
+
+void read_room_table(std::string_view bytes) {
+  read_room_uses(input_file("rooms.toml", bytes));
 }
 
 void read_colours(std::string_view bytes) {

@@ -49,6 +49,8 @@ void read_cue_list(std::string_view bytes);
 void read_road_file(std::string_view bytes);
 void read_road_surface(std::string_view bytes);
 void read_sport_table(std::string_view bytes);
+void read_rating_table(std::string_view bytes);
+void read_room_table(std::string_view bytes);
 void read_colours(std::string_view bytes);
 void read_solved(std::string_view bytes);
 void read_checkpoint(std::string_view bytes);

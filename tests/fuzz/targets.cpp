@@ -52,6 +52,8 @@ std::span<const Target> targets() {
       {.name = "road", .read = read_road_file, .sources = "standards/road"},
       {.name = "roadsurface", .read = read_road_surface},
       {.name = "sports", .read = read_sport_table, .sources = "standards"},
+      {.name = "ratings", .read = read_rating_table},
+      {.name = "rooms", .read = read_room_table},
       {.name = "colours", .read = read_colours},
       {.name = "solution",
        .read = read_solved,
