@@ -155,7 +155,9 @@ Action add_daylight(CLI::App& command) {
   const auto arguments = std::make_shared<DaylightArguments>();
   command.description(
       "Daylight of a year: every hour's illuminance at sensors, with the sun as a disc in its own "
-      "place,\nand what standards make of it: DA, UDI, sDA, ASE, EN 17037, daylight factors.");
+      "place,\nand what standards make of it: DA, UDI, sDA, ASE, EN 17037, daylight factors, "
+      "credits "
+      "of LEED and BREEAM.");
   command.add_option("scene", arguments->scene, "scene file, as for 'solve'")
       ->required()
       ->type_name("SCENE");
