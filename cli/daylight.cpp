@@ -156,8 +156,7 @@ Action add_daylight(CLI::App& command) {
   command.description(
       "Daylight of a year: every hour's illuminance at sensors, with the sun as a disc in its own "
       "place,\nand what standards make of it: DA, UDI, sDA, ASE, EN 17037, daylight factors, "
-      "credits "
-      "of LEED and BREEAM.");
+      "LEED and BREEAM.");
   command.add_option("scene", arguments->scene, "scene file, as for 'solve'")
       ->required()
       ->type_name("SCENE");
