@@ -249,7 +249,8 @@ std::array<int, 4> RefinedElements::ends(int vertex) const {
 PatchPoint RefinedElements::inside(int vertex, double share) const {
   const Vertex& v = vertices_[vertex];
   const PatchPoint center = element_center(*base_, v.element);
-  const Vector3d near = v.position + inset(v.position, center.position, share, least_inset_);
+  const Vector3d near = v.position + inset_share(*base_, v.element, share, least_inset_) *
+                                         (center.position - v.position);
   if (const RoundGrid* grid = round_grid_of(*base_, base_->facet[v.element])) {
     // A sphere has no rim at which something else could stand.
     const bool has_rim = !std::holds_alternative<Sphere>(grid->shape);

@@ -92,8 +92,8 @@ class RefinedElements {
   /// The vertices half-way between which `vertex` was made (2 or 4, the rest -1), all of lower
   /// numbers; none for a vertex of the base.
   std::array<int, 4> ends(int vertex) const;
-  /// A place near a vertex: `share` of the way to the middle of a base element that has the vertex,
-  /// or least_inset(), with that element and its normal; on spheres the vertex itself.
+  /// A place near a vertex: at the inset_share() for `share` of the way to the middle of a base
+  /// element that has the vertex, with that element and its normal; on spheres the vertex itself.
   PatchPoint inside(int vertex, double share) const;
 
  private:

@@ -13,13 +13,19 @@ double least_inset(const PatchMesh& mesh) {
   return roundings * std::numeric_limits<float>::epsilon() * 0.5 * mesh_bounds(mesh).diagonal();
 }
 
-Eigen::Vector3d inset(const Eigen::Vector3d& point, const Eigen::Vector3d& center, double share,
-                      double least) {
+double inset_share(const PatchMesh& mesh, int element, double share, double least) {
+  const auto& corners = mesh.corners[static_cast<std::size_t>(element)];
+  const int n = mesh.corner_count(element);
+  double longest = 0.0;
+  for (int i = 0; i < n; ++i) {
+    const int from = corners[static_cast<std::size_t>(i)],
+              to = corners[static_cast<std::size_t>((i + 1) % n)];
+    longest = std::max(longest, (mesh.position(to) - mesh.position(from)).norm());
+  }
+  // The centre of a rectangle is so far off the longer sides, and that of a triangle a third more.
+  const double off_border = 0.5 * mesh.element_area[element] / longest;
   constexpr double most = 0.5;
-  const Eigen::Vector3d way = center - point;
-  const double length = way.norm();
-  if (share * length < least) share = std::min(most, least / length);
-  return share * way;
+  return std::max(share, std::min(most, least / off_border));
 }
 
 }  // namespace lightwell

@@ -258,7 +258,8 @@ GatherPoint VertexGatherPoints::operator[](int vertex) const {
   if (e < 0) return {};
   const PatchPoint center = element_center(mesh_, e);
   const Eigen::Vector3d p = mesh_.position(vertex),
-                        inwards = inset(p, center.position, share, least_inset_);
+                        inwards =
+                            inset_share(mesh_, e, share, least_inset_) * (center.position - p);
   // The element of a round shape is a chord of it, so the point is moved to the surface.
   if (const RoundGrid* grid = round_grid_of(mesh_, mesh_.facet[e])) {
     const Eigen::Vector3d at = nearest_on(grid->shape, p + inwards);

@@ -122,10 +122,10 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
                                const RadiositySolution& solution);
 
 /// A gather point for every vertex: 2 % of the way from the vertex to the centre of one of its
-/// elements, or least_inset(), so that the point lies on no edge, with the facet and the normal of
-/// that element. On round shapes the point lies on the surface. If the vertex is shared by facets
-/// that meet smoothly, the point lies as far above them as well, with their common normal and no
-/// facet.
+/// elements, or more (see inset_share), so that the point lies on no edge, with the facet and the
+/// normal of that element. On round shapes the point lies on the surface. If the vertex is shared
+/// by facets that meet smoothly, the point lies as far above them as well, with their common normal
+/// and no facet.
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
 
 /// The points of vertex_gather_points, each made on demand. Keeps a reference to the mesh.

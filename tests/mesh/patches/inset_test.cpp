@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "mesh/build_patches.h"
 #include "tests/mesh/mesh_scenes.h"
 
@@ -11,17 +14,34 @@ namespace {
 using namespace lightwell::test;
 using Eigen::Vector3d;
 
+// The centre of an oblong of 4 m x 1 m is 0.5 m off its longer sides.
 TEST(Inset, IsAShareOfTheWayButNotLessThanTheLeast) {
-  const Vector3d point(1, 2, 3), center(4, 6, 3);  // 5 m apart
-  const auto length = [&](double share, double least) {
-    return inset(point, center, share, least).norm();
-  };
-  // Exact but for the rounding of norms.
-  EXPECT_DOUBLE_EQ(length(0.02, 0.05), 0.1);
-  EXPECT_DOUBLE_EQ(length(0.02, 0.25), 0.25);
-  EXPECT_DOUBLE_EQ(length(0.02, 100.0), 2.5) << "half of the way";
-  EXPECT_EQ(inset(point, point, 0.02, 0.1), Vector3d::Zero());
-  EXPECT_TRUE(inset(point, center, 0.02, 0.05).isApprox(0.02 * (center - point)));
+  Scene scene = empty_scene();
+  add_polygon(scene, "oblong", {{0, 0, 0}, {4, 0, 0}, {4, 1, 0}, {0, 1, 0}}, {}, 1);
+  const PatchMesh mesh =
+      build_patches(scene, {.max_patch_size = 8.0, .elements_per_patch_edge = 1});
+  ASSERT_EQ(mesh.element_count(), 1);
+  EXPECT_DOUBLE_EQ(inset_share(mesh, 0, 0.02, 0.005), 0.02);
+  EXPECT_DOUBLE_EQ(inset_share(mesh, 0, 0.02, 0.05), 0.1);
+  EXPECT_DOUBLE_EQ(inset_share(mesh, 0, 0.02, 3.0), 0.5);
+}
+
+// The centre of a triangle is a third of each height off the side below.
+TEST(Inset, KeepsPointsOfNeedlesOffTheirBorders) {
+  constexpr double width = 1e-3, least = 1e-5;
+  Scene scene = empty_scene();
+  add_polygon(scene, "needle", {{0, 0, 0}, {1, 0, 0}, {0.5, width, 0}}, {}, 1);
+  const PatchMesh mesh =
+      build_patches(scene, {.max_patch_size = 8.0, .elements_per_patch_edge = 1});
+  ASSERT_EQ(mesh.element_count(), 1);
+  const Vector3d center = element_center(mesh, 0).position;
+  const double share = inset_share(mesh, 0, 1e-6, least);
+  EXPECT_LT(share, 0.5);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const Vector3d p = mesh.position(v) + share * (center - mesh.position(v));
+    const double to_sides = width * (1.0 - 2.0 * std::abs(p.x() - 0.5)) - p.y();
+    EXPECT_GT(std::min(p.y(), to_sides), least) << v;
+  }
 }
 
 // Single precision has 24 bits, so a coordinate h is rounded by up to h 2^-24, half of epsilon().
