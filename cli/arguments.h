@@ -118,7 +118,8 @@ std::vector<std::string> accepted_names(CLI::Option& option);
 
 /// Names of scene files end in one of these.
 inline constexpr const char* scene_extensions =
-    ".toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, .mgf, .pov, .hbjson, .vs3";
+    ".toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, .mgf, .pov, .hbjson, "
+    ".stf, .vs3";
 
 /// Adds the positional argument `scene`, which must be given, to a command.
 void add_scene(CLI::App& command, std::string& scene);

@@ -62,7 +62,7 @@ constexpr const char* recipes =
 
 'lightwell help COMMAND' explains a command. A scene is a .toml file (docs/scene-format.md),
 .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, Mitsuba's .xml, RADIANCE's .rad and .rif,
-.mgf, POV-Ray's .pov, Honeybee's .hbjson, or View3D's .vs3.
+.mgf, POV-Ray's .pov, Honeybee's .hbjson, DIALux's .stf, or View3D's .vs3.
 )";
 
 struct NamedCommand {

@@ -326,7 +326,7 @@ def read(
     progress: Optional[Progress] = None,
 ) -> Scene:
     """Reads a scene: .toml, .obj, .ply, .stl, .gltf, .glb, .dae, .fbx, .xml, .rad, .rif, .mgf, .pov,
-    .hbjson or .vs3.
+    .hbjson, .stf or .vs3.
 
     inside_folder: refuse references to files outside of the scene's folder.
     strict: raise InputError if anything of the file is left out, approximated or missing.

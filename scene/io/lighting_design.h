@@ -112,12 +112,19 @@ inline double maintenance_factor(std::optional<double> given, const LightingDesi
   return given.value_or(design.maintenance.value_or(MaintenanceParts{}).factor());
 }
 
-/// Reads the design from the file of `scene`: the tables [[grids]], [[areas]], [maintenance],
-/// [energy] and [report], and the photometric files and electric power of the [[lamps]] tables. The
-/// power of a lamp is its key `watts`, else the power in its photometric file. The photometric
-/// file's power is ignored where the key `lumens` rescales the flux, since the lamp is another
-/// luminaire then. Empty for formats other than the native one. Throws what read_scene throws.
+/// Reads the design from the file of `scene`, as read_toml_lighting() or read_stf_lighting() does.
+/// Empty for formats other than the native one and STF. Throws what read_scene() throws.
 LightingDesign read_lighting_design(const Scene& scene);
+
+/// The design in the native format: the tables [[grids]], [[areas]], [maintenance], [energy] and
+/// [report], and the photometric files and electric power of the [[lamps]] tables. The power of a
+/// lamp is its key `watts`, else the power in its photometric file. The photometric file's power is
+/// ignored where the key `lumens` rescales the flux, since the lamp is another luminaire then.
+LightingDesign read_toml_lighting(const Scene& scene);
+
+/// The design in an STF file: a grid on the working plane of each room, the maintenance factor
+/// that all rooms share, photometric files and loads of luminaires, and the heading.
+LightingDesign read_stf_lighting(const Scene& scene);
 
 /// Reads the tables [[grids]], [[areas]], [maintenance], [energy] and [report] of a TOML file
 /// beside a scene of any format into `design`, in place of those that it holds. Throws InputError

@@ -116,4 +116,14 @@ void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv, Nor
   add_triangles(mesh, loop, uv, normals, triangles);
 }
 
+void add_with_holes(MeshBuilder& mesh, Polygon polygon, Repairs& repairs) {
+  if (polygon.holes.empty()) {
+    add_repaired(mesh, std::move(polygon.boundary), repairs);
+  } else if (fault(polygon).empty() && deviation_from_plane(polygon) <= flatness) {
+    mesh.add(polygon);
+  } else {
+    add_pieces(mesh, polygon);
+  }
+}
+
 }  // namespace lightwell

@@ -33,4 +33,8 @@ bool add_pieces(MeshBuilder& mesh, const Polygon& polygon, const UvLoop& uv = {}
 void add_repaired(MeshBuilder& mesh, Loop loop, Repairs& repairs, UvLoop uv = {},
                   NormalLoop normals = {});
 
+/// Adds a polygon whose holes may touch or cross its outline, as doors do that stand on a floor:
+/// where they do, as convex_pieces(). Without holes as add_repaired() does.
+void add_with_holes(MeshBuilder& mesh, Polygon polygon, Repairs& repairs);
+
 }  // namespace lightwell

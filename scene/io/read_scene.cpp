@@ -24,6 +24,7 @@ Scene read_any(const std::filesystem::path& path) {
   if (extension == ".mgf") return read_mgf(path);
   if (extension == ".pov" || extension == ".inc") return read_pov(path);
   if (extension == ".hbjson") return read_honeybee(path);
+  if (extension == ".stf") return read_stf(path);
   if (extension == ".oct") {
     throw InputError(
         fmt::format("{}: an octree is compiled from RADIANCE's scene files; read those: a .rad, or "
@@ -34,7 +35,7 @@ Scene read_any(const std::filesystem::path& path) {
       fmt::format("{}: the extension '{}' is of no known scene format; readable are "
                   ".toml (native), .obj, .ply and .stl, .gltf and .glb, .dae (COLLADA), .fbx, "
                   "Mitsuba's .xml, RADIANCE's .rad and .rif, .mgf, POV-Ray's .pov and .inc, "
-                  "Honeybee's .hbjson, and View3D's .vs3",
+                  "Honeybee's .hbjson, DIALux's .stf, and View3D's .vs3",
                   path.string(), extension));
 }
 

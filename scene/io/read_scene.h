@@ -11,9 +11,9 @@ enum class References { anywhere, inside_folder };
 
 /// Reads a scene whose format follows from the extension: .toml (native, docs/scene-format.md),
 /// .obj, .ply, .stl, .vs3, .xml (Mitsuba), .gltf, .glb, .dae (COLLADA), .fbx, .mgf, .pov and
-/// .inc (POV-Ray), .rad and .rif (RADIANCE), .hbjson (Honeybee). The result has passed validate().
-/// Throws InputError naming file, line or object, value and remedy; LimitError for a reference that
-/// `references` forbids.
+/// .inc (POV-Ray), .rad and .rif (RADIANCE), .hbjson (Honeybee), .stf (DIALux). The result has
+/// passed validate(). Throws InputError naming file, line or object, value and remedy; LimitError
+/// for a reference that `references` forbids.
 Scene read_scene(const std::filesystem::path& path, References references = References::anywhere);
 
 /// Reads the native format (grammar: docs/scene-format.md).
@@ -68,5 +68,11 @@ Scene read_radiance(const std::filesystem::path& path);
 /// Openings are cut out of their faces. Radiance is in W/(sr m^2) per band, 179 lm/W.
 /// Approximations and omissions are named in the notes. See docs/from-honeybee.md.
 Scene read_honeybee(const std::filesystem::path& path);
+
+/// Reads DIALux's exchange format STF: rooms as they are placed, their openings, furniture and
+/// luminaires. Metres, lumens, 683 lm/W. The photometric file of a luminaire is the one beside the
+/// scene that is named like its order number, name or section; without a file the luminaire is an
+/// even opening. Approximations and omissions are named in the notes. See docs/scene-format.md.
+Scene read_stf(const std::filesystem::path& path);
 
 }  // namespace lightwell

@@ -47,6 +47,10 @@ void read_honeybee_parts(std::string_view bytes) {
   read_windows(scene);
 }
 
+void read_stf_design(std::string_view bytes) {
+  read_lighting_design(read_scene_file("house.stf", bytes));
+}
+
 // One input is both files, so that names of materials meet: lines behind "#mtl" are the MTL.
 void read_obj_and_mtl(std::string_view bytes) {
   constexpr std::string_view border = "#mtl\n";

@@ -34,6 +34,7 @@ std::span<const Target> targets();
 Scene read_scene_file(const std::string& name, std::string_view bytes);
 void read_epw_year(std::string_view bytes);
 void read_honeybee_parts(std::string_view bytes);
+void read_stf_design(std::string_view bytes);
 void read_wea_year(std::string_view bytes);
 void read_toml_scene(std::string_view bytes);
 void read_obj_and_mtl(std::string_view bytes);

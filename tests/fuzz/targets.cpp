@@ -26,6 +26,7 @@ std::span<const Target> targets() {
        .read = [](std::string_view b) { read_scene_file("scene.pov", b); },
        .sources = "scene/io/pov"},
       {.name = "hbjson", .read = read_honeybee_parts, .sources = "scene/io/honeybee"},
+      {.name = "stf", .read = read_stf_design, .sources = "scene/io/stf"},
       {.name = "rif",
        .read = [](std::string_view b) { read_scene_file("scene.rif", b); },
        .sources = "scene/io/radiance"},

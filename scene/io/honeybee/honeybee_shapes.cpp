@@ -212,20 +212,13 @@ void HoneybeeShapes::account(const JsonObject& object, std::size_t corners) {
             [&](const std::string& sentence) { object.fail_limit(sentence); });
 }
 
-// Adds a polygon whose holes may touch or cross its outline, as doors do that stand on a floor.
 void HoneybeeShapes::add_polygon(const JsonObject& object, HoneybeeKind kind,
                                  const std::string& set, Polygon polygon) {
   std::size_t corners = polygon.boundary.size();
   for (const Loop& hole : polygon.holes) corners += hole.size();
   account(object, corners);
   MeshBuilder mesh;
-  if (polygon.holes.empty()) {
-    add_repaired(mesh, std::move(polygon.boundary), repairs_);
-  } else if (fault(polygon).empty() && deviation_from_plane(polygon) <= flatness) {
-    mesh.add(polygon);
-  } else {
-    add_pieces(mesh, polygon);
-  }
+  add_with_holes(mesh, std::move(polygon), repairs_);
   add_surface(object, kind, set, mesh);
 }
 

@@ -126,8 +126,7 @@ Scene read_toml(const std::filesystem::path& path) {
   return scene;
 }
 
-LightingDesign read_lighting_design(const Scene& scene) {
-  if (lower_extension(scene.file) != ".toml") return {};
+LightingDesign read_toml_lighting(const Scene& scene) {
   const TextFile file(scene.file);
   const toml::table root = parse_toml(file);
   const TomlValue all(file.path(), root, "");
