@@ -1,6 +1,7 @@
 // Furnace test and independence of the number of threads, through the built program.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <string>
@@ -62,6 +63,52 @@ box = { min = [0, 0, 0], max = [300, 400, 250], inward = true }
       ++probes;
     }
     EXPECT_EQ(probes, 4);
+  }
+}
+
+// The walls between two rooms of an STF file lie in one plane, with doors that reach the floor.
+// Each room has the light that it has alone. A ceiling beside a lamp that faces down has reflected
+// light alone, to which the wall of 7.5 m2 among 59 m2 gives a tenth.
+TEST(Rooms, ThatShareAWallHaveTheLightThatEachHasAlone) {
+  TemporaryFolder folder;
+  const auto house = [](int rooms) {
+    return "[PROJECT]\nNrRooms=" + std::to_string(rooms) +
+           "\nRoom1=R1\nRoom2=R2\n"
+           "[R1]\nHeight=2.5\nNrPoints=4\nPoint1=0 0\nPoint2=4 0\nPoint3=4 3\nPoint4=0 3\n"
+           "NrLums=1\nLum1=L\nLum1.Pos=2 1.5 2.5\nNrFurns=1\nFurn1=door\nFurn1.Pos=4 1 0\n"
+           "Furn1.Size=0.9 2.1 0\n"
+           "[R2]\nHeight=3\nNrPoints=4\nPoint1=4 0\nPoint2=8 0\nPoint3=8 3\nPoint4=4 3\n"
+           "NrFurns=1\nFurn1=door\nFurn1.Pos=4 2.2 0\nFurn1.Size=0.9 2.1 0\n"
+           "[L]\nBox=1 1 0\nFlux=3000\n";
+  };
+  folder.write("points.csv", "x,y,z,nx,ny,nz\n3.5,1,2.49,0,0,-1\n1,1,2.49,0,0,-1\n");
+  std::vector<std::vector<double>> lux;
+  for (const int rooms : {1, 2}) {
+    folder.write("house.stf", house(rooms));
+    ASSERT_EQ(
+        run_lightwell(folder / "", {"solve", "house.stf", "-o", "S.vtp", "--accuracy", "1%"}).code,
+        0);
+    ASSERT_EQ(run_lightwell(folder / "", {"probe", "house.stf", "S.vtp", "--points", "points.csv",
+                                          "-o", "E.csv"})
+                  .code,
+              0);
+    std::ifstream in(folder / "E.csv");
+    std::string line;
+    std::getline(in, line);
+    lux.emplace_back();
+    while (std::getline(in, line)) {
+      std::stringstream fields(line);
+      std::string field;
+      constexpr int lux_column = 10;  // behind x,y,z,nx,ny,nz,E_r,E_g,E_b
+      for (int column = 0; column < lux_column; ++column) std::getline(fields, field, ',');
+      lux.back().push_back(std::stod(field));
+    }
+    ASSERT_EQ(lux.back().size(), 2u);
+  }
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_GT(lux[0][i], 10.0);
+    // Two standard errors of the difference of two results with 1 % each.
+    EXPECT_NEAR(lux[1][i] / lux[0][i], 1.0, 2.0 * std::sqrt(2.0) * 0.01);
   }
 }
 
