@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
@@ -15,6 +16,7 @@
 #include "cli/several_processes.h"
 #include "cli/steps.h"
 #include "radiosity/form_factors/form_factor_file.h"
+#include "radiosity/form_factors/heat_solver_files.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -22,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 struct FormFactorArguments {
-  std::string scene, output, method = "auto", view3d, row_output;
+  std::string scene, output, method = "auto", view3d, openfoam, moose, row_output;
   double target_error = 1e-3;
   double max_patch_size = 0.0;  // in the scene file's unit; 0: a row per facet
   int hemicube_resolution = 256;
@@ -33,6 +35,8 @@ struct FormFactorArguments {
   std::string text() const;
   fs::path json_file() const { return fs::path(output).replace_extension(".json"); }
   fs::path row_file() const;
+  /// All files that the command writes, the matrix and its .json last.
+  std::vector<fs::path> outputs() const;
 };
 
 std::string FormFactorArguments::text() const {
@@ -47,6 +51,21 @@ std::string FormFactorArguments::text() const {
 fs::path FormFactorArguments::row_file() const {
   if (!row_output.empty()) return row_output;
   return fs::path(output).replace_extension(fmt::format(".row{}.vtp", show_row));
+}
+
+std::vector<fs::path> FormFactorArguments::outputs() const {
+  std::vector<fs::path> files;
+  if (show_row > 0) files.push_back(row_file());
+  for (const std::string& file : {view3d, moose}) {
+    if (!file.empty()) files.emplace_back(file);
+  }
+  if (!openfoam.empty()) {
+    for (const std::string& name : openfoam_file_names())
+      files.push_back(fs::path(openfoam) / name);
+  }
+  files.emplace_back(output);
+  files.push_back(json_file());
+  return files;
 }
 
 using Computed = FacetViewFactors;
@@ -159,6 +178,18 @@ void write_files(const FormFactorArguments& arguments, const NumberedScene& numb
                  {.version = LIGHTWELL_VERSION, .is_enclosure = numbered.is_enclosure});
     report.add_file(arguments.view3d);
   }
+  if (!arguments.moose.empty()) {
+    write_moose(arguments.moose, F, computed.rows);
+    report.add_file(arguments.moose);
+  }
+  if (!arguments.openfoam.empty()) {
+    // Faces of OpenFOAM's boundaries point out of the fluid, so radiation sees their backs.
+    const int first = arguments.two_sided ? F.row_count() / 2 : 0;
+    write_openfoam(arguments.openfoam, F, computed.rows, first);
+    for (const std::string& name : openfoam_file_names()) {
+      report.add_file((fs::path(arguments.openfoam) / name).string());
+    }
+  }
   if (arguments.show_row > 0) {
     write_row(arguments.row_file(), computed.mesh, computed.rows.of_patch, F,
               arguments.show_row - 1);
@@ -183,10 +214,8 @@ std::string shortfall(const FormFactorArguments& arguments, const Computed& comp
 }
 
 void require_all_writable(const FormFactorArguments& arguments) {
-  if (arguments.show_row > 0) require_writable(arguments.row_file());
-  if (!arguments.view3d.empty()) require_writable(arguments.view3d);
-  require_writable(arguments.output);
-  require_writable(arguments.json_file());
+  for (const fs::path& file : arguments.outputs()) require_writable(file);
+  require_different(arguments.outputs());
 }
 
 int form_factors(const FormFactorArguments& arguments, Console& console) {
@@ -196,7 +225,11 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
   const NumberedScene& numbered = geometry.numbered;
   agree_on({.scene_hash = scene_hash(numbered.scene), .options = arguments.text()}, TimeLimit(0.0),
            console);
-  if (console.is_first()) require_all_writable(arguments);
+  std::optional<OutputFolder> openfoam;
+  if (console.is_first()) {
+    if (!arguments.openfoam.empty()) openfoam.emplace(arguments.openfoam);
+    require_all_writable(arguments);
+  }
   std::vector<std::string> notes = geometry.notes;
   report.add_phase("read_scene", watch.lap());
 
@@ -239,6 +272,20 @@ int form_factors(const FormFactorArguments& arguments, Console& console) {
   return falls_short ? exit_not_accurate : exit_done;
 }
 
+void add_heat_solvers(CLI::App& command, FormFactorArguments& arguments) {
+  command
+      .add_option(
+          "--openfoam", arguments.openfoam,
+          "also the lists of OpenFOAM's model viewFactor in this folder, a face for each row "
+          "(with --two-sided for each back)")
+      ->type_name("FOLDER");
+  command
+      .add_option("--moose", arguments.moose,
+                  "also view factors between surfaces, a MOOSE user object (.i) or a table (.csv)")
+      ->type_name("FILE")
+      ->check(with_extension({".i", ".csv"}));
+}
+
 void add_how(CLI::App& command, FormFactorArguments& arguments) {
   const std::string group = "How form factors are found";
   command
@@ -261,6 +308,8 @@ void add_how(CLI::App& command, FormFactorArguments& arguments) {
       .add_flag("--two-sided", arguments.two_sided,
                 "both sides of facets have rows: row n + i is the back of row i of n")
       ->group(group);
+  command.get_option("--openfoam")->excludes("--max-patch-size");
+  command.get_option("--moose")->excludes("--two-sided");
 }
 
 }  // namespace
@@ -278,6 +327,7 @@ Action add_form_factors(CLI::App& command) {
       ->check(with_extension({".mtx"}));
   command.add_option("--view3d", arguments->view3d, "also the result in View3D's text format")
       ->type_name("FILE");
+  add_heat_solvers(command, *arguments);
   auto* const show_row =
       command
           .add_option("--show-row", arguments->show_row,

@@ -1,6 +1,8 @@
 // Files and errors of 'lightwell form-factors'.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -9,6 +11,8 @@
 #include <random>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/cli/program.h"
 
@@ -297,6 +301,59 @@ TEST_F(FormFactorsCommand, WritesView3dsResultAndAPictureOfARow) {
   EXPECT_EQ(numbers[7], 0.5);
 }
 
+// A closed cube of unit edges in three objects; its fronts face inside, or outside if `turned`.
+std::string closed_cube(bool turned) {
+  std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+  const std::vector<std::pair<const char*, std::vector<std::array<int, 4>>>> objects = {
+      {"floor", {{1, 2, 3, 4}}},
+      {"ceiling", {{8, 7, 6, 5}}},
+      {"walls", {{2, 1, 5, 6}, {3, 2, 6, 7}, {4, 3, 7, 8}, {1, 4, 8, 5}}}};
+  for (const auto& [name, faces] : objects) {
+    text += fmt::format("o {}\n", name);
+    for (const auto& [a, b, c, d] : faces) {
+      text += turned ? fmt::format("f {} {} {} {}\n", d, c, b, a)
+                     : fmt::format("f {} {} {} {}\n", a, b, c, d);
+    }
+  }
+  return text;
+}
+
+TEST_F(FormFactorsCommand, WritesTheListsOfOpenfoam) {
+  folder.write("cube.obj", closed_cube(false));
+  folder.write("boundary.obj", closed_cube(true));
+  const auto json =
+      run_json({"form-factors", "cube.obj", "-o", "F.mtx", "--openfoam", "case/constant"});
+  EXPECT_EQ(json["files"].size(), 8u);
+  EXPECT_TRUE(
+      says(content_of(folder / "case/constant/finalAgglom"), "3\n(\n1(0)\n1(0)\n4(0 1 2 3)\n)"));
+  EXPECT_TRUE(says(content_of(folder / "case/constant/globalFaceFaces"),
+                   "6\n(\n5(1 2 3 4 5)\n5(0 2 3 4 5)\n"));
+  // Boundaries of OpenFOAM face out of the fluid: the fluid sees their backs, as the cube's fronts.
+  run_json({"form-factors", "boundary.obj", "--two-sided", "-o", "F.mtx", "--openfoam", "backs"});
+  for (const char* list : {"F", "globalFaceFaces", "finalAgglom", "constructMapDim"}) {
+    EXPECT_EQ(content_of(folder / "backs" / list), content_of(folder / "case/constant" / list));
+  }
+}
+
+TEST_F(FormFactorsCommand, WritesSurfacesForMoose) {
+  folder.write("cube.obj", closed_cube(false));
+  run_json({"form-factors", "cube.obj", "-o", "F.mtx", "--moose", "cube.csv"});
+  std::istringstream in(content_of(folder / "cube.csv"));
+  std::string heading, floor;
+  std::getline(in, heading);
+  EXPECT_EQ(heading, "boundary,area,floor,ceiling,walls");
+  char comma = ' ';
+  double area = 0.0, to_floor = -1.0, to_ceiling = 0.0, to_walls = 0.0;
+  std::getline(in, floor, ',');
+  in >> area >> comma >> to_floor >> comma >> to_ceiling >> comma >> to_walls;
+  EXPECT_EQ(floor, "floor");
+  EXPECT_EQ(area, 1.0);
+  EXPECT_EQ(to_floor, 0.0);
+  // The same squares as those of `plates`. Factors are floats, of which four make up the walls.
+  EXPECT_NEAR(to_ceiling, plates_F, 0x1p-24);
+  EXPECT_NEAR(to_walls, 1.0 - plates_F, 5 * 0x1p-24);
+}
+
 TEST_F(FormFactorsCommand, SaysForPeopleWhatWasFound) {
   folder.write("plates.vs3", plates);
   const Ended ended = run({"form-factors", "plates.vs3", "-o", "F.mtx"});
@@ -360,6 +417,14 @@ TEST_F(FormFactorsCommand, MistakesHaveTheirExitCodesAndLeaveNothing) {
       {{"flat.vs3", "-o", "F.mtx"}, 3, "three-dimensional"},
       {{"plates.vs3", "-o", "no-folder/F.mtx"}, 1, "no-folder"},
       {{"plates.vs3", "-o", "F.mtx", "--view3d", "no-folder/F.txt"}, 1, "no-folder"},
+      {{"plates.vs3", "-o", "F.mtx", "--moose", "F.txt"}, 2, "must end in .i or .csv"},
+      {{"plates.vs3", "-o", "F.mtx", "--moose", "no-folder/F.i"}, 1, "no-folder"},
+      {{"plates.vs3", "-o", "F.mtx", "--moose", "F.i", "--two-sided"}, 2, "excludes --two-sided"},
+      {{"plates.vs3", "-o", "F.mtx", "--openfoam", "case", "--max-patch-size", "1"},
+       2,
+       "excludes --max-patch-size"},
+      {{"plates.vs3", "-o", "F.mtx", "--openfoam", "plates.vs3"}, 1, "plates.vs3"},
+      {{"plates.vs3", "-o", "F.mtx", "--view3d", "F.i", "--moose", "F.i"}, 1, "F.i"},
   };
   for (const Mistake& mistake : mistakes) {
     const Ended ended = run(Words{"form-factors"} + mistake.arguments);

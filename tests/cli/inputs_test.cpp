@@ -38,6 +38,12 @@ class Inputs : public CommandTest {
 
 TEST_F(Inputs, AreNeverReplaced) {
   expect_kept("cube.obj", {"form-factors", "cube.obj", "-o", "F.mtx", "--view3d", "cube.obj"});
+  folder.write("grey.csv", "wavelength_nm,grey\n400,0.5\n700,0.5\n");
+  folder.write("grey.toml",
+               "[bands]\nkind = 'spectral'\ncount = 1\n"
+               "[materials.grey]\nreflectance = { file = 'grey.csv' }\n"
+               "[[surfaces]]\nmaterial = 'grey'\npolygon = [[0,0,0],[1,0,0],[0,1,0]]\n");
+  expect_kept("grey.csv", {"form-factors", "grey.toml", "-o", "F.mtx", "--moose", "grey.csv"});
   expect_kept("points.csv",
               {"probe", "room.toml", "room.vtp", "--points", "points.csv", "-o", "points.csv"});
   expect_kept("cube.obj", {"export", "cube.vtp", "--scene", "cube.obj", "-o", "cube.obj"});
