@@ -43,7 +43,8 @@ class StfOpenings {
   const std::vector<PlacedOpening>& in_wall(std::size_t wall) const { return walls_[wall]; }
   const std::vector<PlacedOpening>& in_ceiling() const { return ceiling_; }
 
-  static constexpr std::size_t most = 1000;  ///< openings of a room
+  static constexpr std::size_t most = 1000;              ///< openings of a room
+  static constexpr std::size_t most_pairs = 10'000'000;  ///< openings times walls: some seconds
 
  private:
   /// A rectangle on a wall: along it from its first corner, and above the floor, m.

@@ -172,10 +172,11 @@ void set_levels(const StfSection& project, std::vector<StfPlan>& plans, Remarks&
     Footprint footprint;
     for (const Eigen::Vector2d& p : plan.corners) footprint.box.extend(p);
     for (std::size_t i = 0; i < footprints.size(); ++i) {
-      const Footprint& below = footprints[i];
+      Footprint& below = footprints[i];
       ++pairs;
       if (footprint.box.intersection(below.box).isEmpty()) continue;
       if (footprint.triangles.empty()) footprint.triangles = triangles(plan);
+      if (below.triangles.empty()) below.triangles = triangles(plans[i]);
       pairs += static_cast<std::int64_t>(footprint.triangles.size() * below.triangles.size());
       if (pairs > most_pairs) {
         project.fail_limit(
@@ -187,7 +188,6 @@ void set_levels(const StfSection& project, std::vector<StfPlan>& plans, Remarks&
         plan.level = std::max(plan.level, plans[i].level + plans[i].height);
       }
     }
-    if (footprint.triangles.empty()) footprint.triangles = triangles(plan);
     if (plan.level > 0.0) {
       remarks.mention("Rooms that lie over an earlier one in plan were set onto it", plan.name);
     }

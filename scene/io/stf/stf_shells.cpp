@@ -34,7 +34,7 @@ std::string place_of(const StfSection& room, const std::string& key) {
 
 void StfShells::add(StfSection& room, const StfPlan& plan) {
   StfOpenings openings(plan, remarks_);
-  const std::vector<std::string> boxes = read_openings(room, openings);
+  const std::vector<std::string> boxes = read_openings(room, plan, openings);
   add_surface(plan.name + " floor", diffuse("floor", plan.floor), {plan.outline(0.0)});
   add_ceiling(plan, openings);
   add_walls(plan, openings);
@@ -49,7 +49,8 @@ void StfShells::add(StfSection& room, const StfPlan& plan) {
 }
 
 // Adds windows, doors and skylights; returns the keys of the other furniture.
-std::vector<std::string> StfShells::read_openings(StfSection& room, StfOpenings& openings) {
+std::vector<std::string> StfShells::read_openings(StfSection& room, const StfPlan& plan,
+                                                  StfOpenings& openings) {
   std::vector<std::string> others;
   std::size_t found = 0;
   const std::size_t count = room.counted("Furn", "NrFurns");
@@ -60,9 +61,11 @@ std::vector<std::string> StfShells::read_openings(StfSection& room, StfOpenings&
       others.push_back(key);
       continue;
     }
-    if (++found > StfOpenings::most) {
-      room.fail_limit(
-          fmt::format("has more than {} windows and doors; divide the room", StfOpenings::most));
+    ++found;
+    if (found > StfOpenings::most || found * plan.corners.size() > StfOpenings::most_pairs) {
+      room.fail_limit(fmt::format(
+          "has {} or more windows and doors for its {} walls, which would take minutes; divide it",
+          found, plan.corners.size()));
     }
     remarks_.attempt("Openings that cannot be used were left out", place_of(room, key), [&] {
       const std::vector<double> position = room.numbers(key + ".Pos", 2);

@@ -25,14 +25,15 @@ class StfShells {
       : file_(file), scene_(scene), remarks_(remarks) {}
 
   /// Adds the surfaces of a room, the floor first. Parts that cannot be used are left out, with a
-  /// remark. Throws LimitError for more than StfOpenings::most openings.
+  /// remark. Throws LimitError for more openings than StfOpenings takes.
   void add(StfSection& room, const StfPlan& plan);
   /// Remarks on keys of furniture that were not read.
   void remark_unread();
   const Repairs& repairs() const { return repairs_; }
 
  private:
-  std::vector<std::string> read_openings(StfSection& room, StfOpenings& openings);
+  std::vector<std::string> read_openings(StfSection& room, const StfPlan& plan,
+                                         StfOpenings& openings);
   void add_ceiling(const StfPlan& plan, const StfOpenings& openings);
   void add_walls(const StfPlan& plan, const StfOpenings& openings);
   void add_openings(const StfPlan& plan, const std::vector<PlacedOpening>& placed, double wall);

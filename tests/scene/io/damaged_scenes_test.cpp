@@ -110,6 +110,20 @@ TEST(DamagedScenes, OfFbxAreReadOrRefused) {
   expect_answers(where, "damaged.fbx", square_fbx(), 100);
 }
 
+TEST(DamagedScenes, OfStfAreReadOrRefused) {
+  const TemporaryFolder where;
+  expect_answers(where, "damaged.stf",
+                 "[PROJECT]\nName=House\nNrRooms=2\nRoom1=ROOM.R1\nRoom2=ROOM.R2\n"
+                 "[ROOM.R1]\nName=Office\nHeight=2.5\nWorkingPlane=0.8\nNrPoints=4\nPoint1=0 0\n"
+                 "Point2=4 0\nPoint3=4 3\nPoint4=0 3\nR_Ceiling=0.7\nR_Wall1=0.5\nNrLums=1\n"
+                 "Lum1=LUM.A\nLum1.Pos=1 1 2.5\nLum1.Rot=0 0 90\nNrFurns=3\nFurn1=win\n"
+                 "Furn1.Pos=2 3 1\nFurn1.Size=2 1 0\nFurn2=skylight\nFurn2.Pos=1 1 0\n"
+                 "Furn2.Size=0.5 0.5 0\nFurn3=desk\nFurn3.Pos=1 1 0\nFurn3.Size=1.6 0.8 0.7\n"
+                 "[ROOM.R2]\nHeight=2\nNrPoints=3\nPoint1=1 1\nPoint2=6 1\nPoint3=1 6\n"
+                 "[LUM.A]\nBox=1 1 0\nFlux=3000\n",
+                 400);
+}
+
 TEST(DamagedScenes, OfBinaryGltfAreReadOrRefused) {
   const TemporaryFolder where;
   const std::string png = content_of(folder / "two-pixels.png");
