@@ -3,16 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
+
+#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace {
-
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
 
 std::size_t edit_distance(const std::string& a, const std::string& b) {
   std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
@@ -42,7 +37,7 @@ std::string did_you_mean(std::string_view given, const std::vector<std::string>&
   const std::string* nearest = nullptr;
   for (const std::string& name : known) {
     if (name.size() > longest) continue;
-    const std::size_t distance = edit_distance(lower(given), lower(name));
+    const std::size_t distance = edit_distance(lower_case(given), lower_case(name));
     if (distance < best && distance < std::max(given.size(), name.size())) {
       best = distance;
       nearest = &name;

@@ -129,10 +129,14 @@ void TextFile::fail(int line, std::string_view problem) const {
   throw InputError(fmt::format("{}:{}: {}", path_.string(), line, problem));
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return result;
+}
+
 std::string lower_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension;
+  return lower_case(path.extension().string());
 }
 
 std::string_view trimmed(std::string_view text) {

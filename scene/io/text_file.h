@@ -69,6 +69,9 @@ class FilesRead {
   std::int64_t bytes_ = 0;
 };
 
+/// `text` with its capitals A to Z in lower case.
+std::string lower_case(std::string_view text);
+
 /// The extension in lower case: ".obj".
 std::string lower_extension(const std::filesystem::path& path);
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 
 #include "scene/utf8.h"
@@ -11,16 +10,10 @@
 namespace lightwell {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return result;
-}
-
 // Names of sections without blanks: some programs write them with blanks in one place and without
 // in another.
 std::string section_key(std::string_view name) {
-  std::string key = lower(name);
+  std::string key = lower_case(name);
   std::erase(key, ' ');
   return key;
 }
@@ -45,17 +38,17 @@ void require_text(const TextFile& file) {
 
 void StfSection::add(std::string_view key, std::string_view value, int line) {
   const Entry entry{.key = std::string(key), .value = std::string(value), .line = line};
-  if (entries_.emplace(lower(key), entry).second) return;
+  if (entries_.emplace(lower_case(key), entry).second) return;
   remarks_->add("Keys that repeat an earlier one were left out",
                 fmt::format("[{}] {}", name_, key));
 }
 
 bool StfSection::has(std::string_view key) const {
-  return entries_.contains(lower(key));
+  return entries_.contains(lower_case(key));
 }
 
 std::string StfSection::text(std::string_view key) {
-  const auto found = entries_.find(lower(key));
+  const auto found = entries_.find(lower_case(key));
   if (found == entries_.end()) return {};
   found->second.is_read = true;
   return found->second.value;
@@ -141,7 +134,7 @@ void StfSection::remark_unread(const std::set<std::string_view>& known) const {
 }
 
 void StfSection::fail(std::string_view key, std::string_view problem) const {
-  const auto found = entries_.find(lower(key));
+  const auto found = entries_.find(lower_case(key));
   file_->fail(found == entries_.end() ? line_ : found->second.line,
               fmt::format("{} of [{}] {}", key, name_, problem));
 }

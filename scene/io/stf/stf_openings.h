@@ -29,8 +29,8 @@ struct PlacedOpening {
   Loop outline{};
 };
 
-/// Places the openings of a room. A window or door lies in the wall that is nearest to it, as
-/// DIALux reads it, whatever its rotation.
+/// Places the openings of a room. A window or door lies in the wall that is nearest to it, whatever
+/// its rotation.
 class StfOpenings {
  public:
   /// Keeps references.

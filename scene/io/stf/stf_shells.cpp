@@ -4,7 +4,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cctype>
 #include <utility>
 
 #include "scene/io/default_material.h"
@@ -18,8 +17,8 @@ using StfKind = StfOpening::Kind;
 
 constexpr double usual_reflectance = 0.5;  // of furniture, that of default_material()
 
-std::optional<StfKind> opening_kind(std::string name) {
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+std::optional<StfKind> opening_kind(const std::string& given) {
+  const std::string name = lower_case(given);
   if (name == "win") return StfKind::window;
   if (name == "door") return StfKind::door;
   if (name == "skylight") return StfKind::skylight;
