@@ -484,7 +484,7 @@ TEST_F(DaylightCommand, HoldsRoomsToRatings) {
   }
 }
 
-// Of 10 hours a day two are lit in June and one in December; lamps that daylight does not dim take
+// Two of 10 hours a day are lit in June and one in December; lamps that daylight does not dim take
 //
 //     100 W * 3650 h / (1000 * 16 m^2) = 22.8125 kWh/m^2
 //

@@ -40,7 +40,7 @@ constexpr double rounding = 16.0 / (1LL << 53);
 
 }  // namespace
 
-// For 500 lx the sensors lack 0.8, 0, 0 and 1, 0.4, 0 of it in the occupied hours.
+// The sensors lack 0.8, 0, 0 and 1, 0.4, 0 of 500 lx in the occupied hours.
 TEST(LampUse, DimmedLampsGiveWhatDaylightLacks) {
   const FourHours day;
   const RoomLighting dimmed{.lux = 500.0, .control = LampControl::dimmed};
@@ -50,7 +50,8 @@ TEST(LampUse, DimmedLampsGiveWhatDaylightLacks) {
   EXPECT_NEAR(dependency(standby, day.block()), 0.1 + 0.9 * 2.2 / 6.0, rounding);
 }
 
-// Of two steps, 0.8 and 1 take both and 0.4 takes one; off and on know the full power alone.
+// Lacks of 0.8 and 1 take two steps of two, and 0.4 takes one; off and on know the full power
+// alone.
 TEST(LampUse, StepsAndSwitchesTakeMore) {
   const FourHours day;
   EXPECT_NEAR(dependency({.lux = 500.0, .control = LampControl::stepped, .steps = 2}, day.block()),

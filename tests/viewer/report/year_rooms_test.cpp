@@ -94,7 +94,7 @@ TEST(YearRooms, PointsAreOpenWhereAnEndOfTheBoundGivesNone) {
   EXPECT_EQ(rate_year(report).at(0).daylight.points.most, 0);
 }
 
-// Of six sensors the hall has four, 67 %, which is less than the 75 % of its area.
+// The hall has four of six sensors, 67 %, which is less than the 75 % of its area.
 TEST(YearRooms, CountByTheirSensorsWithoutAnArea) {
   YearReport report = hall_and_cell();
   EXPECT_EQ(rate_year(report).at(0).daylight.points.value, 1);
