@@ -17,9 +17,8 @@ std::vector<std::string> openfoam_file_names();
 /// matrix; factors to rows before `first` are left out.
 ///   - F: the factors above 0 of each face, 9 significant digits; globalFaceFaces: the faces that
 ///     each of the factors belongs to.
-///   - finalAgglom: for each run of rows of one surface, which is a patch, the faces 0, 1, 2 ...:
-///   no
-///     faces are agglomerated.
+///   - finalAgglom: for each run of rows of one surface, which is a patch, the faces 0, 1, 2 ...;
+///     no faces are agglomerated.
 ///   - subMap, constructMap, constructMapDim: the map of one processor, whose faces stay in place.
 /// Throws std::runtime_error naming the file and the system's reason if writing fails.
 void write_openfoam(const std::filesystem::path& folder, const ViewFactors& view_factors,

@@ -18,9 +18,9 @@
 namespace lightwell {
 
 /// The gather point of a vertex, a little way from `vertex` towards the `center` of an element.
-/// Where another surface is above the point, and nearer than 0.3 of the whole way, the point is
-/// moved further inside, to as far from the vertex as the gap is wide: light falls off steeply
-/// where a gap begins, and light at its brink would be interpolated far inside.
+/// The point is moved further inside, to as far from the vertex as a gap is wide, if another
+/// surface is above the point, nearer than 0.3 of the whole way: light falls off steeply where a
+/// gap begins, and light at its brink would be interpolated far inside.
 GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex,
                            const Eigen::Vector3d& center, const GatherPoint& point);
 

@@ -505,6 +505,7 @@ TEST_F(DaylightCommand, FindsTheEnergyThatDaylightSaves) {
   // Each of five operations rounds at 2^-53 of 22.8.
   constexpr double rounding = 5 * 22.8 / (1LL << 53);
   EXPECT_NEAR(off["LENI_kWh_per_m2"]["value"].get<double>(), 22.8125 * 3647.0 / 3650.0, rounding);
+  // A difference of two such figures.
   EXPECT_NEAR(off["saved_kWh_per_m2"]["value"].get<double>(), 22.8125 * 3.0 / 3650.0,
               2.0 * rounding);
   EXPECT_NE(text_of("rooms.csv").find("LENI_kWh_per_m2"), std::string::npos);

@@ -35,8 +35,10 @@ double dependency(const RoomLighting& lighting, const HourBlock& light,
   return use.daylight_dependency();
 }
 
-// Sums of at most six terms of the size of 1, whose quotients round at 2^-53 each.
-constexpr double rounding = 16.0 / (1LL << 53);
+// In units of 2^-53: the mean of six terms rounds by 2, four operations of half a unit each; sums
+// of an hour's sensors by half a unit, and of the hours and their quotient by 2.5; the expected
+// value by 3, in six additions or fewer and a quotient.
+constexpr double rounding = 8.0 / (1LL << 53);
 
 }  // namespace
 
