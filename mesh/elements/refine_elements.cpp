@@ -67,8 +67,7 @@ void copy_patches(const PatchMesh& base, const std::vector<int>& first, PatchMes
 
 }  // namespace
 
-RefinedElements::RefinedElements(const PatchMesh& base)
-    : base_(&base), least_inset_(least_inset(base)) {
+RefinedElements::RefinedElements(const PatchMesh& base) : base_(&base) {
   vertices_.resize(base_->vertex_count());
   const std::vector<int> elements = vertex_elements(*base_);
   for (int v = 0; v < base_->vertex_count(); ++v) {
@@ -249,8 +248,8 @@ std::array<int, 4> RefinedElements::ends(int vertex) const {
 PatchPoint RefinedElements::inside(int vertex, double share) const {
   const Vertex& v = vertices_[vertex];
   const PatchPoint center = element_center(*base_, v.element);
-  const Vector3d near = v.position + inset_share(*base_, v.element, share, least_inset_) *
-                                         (center.position - v.position);
+  const Vector3d near =
+      v.position + inset_share(*base_, v.element, share) * (center.position - v.position);
   if (const RoundGrid* grid = round_grid_of(*base_, base_->facet[v.element])) {
     // A sphere has no rim at which something else could stand.
     const bool has_rim = !std::holds_alternative<Sphere>(grid->shape);

@@ -153,7 +153,6 @@ class RefinedElements {
   std::array<int, 4> piece_vertices(int cell, int side, const std::array<int, 4>& piece);
 
   const PatchMesh* base_;
-  double least_inset_;
   std::vector<Vertex> vertices_;
   // Per base vertex, the lowest vertex of its reflex corner, or the vertex itself.
   std::vector<int> reflex_;

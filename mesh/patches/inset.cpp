@@ -1,21 +1,19 @@
 #include "mesh/patches/inset.h"
 
 #include <algorithm>
-#include <limits>
 
-#include "mesh/patches/mesh_bounds.h"
+#include "scene/rays/float_rounding.h"
 
 namespace lightwell {
 
-double least_inset(const PatchMesh& mesh) {
-  if (mesh.vertex_count() == 0) return 0.0;
+double least_inset(double diagonal) {
   // Rays begin up to 4 roundings off their facet (EmbreeScene). A point 16 off a contact line is as
   // high below a surface that crosses at 14.5 degrees, whose sine is 1 / 4.
   constexpr double roundings = 16.0;
-  return roundings * std::numeric_limits<float>::epsilon() * 0.5 * mesh_bounds(mesh).diagonal();
+  return roundings * float_rounding(diagonal);
 }
 
-double inset_share(const PatchMesh& mesh, int element, double share, double least) {
+double inset_share(const PatchMesh& mesh, int element, double share) {
   const auto& corners = mesh.corners[static_cast<std::size_t>(element)];
   const int n = mesh.corner_count(element);
   double longest = 0.0;
@@ -25,9 +23,12 @@ double inset_share(const PatchMesh& mesh, int element, double share, double leas
     longest = std::max(longest, (mesh.position(to) - mesh.position(from)).norm());
   }
   // The centre of a rectangle is so far off the longer sides, and that of a triangle a third more.
-  const double off_border = 0.5 * mesh.element_area[element] / longest;
+  return inset_share(mesh, 0.5 * mesh.element_area[element] / longest, share);
+}
+
+double inset_share(const PatchMesh& mesh, double off_border, double share) {
   constexpr double most = 0.5;
-  return std::max(share, std::min(most, least / off_border));
+  return std::max(share, std::min(most, mesh.least_inset / off_border));
 }
 
 }  // namespace lightwell

@@ -4,13 +4,16 @@
 
 namespace lightwell {
 
-/// Distance from the border of an element, metres, below which rays do not tell its two sides: 16
-/// times the rounding of coordinates in single precision, of half the mesh's diagonal.
-double least_inset(const PatchMesh& mesh);
+/// PatchMesh::least_inset of a mesh with vertices in a box of the given diagonal, metres: 16 times
+/// the rounding of coordinates in single precision.
+double least_inset(double diagonal);
 
-/// Share of the way from a corner or an edge of an element to its centre, at which light is
-/// gathered for that place: `share`, or the share at which the point is `least` metres off all
+/// Share of the way from a corner or an edge of an element to its centre, at which a point stands
+/// for that place: `share`, or the share at which the point is PatchMesh::least_inset off all
 /// borders, as far as half of the way allows.
-double inset_share(const PatchMesh& mesh, int element, double share, double least);
+double inset_share(const PatchMesh& mesh, int element, double share);
+
+/// The same for a patch whose centre is `off_border` metres off the nearest border.
+double inset_share(const PatchMesh& mesh, double off_border, double share);
 
 }  // namespace lightwell

@@ -1,3 +1,4 @@
+#include <Eigen/Geometry>
 #include <OpenMesh/Core/System/omstream.hh>
 #include <algorithm>
 #include <array>
@@ -5,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "mesh/patches/inset.h"
 #include "mesh/patches/parted_topology.h"
 #include "mesh/patches/patch_mesh.h"
 #include "mesh/patches/round_grid.h"
@@ -88,7 +90,12 @@ void begin_topology(PatchMesh& mesh, const std::vector<Vector3d>& positions) {
   // every hole.
   const std::size_t count = positions.size() + mesh.corners.size();
   mesh.elements->reserve(positions.size(), count + count / 16, mesh.corners.size());
-  for (const Vector3d& p : positions) mesh.elements->add_vertex({p.x(), p.y(), p.z()});
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : positions) {
+    mesh.elements->add_vertex({p.x(), p.y(), p.z()});
+    box.extend(p);
+  }
+  mesh.least_inset = box.isEmpty() ? 0.0 : least_inset(box.diagonal().norm());
 }
 
 // Adds an element, whose vertices exist; false if it does not fit its neighbours.

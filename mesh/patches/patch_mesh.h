@@ -111,6 +111,9 @@ struct PatchMesh {
   /// sources x bands. Empty: all 1.
   BandArray source_scale{};
 
+  /// Distance from the border of an element, metres, below which rays do not tell its two sides.
+  double least_inset = 0.0;
+
   std::vector<RoundGrid> round_grids{};
   /// The textures of the scene; rays pass through their holes. Null: nothing varies over facets.
   std::shared_ptr<const FacetTextures> textures{};

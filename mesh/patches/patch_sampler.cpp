@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "mesh/patches/inset.h"
 #include "mesh/patches/round_grid.h"
 #include "scene/facet_textures.h"
 #include "scene/sampling.h"
@@ -14,10 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Share of the element or grid by which samples stay inside. A point nearer to a contact line than
-// single precision resolves may lie, for a ray, on the other side of what stands there, and would
-// carry light through.
-constexpr double inset = 1e-4;
+// Least share of the element or grid by which samples stay inside. A point nearer to a contact line
+// than single precision resolves may lie, for a ray, on the other side of what stands there, and
+// would carry light through.
+constexpr double least_share = 1e-4;
 
 }  // namespace
 
@@ -40,6 +41,9 @@ PatchSampler::PatchSampler(const PatchMesh& mesh, int patch)
     return;
   }
   const Vector3d along_row = grid_->columns * grid_->step, across = grid_->rows * grid_->rise;
+  const double off_border =
+      0.5 * along_row.cross(across).norm() / std::max(along_row.norm(), across.norm());
+  const double inset = inset_share(mesh, off_border, least_share);
   corner_ = grid_->origin + 0.5 * inset * (along_row + across);
   along_row_ = (1.0 - inset) * along_row;
   across_ = (1.0 - inset) * across;
@@ -63,6 +67,7 @@ void PatchSampler::add_parts(int first_element, int end_element) {
       continue;
     }
     const auto [element, mean, normal] = element_center(mesh_, e);
+    const double inset = inset_share(mesh_, e, least_share);
     std::array<Vector3d, 4> corner;
     for (int i = 0; i < mesh_.corner_count(e); ++i) {
       const Vector3d at = mesh_.position(mesh_.corners[e][i]);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "mesh/patches/inset.h"
 #include "mesh/patches/round_grid.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -71,8 +72,8 @@ PatchPoint point_on_polygon(const PatchMesh& mesh, int patch) {
     if (!contains(mesh, e, eye_point.normal, middle)) continue;
     // Slightly inside the element, as in PatchSampler: the centroid of an L may be its inner
     // corner, where another surface may stand.
-    constexpr double inset = 1e-4;
-    eye_point.position = middle + inset * (eye_point.position - middle);
+    constexpr double least_share = 1e-4;
+    eye_point.position = middle + inset_share(mesh, e, least_share) * (eye_point.position - middle);
     return eye_point;
   }
   return center_nearest_to(mesh, patch, middle);

@@ -248,7 +248,7 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 }
 
 VertexGatherPoints::VertexGatherPoints(const PatchMesh& mesh)
-    : mesh_(mesh), element_(vertex_elements(mesh)), least_inset_(least_inset(mesh)) {}
+    : mesh_(mesh), element_(vertex_elements(mesh)) {}
 
 GatherPoint VertexGatherPoints::operator[](int vertex) const {
   // Share of the way to the element's centre: far enough for the float rounding of a room-sized
@@ -258,8 +258,7 @@ GatherPoint VertexGatherPoints::operator[](int vertex) const {
   if (e < 0) return {};
   const PatchPoint center = element_center(mesh_, e);
   const Eigen::Vector3d p = mesh_.position(vertex),
-                        inwards =
-                            inset_share(mesh_, e, share, least_inset_) * (center.position - p);
+                        inwards = inset_share(mesh_, e, share) * (center.position - p);
   // The element of a round shape is a chord of it, so the point is moved to the surface.
   if (const RoundGrid* grid = round_grid_of(mesh_, mesh_.facet[e])) {
     const Eigen::Vector3d at = nearest_on(grid->shape, p + inwards);

@@ -139,7 +139,6 @@ class VertexGatherPoints {
  private:
   const PatchMesh& mesh_;
   std::vector<int> element_;  // vertex_elements()
-  double least_inset_;
 };
 
 }  // namespace lightwell

@@ -5,11 +5,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <new>
 #include <stdexcept>
 
 #include "scene/parallel.h"
+#include "scene/rays/float_rounding.h"
 #include "scene/round_shape.h"
 
 namespace lightwell {
@@ -53,9 +53,7 @@ EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
   for (const RoundShape& shape : geometry.round_shapes) box.extend(bounds(shape));
   if (!box.isEmpty()) center = box.center();
   constexpr double roundings = 4.0;  // of the origin, the vertices and the intersection
-  if (!box.isEmpty()) {
-    rounding = roundings * 0.5 * box.diagonal().norm() * std::numeric_limits<float>::epsilon();
-  }
+  if (!box.isEmpty()) rounding = roundings * float_rounding(box.diagonal().norm());
 
   planes = std::make_unique<CoplanarGroups>(geometry, rounding);
 
