@@ -1,7 +1,6 @@
 #include "mesh/patches/patch_sampler.h"
 
 #include <Eigen/Geometry>
-#include <array>
 #include <bit>
 #include <cmath>
 
@@ -68,18 +67,19 @@ void PatchSampler::add_parts(int first_element, int end_element) {
     }
     const auto [element, mean, normal] = element_center(mesh_, e);
     const double inset = inset_share(mesh_, e, least_share);
-    std::array<Vector3d, 4> corner;
-    for (int i = 0; i < mesh_.corner_count(e); ++i) {
-      const Vector3d at = mesh_.position(mesh_.corners[e][i]);
-      corner[i] = at + inset * (mean - at);
-    }
+    // Shrunk edges, not edges between shrunk corners: rounding would leave needles without area.
+    const Vector3d first = mesh_.position(mesh_.corners[e][0]);
+    const auto edge_to = [&](int i) -> Vector3d {
+      return (1.0 - inset) * (mesh_.position(mesh_.corners[e][i]) - first);
+    };
     for (int i = 2; i < mesh_.corner_count(e); ++i) {
-      area_ += 0.5 * (corner[i - 1] - corner[0]).cross(corner[i] - corner[0]).norm();
+      const Vector3d first_edge = edge_to(i - 1), second_edge = edge_to(i);
+      area_ += 0.5 * first_edge.cross(second_edge).norm();
       parts_.push_back({.element = e,
                         .area_up_to = area_,
-                        .corner = corner[0],
-                        .first_edge = corner[i - 1] - corner[0],
-                        .second_edge = corner[i] - corner[0],
+                        .corner = first + inset * (mean - first),
+                        .first_edge = first_edge,
+                        .second_edge = second_edge,
                         .normal = is_flat_ ? normal_ : normal});
     }
   }
