@@ -8,6 +8,7 @@
 
 #include "mesh/patches/round_grid.h"
 #include "mesh/patches/translucency.h"
+#include "radiosity/gather/gap_sizes.h"
 #include "radiosity/refine/error_reference.h"
 #include "scene/parallel.h"
 
@@ -15,7 +16,8 @@ namespace lightwell {
 namespace {
 
 constexpr int point_count = 4;
-constexpr double widest_covered = 0.15;  // width of a gap as a share of a patch, as for GapLight
+constexpr double widest_covered =
+    0.15;  // width of a gap as a share of gap_sizes(), as for GapLight
 constexpr int gap_rays = 64;
 constexpr std::uint64_t gap_replica = 4000;
 
@@ -67,10 +69,9 @@ int dark_corners(const PatchMesh& mesh, const BandArray& irradiance, int element
 }
 
 // True if another surface is near above a point of the element.
-bool lies_in_gap(const ElementCaster& caster, int element) {
+bool lies_in_gap(const ElementCaster& caster, int element, double size) {
   const PatchMesh& mesh = caster.mesh();
   constexpr double narrowest = 1e-4;  // nearer surfaces lie on each other
-  const double size = std::sqrt(mesh.area[mesh.patch[element]]);
   const Eigen::Vector3d normal = element_center(mesh, element).normal;
   std::array<Ray, point_count> rays;
   std::array<ElementHit, point_count> hits;
@@ -88,12 +89,14 @@ bool lies_in_gap(const ElementCaster& caster, int element) {
 // The reflecting elements that lie in gaps; round shapes are left out.
 std::vector<int> elements_in_gaps(const ElementCaster& caster) {
   const PatchMesh& mesh = caster.mesh();
+  const std::vector<float> sizes = gap_sizes(mesh);
   std::vector<char> is_in_gap(static_cast<std::size_t>(mesh.element_count()), 0);
   parallel_for(mesh.element_count(), 1024, [&](int begin, int end) {
     for (int e = begin; e < end; ++e) {
       const bool reflects = scatters(mesh, mesh.patch[e]);
       if (!reflects || round_grid_of(mesh, mesh.facet[e])) continue;
-      is_in_gap[static_cast<std::size_t>(e)] = lies_in_gap(caster, e) ? 1 : 0;
+      is_in_gap[static_cast<std::size_t>(e)] =
+          lies_in_gap(caster, e, double{sizes[static_cast<std::size_t>(e)]}) ? 1 : 0;
     }
   });
   std::vector<int> found;

@@ -11,7 +11,7 @@ namespace lightwell {
 inline constexpr int most_gap_elements = 2048;
 
 /// Raises RadiositySolution::interpolation_error of the elements that lie in narrow gaps, at least
-/// in part: under another surface at less than 0.15 of the size of their patch. Light in a gap
+/// in part: under another surface at less than 0.15 of their gap_sizes(). Light in a gap
 /// falls off within about the gap's width, which the vertices of larger elements do not sample.
 /// Inside these elements irradiance is gathered at four points, and the RMS difference from the
 /// interpolated one becomes the element's error where it is greater. An element with a dark corner

@@ -13,18 +13,21 @@
 namespace lightwell {
 namespace {
 
-// Greatest width of a gap as a share of the size of a patch. (Elements that were refined in a gap
+// Greatest width of a gap as a share of gap_sizes(). (Elements that were refined in a gap
 // are small, and still larger than the width over which light falls off.)
 constexpr double widest_gap = 0.15;
 // Greatest cosine between the normals of surfaces that face each other.
 constexpr double facing = -0.5;
 // A path that is still in the gap after so many bounces reads the mesh. Of surfaces that reflect 90
-// % one path in 10^12 is.
-constexpr int most_bounces = 256;
+// % one path in a thousand is, and of white ones, between which light is alike everywhere, many.
+constexpr int most_bounces = 64;
+// Bounces from which on direct light is computed at one surface of so many: hardly any of it comes
+// so far into a gap.
+constexpr int deep = 4, surfaces_for_one = 4;
 // Number of the key of rays near a portal.
 constexpr std::uint64_t near_portal = 16;
-// Size of the largest gaps, in patches.
-constexpr double patches_wide = 8.0;
+// Size of the largest gaps, in gap_sizes().
+constexpr double sizes_wide = 8.0;
 // Narrower gaps are contacts: which of two surfaces in one plane a ray meets is a matter of
 // rounding.
 constexpr double narrowest_gap = 1e-4;
@@ -86,9 +89,7 @@ Eigen::Vector3d GapLight::normal_towards(const Ray& ray, const ElementHit& hit) 
 
 bool GapLight::is_gap(const Eigen::Vector3d& normal, const Ray& ray, const ElementHit& hit) const {
   if (hit.element < 0) return false;
-  const PatchMesh& mesh = lit_.mesh();
-  const int patch = mesh.patch[hit.element];
-  const double size = std::sqrt(mesh.area[patch]);
+  const auto size = static_cast<double>(sizes_[static_cast<std::size_t>(hit.element)]);
   // Surfaces that face each other are at most twice as far apart along one normal as along the
   // other. Most rays end here, before the other normal is needed.
   const double height = hit.t * std::abs(ray.direction.dot(normal));
@@ -187,9 +188,8 @@ std::optional<GapLight::GapSize> GapLight::gap_around(const ElementCaster& caste
   std::size_t out = 0;
   for (std::size_t i = 0; i < deciding; ++i) out += is_gap(at.normal, rays[i], hits[i]) ? 0 : 1;
   if (many * out > deciding) return std::nullopt;
-  const PatchMesh& mesh = lit_.mesh();
-  return GapSize{.width = hit.t,
-                 .reach = patches_wide * std::sqrt(mesh.area[mesh.patch[hit.element]])};
+  const auto size = static_cast<double>(sizes_[static_cast<std::size_t>(hit.element)]);
+  return GapSize{.width = hit.t, .reach = sizes_wide * size};
 }
 
 std::optional<GapExits> GapLight::exits(const ElementCaster& caster, const SurfacePoint& at,
@@ -263,7 +263,13 @@ void GapLight::follow(const ElementCaster& caster, const Ray& ray, const Element
     const float survival = std::min(1.0f, rho.maxCoeff() / (1.0f - aimed));
     if (random_uniform(random_key(stop.key, 3)) >= static_cast<double>(survival)) return;
     stop.share *= rho.transpose() / survival;
-    at_surface(stop);
+    if (bounce < deep) {
+      at_surface(stop);
+    } else if (random_uniform(random_key(stop.key, 8)) * surfaces_for_one < 1.0) {
+      Stop for_all = stop;
+      for_all.share *= static_cast<float>(surfaces_for_one);
+      at_surface(for_all);
+    }
     const double weight = next_ray(caster, aims, view, double{aimed}, stop);
     if (!(weight > 0.0)) return;
     stop.share *= static_cast<float>(weight);

@@ -5,11 +5,13 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/gather/gap_exits.h"
+#include "radiosity/gather/gap_sizes.h"
 #include "radiosity/gather/read_radiosity.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
@@ -41,11 +43,12 @@ class GapLight {
  public:
   /// `radiosity` is that of gather_irradiance(). Keeps references to the scene and the paths.
   GapLight(const LitScene& lit, ReadRadiosity radiosity, const LightPaths& paths)
-      : lit_(lit), radiosity_(radiosity), paths_(paths) {}
+      : lit_(lit), radiosity_(radiosity), paths_(paths), sizes_(gap_sizes(lit.mesh())) {}
 
   /// True if a ray from a point of unit normal `normal` ends in a gap: on a surface that faces the
   /// point, reflects and does not emit, and whose distance from the point along its own normal is
-  /// less than 0.15 of the size of the patch that was hit, and more than 1e-4 of that size.
+  /// less than 0.15 of the size at the element that was hit (see gap_sizes), and more than 1e-4 of
+  /// that size.
   bool is_gap(const Eigen::Vector3d& normal, const Ray& ray, const ElementHit& hit) const;
 
   /// True if a ray ends in a gap that it entered from outside, such as the passage between a door
@@ -80,8 +83,9 @@ class GapLight {
     std::uint64_t key = 0;
   };
   /// Follows a path from the end of a ray in a gap until a ray leaves the gap. `key` decides the
-  /// path. Calls `at_surface` on each surface, with the share that its irradiance has, and `at_end`
-  /// at the end of the last ray, unless the path ends before or meets nothing.
+  /// path. Calls `at_surface` on surfaces, with the share that the irradiance there has, and
+  /// `at_end` at the end of the last ray, unless the path ends before or meets nothing. (After some
+  /// bounces one surface of several stands for all.)
   ///
   /// Some of the rays are aimed as `aims` says, weighed by the balance heuristic.
   void follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
@@ -122,6 +126,7 @@ class GapLight {
   LitScene lit_;
   ReadRadiosity radiosity_;
   const LightPaths& paths_;
+  std::vector<float> sizes_;  // gap_sizes()
 };
 
 }  // namespace lightwell

@@ -51,6 +51,40 @@ TEST(GapLight, DeepInAGapIsKnownByAFewHundredRays) {
   }
 }
 
+// A path in a narrow gap between plates that reflect half comes to a first surface with a chance of
+// one half, and to each further one likewise: shares of 1/2 + 1/4 + ... in the mean, also where one
+// surface stands for several.
+TEST(GapLight, SurfacesOfPathsCountInFull) {
+  const Plates plates(0.0005);
+  const LightPaths paths(plates.scene, plates.caster, 8);
+  const GapLight gaps({plates.scene, plates.caster, plates.light},
+                      {plates.caster.mesh(), plates.radiosity}, paths);
+  const Ray ray{
+      .origin = {0.5 * width, 0.0, 0.0}, .direction = {0.0, 0.0, 1.0}, .origin_group = desk_facet};
+  ElementHit hit;
+  plates.caster.closest_hits({&ray, 1}, {&hit, 1});
+  ASSERT_TRUE(gaps.is_gap(Vector3d::UnitZ(), ray, hit));
+  constexpr int count = 1 << 16;
+  double sum = 0.0, squares = 0.0, deep = 0.0;
+  for (int i = 0; i < count; ++i) {
+    double shares = 0.0;
+    gaps.follow(
+        plates.caster, ray, hit, static_cast<std::uint64_t>(i), {},
+        [&](const GapLight::Stop& stop) {
+          shares += double{stop.share[0]};
+          deep += stop.share[0] > 1.5f ? 1.0 : 0.0;
+        },
+        [](const GapLight::Stop&) {});
+    sum += shares;
+    squares += shares * shares;
+  }
+  const double mean = sum / count, noise = std::sqrt((squares / count - mean * mean) / count);
+  // One ray in (r / w)^2 goes farther than r, and the ends of the plates are 200 widths away.
+  constexpr double leaving = 2.0 / (200.0 * 200.0);
+  EXPECT_NEAR(mean, 1.0, 4.0 * noise + leaving);
+  EXPECT_GT(deep, 0.0);
+}
+
 TEST(GapLight, IsNotLookedForBetweenPlatesFarApart) {
   // Elements of 0.2 x 1 m have a size of 0.447 m, a fifth of which is 0.089 m.
   const Plates plates(0.1);
