@@ -77,6 +77,8 @@ class InterpolationError {
                                             std::span<const InterpolatedVertex> interpolated);
   /// Gathers direct light at the vertices that have none, and indirect light unless interpolated.
   void gather(const std::vector<int>& vertices, std::span<const InterpolatedVertex> interpolated);
+  /// VertexGathers::sharpen_sky().
+  bool sharpen_sky(const std::vector<double>& left) { return gathers_.sharpen_sky(left); }
   /// Values gathered at vertices, in their order.
   GatheredIrradiance values(const std::vector<int>& vertices) const {
     return gathers_.values(vertices);

@@ -24,9 +24,11 @@ constexpr double of_a_split = 0.4, of_a_split_in_the_end = 0.25;
 // rounding does not choose between them.
 constexpr double about_equal = 0.999;
 
-// About the number of elements of a quarter of the edge everywhere, both sides counted. Elements
-// that are small already are not split.
-std::int64_t default_room(const RefinedElements& elements, double typical) {
+// The limit that is asked for, or about the number of elements of a quarter of the edge everywhere,
+// both sides counted. Elements that are small already are not split.
+std::int64_t wanted_elements(const RefinedElements& elements, const RefineOptions& options) {
+  if (options.max_elements > 0) return options.max_elements;
+  const double typical = typical_leaf_area(elements);
   std::int64_t count = elements.element_count();
   for (const int cell : elements.leaves()) {
     if (elements.area(cell) > 0.25 * typical) count += 15 * elements.side_count(cell);
@@ -42,9 +44,8 @@ class Refinement {
         error_(error),
         options_(options),
         typical_area_(typical_leaf_area(elements)),
-        max_elements_(options.max_elements > 0 ? options.max_elements
-                                               : default_room(elements, typical_area_)),
-        is_memory_short_(options.room >= 0 && options.room < max_elements_),
+        max_elements_(most_elements(elements, options)),
+        is_memory_short_(options.room >= 0 && options.room < wanted_elements(elements, options)),
         may_go_on_(may_go_on),
         of_children_(may_go_on ? of_a_split : 1.0),
         in_the_end_(may_go_on ? 1.0 : of_a_split_in_the_end),
@@ -52,7 +53,6 @@ class Refinement {
         part_count_(options.parts.group_count()),
         allowed_(static_cast<std::size_t>(part_count_), 0.0),
         sum_(allowed_) {
-    if (is_memory_short_) max_elements_ = std::max(options.room, report_.elements_at_first);
     resize();
     for (const int cell : elements.leaves()) {
       std::array<double, 2> expected{0.0, 0.0};
@@ -73,6 +73,24 @@ class Refinement {
     for (const int cell : elements_.leaves()) {
       if (error_.is_stale(cell)) measured_[cell] = 0;
     }
+    do {
+      split_to_the_end();
+      report_errors();
+    } while (sharpen_sky());
+    report_.elements = elements_.element_count();
+    return report_;
+  }
+
+  // Includes half of the squared error that noise may hide, which is between none and all of it.
+  float relative_error(int cell, int side) const {
+    const Square& square = squares_[elements_.side_number(cell, side)];
+    const double expected = double{square.known} + 0.5 * double{square.hidden};
+    return static_cast<float>(std::sqrt(share_left(cell) * expected));
+  }
+
+ private:
+  // Measures and splits until the tolerances or a limit are reached.
+  void split_to_the_end() {
     report_.outcome = RefineOutcome::off;
     while (report_.outcome == RefineOutcome::off) {
       PartMarks by_part = cells_to_split();
@@ -98,19 +116,25 @@ class Refinement {
         ++report_.rounds;
       }
     }
-    report_errors();
-    report_.elements = elements_.element_count();
-    return report_;
   }
 
-  // Includes half of the squared error that noise may hide, which is between none and all of it.
-  float relative_error(int cell, int side) const {
-    const Square& square = squares_[elements_.side_number(cell, side)];
-    const double expected = double{square.known} + 0.5 * double{square.hidden};
-    return static_cast<float>(std::sqrt(share_left(cell) * expected));
+  // Sharpens the light of the sky where its noise is notable beside the errors that are left, and
+  // measures anew what was measured with it; returns whether there is such light.
+  bool sharpen_sky() {
+    if (report_.outcome == RefineOutcome::time_limit_reached) return false;
+    std::vector<double> left;
+    for (const PartRefinement& part : report_.parts) left.push_back(part.estimate);
+    if (!error_.sharpen_sky(left)) return false;
+    std::vector<int> again;
+    for (const int cell : elements_.leaves()) {
+      if (measured_[cell] == 0) continue;
+      measured_[cell] = 0;
+      again.push_back(cell);
+    }
+    measure(again);
+    return true;
   }
 
- private:
   void resize() {
     squares_.resize(elements_.side_total());
     is_known_.resize(elements_.cell_count(), 0);
@@ -369,6 +393,12 @@ void require_room(const PatchMesh& mesh, const RefineOptions& options) {
       options.max_elements, mesh.element_count()));
 }
 
+std::int64_t most_elements(const RefinedElements& elements, const RefineOptions& options) {
+  const std::int64_t wanted = wanted_elements(elements, options);
+  if (options.room < 0 || options.room >= wanted) return wanted;
+  return std::max(options.room, elements.element_count());
+}
+
 double typical_leaf_area(const RefinedElements& elements) {
   std::vector<double> areas;
   double total = 0.0;
@@ -383,38 +413,6 @@ double typical_leaf_area(const RefinedElements& elements) {
     larger += areas[i];
   }
   return typical;
-}
-
-std::string sentence(const RefineReport& report) {
-  const auto percent = [](double share) { return fmt::format("{:.3g} %", 100.0 * share); };
-  std::string end;
-  switch (report.outcome) {
-    case RefineOutcome::off:
-      return "nothing was refined";
-    case RefineOutcome::tolerance_reached:
-      end = fmt::format("the tolerance of {} is reached", percent(report.tolerance));
-      break;
-    case RefineOutcome::max_elements_reached:
-      end = fmt::format("stopped at the most elements allowed, before the tolerance of {}",
-                        percent(report.tolerance));
-      break;
-    case RefineOutcome::memory_limit_reached:
-      end = fmt::format(
-          "stopped at the most elements that '--memory' has room for, before the tolerance of {}",
-          percent(report.tolerance));
-      break;
-    case RefineOutcome::time_limit_reached:
-      end = fmt::format("stopped for want of time, before the tolerance of {}",
-                        percent(report.tolerance));
-      break;
-    case RefineOutcome::smallest_size_reached:
-      end = fmt::format("stopped at the smallest elements allowed, before the tolerance of {}",
-                        percent(report.tolerance));
-      break;
-  }
-  return fmt::format("{} ({} estimated; {} elements became {} in {} rounds)", end,
-                     percent(report.estimate), report.elements_at_first, report.elements,
-                     report.rounds);
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -16,6 +17,10 @@ void require_room(const PatchMesh& mesh, const RefineOptions& options);
 
 /// The least area of the leaves that make up the larger half of all area, m^2, one side counted.
 double typical_leaf_area(const RefinedElements& elements);
+
+/// RefineOptions::max_elements, or its default for `elements` where none are given; no more than
+/// RefineOptions::room.
+std::int64_t most_elements(const RefinedElements& elements, const RefineOptions& options);
 
 /// Light at the base's vertices with the columns of each channel side by side (see DirectLight);
 /// W/m^2, vertices x columns.

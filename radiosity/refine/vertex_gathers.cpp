@@ -66,6 +66,14 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
       visibility_(lit.direct_light.light_count()),
       unread_patch_(unread_patches(lit.scene, elements.base())),
       shared_(find_shared_gathers(lit.scene, elements.base())) {
+  // Refinement of few elements does not get near its tolerance in most scenes, and exact light at
+  // all of the start's vertices would be in vain.
+  constexpr std::int64_t much_room = 2;
+  const bool is_start_large =
+      most_elements(elements, refine) < much_room * elements.element_count();
+  has_rough_sky_.assign(
+      rays_of_part_.size(),
+      is_start_large && !has_noise_goal_ && direct_light_.dome() && !efforts_.empty() ? 1 : 0);
   if (options.run.progress) {
     options_.run.progress = [progress = options.run.progress](std::string_view, double share) {
       return progress("refine", share);
@@ -123,6 +131,18 @@ GatherPoint VertexGathers::keyed_point(int vertex) const {
   return point;
 }
 
+// The number of the scene's part that a vertex is judged with.
+int VertexGathers::part_of(int vertex) const {
+  return parts_.judged_with(elements_.base().patch[elements_.inside(vertex, 0.0).element]);
+}
+
+// Rays of a part's typical vertices over those of a vertex, or its fineness; 1 or more.
+double VertexGathers::fewness(int vertex) const {
+  const auto v = static_cast<std::size_t>(vertex);
+  const double typical = pilot_rays(rays_of_part_[static_cast<std::size_t>(part_of(vertex))]);
+  return std::max({1.0, typical / rays_[v], static_cast<double>(fineness_[v])});
+}
+
 // The noise that the sky's light may have: more where fewer rays are cast than at a part's typical
 // vertices, and where errors matter less for what somebody looks at.
 NoiseGoal VertexGathers::sky_noise_at(int vertex) const {
@@ -131,12 +151,10 @@ NoiseGoal VertexGathers::sky_noise_at(int vertex) const {
   constexpr float least_importance = 1.0f / 64.0f;
   if (efforts_.empty()) return {};
   const int patch = elements_.base().patch[elements_.inside(vertex, 0.0).element];
-  const auto part = static_cast<std::size_t>(parts_.judged_with(patch));
-  const double typical = pilot_rays(rays_of_part_[part]);
-  const auto v = static_cast<std::size_t>(vertex);
-  const double few = std::max(typical / rays_[v], static_cast<double>(fineness_[v]));
+  const auto part = static_cast<std::size_t>(part_of(vertex));
   const float importance = std::max(parts_.importance_of(patch), least_importance);
-  const double times = std::sqrt(std::max(few, 1.0) / static_cast<double>(importance));
+  const double times = roughness_[static_cast<std::size_t>(vertex)] *
+                       std::sqrt(fewness(vertex) / static_cast<double>(importance));
   NoiseGoal goal =
       noise_goal(efforts_[part].irradiance, averaged * times * efforts_[part].sky_noise);
   // Without an accuracy the goal saves rays, and asks for no more than the options do.
@@ -172,7 +190,21 @@ void VertexGathers::make_room() {
     rays_.push_back(most);
     fineness_.push_back(coarsest);
   }
+  make_sky_rough(static_cast<int>(roughness_.size()));
   visibility_.resize(count);
+}
+
+// Sets the roughness of new vertices, from `first_vertex` on. Small elements bear more noise, and a
+// part's typical ones, on which it would be seen, none: vertices at corners of a grid, with a
+// quarter of the area of others, have a fineness of 2.
+void VertexGathers::make_sky_rough(int first_vertex) {
+  const int count = elements_.vertex_count();
+  roughness_.resize(static_cast<std::size_t>(count), 1);
+  for (int v = first_vertex; v < count; ++v) {
+    if (has_rough_sky_[static_cast<std::size_t>(part_of(v))] == 0) continue;
+    const double few = fewness(v);
+    roughness_[static_cast<std::size_t>(v)] = few > 6.0 ? 4 : few > 3.0 ? 2 : 1;
+  }
 }
 
 void VertexGathers::shrink_to_fit() {
@@ -183,6 +215,7 @@ void VertexGathers::shrink_to_fit() {
   indirect_.shrink_to_fit();
   rays_.shrink_to_fit();
   fineness_.shrink_to_fit();
+  roughness_.shrink_to_fit();
   visibility_.shrink_to_fit();
 }
 
@@ -200,23 +233,84 @@ void VertexGathers::gather_direct_at_base() {
   for (const InterpolatedVertex& at : shared_.unread) has_direct_[at.vertex] = 1;
 }
 
+// Direct light at vertices, with the rays to the sky that their roughness asks for; vertices x
+// columns of `light`.
+BandArray VertexGathers::direct_at(const DirectLight& light, const std::vector<int>& vertices,
+                                   std::vector<EmitterVisibility>* visibilities) const {
+  const auto count = static_cast<Eigen::Index>(vertices.size());
+  BandArray direct = BandArray::Zero(count, light.channel_count() * scene_.bands.count());
+  if (visibilities) visibilities->assign(vertices.size(), {});
+  for (const int roughness : {1, 2, 4}) {
+    std::vector<int> rows;
+    std::vector<GatherPoint> points;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      if (roughness_[static_cast<std::size_t>(vertices[i])] != roughness) continue;
+      rows.push_back(static_cast<int>(i));
+      points.push_back(keyed_point(vertices[i]));
+    }
+    if (points.empty()) continue;
+    GatherOptions options = options_;
+    // The least number of rays falls with the goal.
+    options.shadows.sky_rays = (options.shadows.sky_rays + roughness - 1) / roughness;
+    std::vector<EmitterVisibility> seen;
+    const BandArray found =
+        gather_direct({scene_, caster_, light}, points, options, visibilities ? &seen : nullptr);
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      direct.row(rows[i]) = found.row(static_cast<Eigen::Index>(i));
+      if (visibilities) (*visibilities)[static_cast<std::size_t>(rows[i])] = seen[i];
+    }
+  }
+  return direct;
+}
+
+// Gathers the direct light of vertices.
+void VertexGathers::set_direct(const std::vector<int>& vertices) {
+  std::vector<EmitterVisibility> visibilities;
+  const BandArray direct = direct_at(direct_light_, vertices, &visibilities);
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    direct_.row(vertices[i]) = direct.row(static_cast<Eigen::Index>(i));
+    visibility_.set(vertices[i], visibilities[i]);
+  }
+  gathers_ += static_cast<std::int64_t>(vertices.size());
+}
+
 void VertexGathers::gather_direct_at(const std::vector<int>& vertices) {
   std::vector<int> fresh;
-  std::vector<GatherPoint> points;
   for (const int v : vertices) {
     if (has_direct_[v]) continue;
     has_direct_[v] = 1;
     fresh.push_back(v);
-    points.push_back(keyed_point(v));
   }
-  std::vector<EmitterVisibility> visibilities;
-  const BandArray direct =
-      gather_direct({scene_, caster_, direct_light_}, points, options_, &visibilities);
-  for (std::size_t i = 0; i < fresh.size(); ++i) {
-    direct_.row(fresh[i]) = direct.row(static_cast<Eigen::Index>(i));
-    visibility_.set(fresh[i], visibilities[i]);
+  set_direct(fresh);
+}
+
+bool VertexGathers::sharpen_sky(const std::vector<double>& left) {
+  std::vector<char> is_sharpened(has_rough_sky_.size(), 0);
+  for (std::size_t p = 0; p < left.size(); ++p) {
+    // The roughest light has four times the noise of the goal, on small elements.
+    constexpr double roughest = 4.0;
+    if (has_rough_sky_[p] == 0 || left[p] > roughest * efforts_[p].sky_noise) continue;
+    has_rough_sky_[p] = 0;
+    is_sharpened[p] = 1;
   }
-  gathers_ += static_cast<std::int64_t>(points.size());
+  std::vector<int> vertices;
+  for (int v = 0; v < elements_.vertex_count(); ++v) {
+    auto& roughness = roughness_[static_cast<std::size_t>(v)];
+    if (roughness == 1 || is_sharpened[static_cast<std::size_t>(part_of(v))] == 0) continue;
+    const std::uint8_t rough = roughness;
+    roughness = 1;
+    if (has_direct_[v] == 0) continue;
+    const NoiseGoal goal = sky_noise_at(v);
+    const double enough = std::max(goal.irradiance, goal.share * double{direct_.row(v).mean()});
+    if (visibility_[v].drawn_noise > enough) {
+      vertices.push_back(v);
+    } else {
+      roughness = rough;
+    }
+  }
+  set_direct(vertices);
+  interpolate_vertices(shared_.unread, direct_);
+  return !vertices.empty();
 }
 
 // One gather of indirect light, with the same random numbers all over a side of a surface; 0 where
@@ -382,12 +476,11 @@ GatheredIrradiance VertexGathers::values_by_channel(
     row_of[v] = static_cast<int>(lit_vertices.size());
     lit_vertices.push_back(v);
   }
-  std::vector<GatherPoint> points;
   const std::vector<int> own = indices_without(shared_.unread, lit_vertices.size());
-  for (const int i : own) points.push_back(keyed_point(lit_vertices[i]));
-  BandArray direct =
-      spread_rows(gather_direct({scene_, caster_, light.direct_light}, points, options_), own,
-                  static_cast<Eigen::Index>(lit_vertices.size()));
+  std::vector<int> own_vertices;
+  for (const int i : own) own_vertices.push_back(lit_vertices[i]);
+  BandArray direct = spread_rows(direct_at(light.direct_light, own_vertices, nullptr), own,
+                                 static_cast<Eigen::Index>(lit_vertices.size()));
   interpolate_vertices(shared_.unread, direct);
   const BandArray sharpened = sharpened_by_channel(direct, light);
 

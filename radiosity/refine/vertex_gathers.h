@@ -18,7 +18,9 @@ struct ChannelLight;
 
 /// Pilot gathers at the vertices of refined elements, each made at most once.
 ///
-/// - Direct light is gathered as for the final solution.
+/// - Direct light is gathered as for the final solution. The light of the sky is rough at first at
+///   the vertices of small elements, if those of the start leave little room for others: see
+///   sharpen_sky().
 /// - Indirect light is gathered twice, independently. Each gather casts a share of the final
 ///   gather's rays, rounded up to a power of two:
 ///     * an eighth;
@@ -58,6 +60,10 @@ class VertexGathers {
   void make_room();
   /// Gathers direct light at the vertices that have none yet.
   void gather_direct_at(const std::vector<int>& vertices);
+  /// Gathers direct light anew where that of the sky is rough and its noise is above the goal, in
+  /// the parts of the scene in which that noise is notable beside the error that is left, relative
+  /// to the part's mean. Returns whether there were such vertices.
+  bool sharpen_sky(const std::vector<double>& left);
   /// Gathers indirect light, both times, at the vertices at which none was gathered yet.
   void gather_indirect_at(const std::vector<int>& vertices);
   /// Sets the indirect light of a vertex to the mean of its ends, if the light is unknown. Unknown
@@ -95,9 +101,15 @@ class VertexGathers {
  private:
   bool is_unread(int vertex) const;
   void gather_direct_at_base();
+  BandArray direct_at(const DirectLight& light, const std::vector<int>& vertices,
+                      std::vector<EmitterVisibility>* visibilities) const;
+  void set_direct(const std::vector<int>& vertices);
+  double fewness(int vertex) const;
+  int part_of(int vertex) const;
   int pilot_rays(int rays) const;
   void share_pilot_rays();
   NoiseGoal sky_noise_at(int vertex) const;
+  void make_sky_rough(int first_vertex);
   void sharpen_radiosity(const BandArray& caustic);
   GatherPoint gather_point(int vertex) const;
   GatherPoint keyed_point(int vertex) const;
@@ -121,8 +133,10 @@ class VertexGathers {
   std::vector<char> has_direct_;
   enum class Indirect : char { unknown, interpolated, gathered };
   std::vector<Indirect> indirect_;
-  std::vector<int> rays_;        // of each of the two gathers of indirect light
-  std::vector<float> fineness_;  // see vertex_fineness()
+  std::vector<int> rays_;                // of each of the two gathers of indirect light
+  std::vector<float> fineness_;          // see vertex_fineness()
+  std::vector<char> has_rough_sky_;      // of each part: new vertices have
+  std::vector<std::uint8_t> roughness_;  // of the sky's light: noise in multiples of the goal
   BandArray direct_, first_, second_;
   EmitterVisibilityList visibility_;
   std::vector<char> unread_patch_;  // per patch

@@ -1,0 +1,122 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numbers>
+#include <vector>
+
+#include "mesh/build_patches.h"
+#include "radiosity/refine/vertex_gathers.h"
+#include "tests/radiosity/test_scenes.h"
+
+namespace lightwell::rough_sky_test {
+namespace {
+
+using Eigen::Vector3d;
+
+// A floor of 4 x 4 m below a roof over one half of it, under a uniform sky, and a curved sheet of
+// 40 x 40 facets of 1 cm on the floor.
+Scene half_open_place() {
+  Scene scene;
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  test::add_polygon(scene, "floor", grey, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
+  test::add_polygon(scene, "roof", grey, {{0, 0, 2}, {0, 4, 2}, {2, 4, 2}, {2, 0, 2}});
+  PolygonMesh sheet;
+  constexpr int n = 40;
+  constexpr double step = 0.01;
+  for (int j = 0; j <= n; ++j) {
+    for (int i = 0; i <= n; ++i) {
+      const double x = step * i, y = step * j;
+      sheet.vertices.push_back({1.8 + x, 1.8 + y, 0.3 + 0.1 * x * x});
+    }
+  }
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const int a = j * (n + 1) + i;
+      sheet.facets.push_back({{a, a + 1, a + n + 2, a + n + 1}});
+    }
+  }
+  scene.surfaces.push_back({.name = "sheet", .material = grey, .shape = std::move(sheet)});
+  scene.sky = Sky{.up = Vector3d::UnitZ(),
+                  .north = Vector3d::UnitY(),
+                  .bright = Vector3d::UnitZ(),
+                  .scale = constant_spectrum(scene.bands, 1.0f),
+                  .ground = constant_spectrum(scene.bands, 0.2f)};
+  return scene;
+}
+
+struct Place {
+  Scene scene = half_open_place();
+  PatchMesh mesh = build_patches(scene, {.max_patch_size = 1.0});
+  ElementCaster caster{mesh};
+  DirectLight direct_light{scene, mesh};
+  BandArray radiosity = BandArray::Ones(mesh.vertex_count(), scene.bands.count());
+  RefinedElements elements{mesh};
+
+  // Pilot gathers where refinement may make `times` as many elements as there are.
+  VertexGathers gathers(std::int64_t times) {
+    RefineOptions options{.max_elements = times * mesh.element_count()};
+    options.efforts = {{.tolerance = options.tolerance,
+                        .sky_noise = 0.01,
+                        .rays = 256,
+                        .irradiance = 0.5 * std::numbers::pi}};
+    return {{scene, caster, direct_light},
+            radiosity,
+            {},
+            elements,
+            {.rays = 256, .shadows = {.sky_rays = 1024}},
+            options};
+  }
+};
+
+int count_of_differences(const VertexGathers& a, const VertexGathers& b, int vertices) {
+  int count = 0;
+  for (int v = 0; v < vertices; ++v) {
+    count += (a.direct().row(v) != b.direct().row(v)).any() ? 1 : 0;
+  }
+  return count;
+}
+
+TEST(RoughSky, IsThatOfSmallElementsWhereFewMayBeSplit) {
+  Place place;
+  const VertexGathers fine = place.gathers(16), rough = place.gathers(1);
+  const std::vector<int> patch = vertex_patches(place.mesh);
+  int typical = 0, small = 0;
+  for (int v = 0; v < place.mesh.vertex_count(); ++v) {
+    const bool is_alike = (fine.direct().row(v) == rough.direct().row(v)).all();
+    if (place.scene.surfaces[place.mesh.surface[patch[v]]].name == "sheet") {
+      small += is_alike ? 0 : 1;
+    } else {
+      EXPECT_TRUE(is_alike) << v;
+      ++typical;
+    }
+  }
+  EXPECT_GT(typical, 0);
+  EXPECT_GT(small, 0);
+}
+
+TEST(RoughSky, IsSharpenedWhereLittleOtherErrorIsLeft) {
+  Place place;
+  const VertexGathers fine = place.gathers(16);
+  VertexGathers rough = place.gathers(1);
+  const int vertices = place.mesh.vertex_count();
+  const int before = count_of_differences(rough, fine, vertices);
+  constexpr double much = 0.2, little = 0.01;
+  EXPECT_FALSE(rough.sharpen_sky({much}));
+  EXPECT_EQ(count_of_differences(rough, fine, vertices), before);
+  EXPECT_TRUE(rough.sharpen_sky({little}));
+  const int after = count_of_differences(rough, fine, vertices);
+  EXPECT_LT(after, before);
+  constexpr double half_of_dome = 0.5 * std::numbers::pi;
+  // What differs still had reached the goal with fewer rays: 0.7 of sky_noise times the root of the
+  // fineness, which is 8 at most, as a share of the place's irradiance.
+  constexpr double goal = 0.7 * 8.0 * 0.01;
+  for (int v = 0; v < vertices; ++v) {
+    const double E = double{rough.direct()(v, 0)};
+    if ((rough.direct().row(v) == fine.direct().row(v)).all()) continue;
+    EXPECT_LE(rough.visibility(v).drawn_noise, goal * std::max(half_of_dome, E / 4.0)) << v;
+  }
+  EXPECT_FALSE(rough.sharpen_sky({little}));
+}
+
+}  // namespace
+}  // namespace lightwell::rough_sky_test
