@@ -176,30 +176,8 @@ BandArray DaylightModel::radiosity(const BandArray& arriving) const {
   return solve_columns(mesh_, *form_factors_, arriving, options_.tolerance, options_.progress);
 }
 
-// Irradiance of points by radiosity 1 of each patch alone, patches x (points x bands).
 BandArray DaylightModel::shares_in_gather(const GatherPoints& points, int rays) const {
-  const Eigen::Index bands = scene_.bands.count(), vertices = mesh_.vertex_count();
-  BandArray shares(mesh_.patch_count(), points.size() * bands);
-  // Shares of vertices in a block of points take 128 MB, three times over.
-  const auto most =
-      static_cast<int>(std::max<Eigen::Index>(1, (Eigen::Index{1} << 25) / (vertices * bands)));
-  for (int first = 0; first < points.size(); first += most) {
-    const int n = std::min(most, points.size() - first);
-    const GatherPoints block(n, [&](int i) {
-      GatherPoint point = points[first + i];
-      if (!point.key) point.key = static_cast<std::uint64_t>(first + i);
-      return point;
-    });
-    const BandArray E = gather_shares(lit(), block, gather_options(rays));
-    BandArray of_vertices(vertices, n * bands);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      for (Eigen::Index v = 0; v < vertices; ++v) {
-        of_vertices.row(v).segment(i * bands, bands) = E.row(i).segment(v * bands, bands);
-      }
-    }
-    shares.middleCols(first * bands, n * bands) = shares_of_patches(mesh_, of_vertices);
-  }
-  return shares;
+  return gather_patch_shares(lit(), points, gather_options(rays));
 }
 
 BandArray DaylightModel::importance(const GatherPoints& points, int rays) const {

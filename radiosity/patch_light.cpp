@@ -61,6 +61,33 @@ BandArray shares_of_patches(const PatchMesh& mesh, const BandArray& shares) {
   return sum;
 }
 
+BandArray gather_patch_shares(const LitScene& lit, const GatherPoints& points,
+                              const GatherOptions& options) {
+  const PatchMesh& mesh = lit.mesh();
+  const Eigen::Index bands = lit.scene.bands.count(), vertices = mesh.vertex_count();
+  BandArray shares(mesh.patch_count(), points.size() * bands);
+  // Shares of vertices in a block of points take 128 MB, three times over.
+  const auto most =
+      static_cast<int>(std::max<Eigen::Index>(1, (Eigen::Index{1} << 25) / (vertices * bands)));
+  for (int first = 0; first < points.size(); first += most) {
+    const int n = std::min(most, points.size() - first);
+    const GatherPoints block(n, [&](int i) {
+      GatherPoint point = points[first + i];
+      if (!point.key) point.key = static_cast<std::uint64_t>(first + i);
+      return point;
+    });
+    const BandArray E = gather_shares(lit, block, options);
+    BandArray of_vertices(vertices, n * bands);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      for (Eigen::Index v = 0; v < vertices; ++v) {
+        of_vertices.row(v).segment(i * bands, bands) = E.row(i).segment(v * bands, bands);
+      }
+    }
+    shares.middleCols(first * bands, n * bands) = shares_of_patches(mesh, of_vertices);
+  }
+  return shares;
+}
+
 BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light,
                           const BandArray& patch_radiosity) {
   return to_vertices(mesh, without_owned_emission(mesh, direct_light, patch_radiosity));

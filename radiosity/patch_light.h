@@ -2,6 +2,8 @@
 
 #include "mesh/patches/patch_mesh.h"
 #include "radiosity/direct_light/direct_light.h"
+#include "radiosity/direct_light/lit_scene.h"
+#include "radiosity/gather/final_gather.h"
 #include "radiosity/solution/solution.h"
 
 namespace lightwell {
@@ -19,6 +21,12 @@ BandArray to_vertices(const PatchMesh& mesh, const BandArray& of_patches);
 ///
 /// `shares` are vertices x columns, the result is patches x columns.
 BandArray shares_of_patches(const PatchMesh& mesh, const BandArray& shares);
+
+/// Shares of patches in the light that gather_indirect() finds: the irradiance of each point by
+/// radiosity 1 of one band of one patch alone, patches x (points x bands), the bands of a point
+/// side by side. Throws as gather_shares() does.
+BandArray gather_patch_shares(const LitScene& lit, const GatherPoints& points,
+                              const GatherOptions& options);
 
 /// The radiosity that the first gather reads, W/m^2, vertices x columns: that of patches, smoothed
 /// to vertices, without the emission that `direct_light` owns.
