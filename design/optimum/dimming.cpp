@@ -82,6 +82,9 @@ class DimmingProgram {
     throw std::runtime_error("the levels for a limit of glare do not converge");
   }
 
+  // The cost of all luminaires at full level, over which costs are those of the programme.
+  double total_cost() const { return total_cost_; }
+
   Eigen::VectorXd levels(const LinearOptimum& optimum) const {
     Eigen::VectorXd d(static_cast<Eigen::Index>(problem_.luminaires.size()));
     for (Eigen::Index i = 0; i < d.size(); ++i) {
@@ -111,6 +114,29 @@ class DimmingProgram {
     }
   }
 
+  // Derivatives of the optimum, `unit` times the objective: -y_r d_i for each factor of d_i in a
+  // row, and what the scale of the row, which is light as well, changes in the row's value.
+  LightPrices light_price(const LinearOptimum& optimum, double unit) const {
+    LightPrices prices;
+    for (const DimmedGrid& grid : problem_.grids) {
+      prices.lux.push_back(Eigen::MatrixXd::Zero(grid.lux.rows(), grid.lux.cols()));
+    }
+    prices.glare.assign(problem_.observers.size(), Eigen::VectorXd::Zero(count()));
+    prices.background = prices.glare;
+    for (std::size_t k = 0; k < rows_.size(); ++k) {
+      const auto place = static_cast<std::size_t>(problem_.limits[k].place);
+      const LimitRows& rows = rows_[k];
+      const Eigen::VectorXd y =
+          unit / rows.scale * optimum.row_price.segment(rows.first, rows.count);
+      if (problem_.limits[k].kind == LimitKind::ugr_at_most) {
+        add_glare_price(k, y[0], optimum, prices.glare[place], prices.background[place]);
+      } else {
+        add_lux_price(k, y, levels(optimum), prices.lux[place]);
+      }
+    }
+    return prices;
+  }
+
  private:
   int count() const { return static_cast<int>(problem_.luminaires.size()); }
   LinearColumn& column(int i) { return program_.columns[static_cast<std::size_t>(i)]; }
@@ -118,6 +144,45 @@ class DimmingProgram {
   static double kept(const LinearOptimum& optimum, int column) {
     constexpr double slack = 1e-8;  // the tolerance of rows
     return std::max(0.0, optimum.x[column]) + slack;
+  }
+
+  void add_lux_price(std::size_t k, const Eigen::VectorXd& y, const Eigen::VectorXd& d,
+                     Eigen::MatrixXd& price) const {
+    const DimmingLimit& limit = problem_.limits[k];
+    const double points = static_cast<double>(price.rows());
+    if (limit.kind == LimitKind::uniformity_at_least) {
+      const Eigen::VectorXd E = grid_of(problem_, limit).lux * d;
+      const Eigen::VectorXd above = E.array() - limit.value * E.mean();
+      price -= (y.array() - limit.value * y.sum() / points).matrix() * d.transpose();
+      price.array() += y.dot(above) / rows_[k].scale / points;
+    } else if (is_of_mean(limit.kind)) {
+      price.rowwise() -= y[0] / points * d.transpose();
+    } else {
+      price -= y * d.transpose();
+    }
+  }
+
+  void add_glare_price(std::size_t k, double y, const LinearOptimum& optimum,
+                       Eigen::VectorXd& glare, Eigen::VectorXd& background) const {
+    const DimmingLimit& limit = problem_.limits[k];
+    const DimmedObserver& observer = observer_of(problem_, limit);
+    const double ratio = glare_ratio(limit.value);
+    const Eigen::VectorXd d = levels(optimum);
+    Eigen::VectorXd squares = Eigen::VectorXd::Zero(count());
+    for (int i = 0; i < count(); ++i) {
+      const int t = square_[static_cast<std::size_t>(i)];
+      squares[i] = t >= 0 ? optimum.x[t] : d[i] * d[i];
+    }
+    background -= y * ratio * d;
+    glare += y * squares;
+    const double value = ratio * observer.background.dot(d) - observer.glare.dot(squares);
+    const double of_scale = y * value / rows_[k].scale;
+    const bool is_of_background = ratio * observer.background.sum() >= observer.glare.sum();
+    (is_of_background ? background : glare).array() += of_scale * (is_of_background ? ratio : 1.0);
+  }
+
+  static bool is_of_mean(LimitKind kind) {
+    return kind == LimitKind::mean_at_least || kind == LimitKind::mean_at_most;
   }
 
   // A column t >= d^2 for each luminaire that an observer with a limit sees.
@@ -191,9 +256,7 @@ class DimmingProgram {
       if (limit.kind == LimitKind::uniformity_at_least) {
         add_uniformity(limit, lux, mean, rows);
       } else {
-        const bool is_of_mean =
-            limit.kind == LimitKind::mean_at_least || limit.kind == LimitKind::mean_at_most;
-        add_illuminance(limit, is_of_mean ? Eigen::MatrixXd(mean) : lux, rows);
+        add_illuminance(limit, is_of_mean(limit.kind) ? Eigen::MatrixXd(mean) : lux, rows);
       }
     }
     rows.count = static_cast<int>(program_.rows.size()) - rows.first;
@@ -289,12 +352,15 @@ DimmingPlan best_dimming(const DimmingProblem& problem) {
     for (std::size_t k = 0; k < problem.limits.size(); ++k) {
       plan.price.push_back(strict.price(k, optimum));
     }
+    plan.light_price = strict.light_price(optimum, strict.total_cost());
   } else {
     DimmingProgram elastic(problem, true);
     optimum = elastic.solve(plan.rounds);
     if (!optimum.is_feasible) {
       throw std::runtime_error("the linear programme of the nearest levels has no solution");
     }
+    plan.worst_miss = std::max(0.0, optimum.cost);
+    plan.light_price = elastic.light_price(optimum, 1.0);
     for (const auto next : {&DimmingProgram::minimise_sum, &DimmingProgram::minimise_cost}) {
       (elastic.*next)(optimum);
       LinearOptimum better = elastic.solve(plan.rounds);

@@ -58,6 +58,14 @@ struct DimmingProblem {
   std::vector<DimmingLimit> limits{};
 };
 
+/// Derivatives of an optimum by the light of each luminaire at full level, in its unit over that of
+/// the light; 0 where no limit binds.
+struct LightPrices {
+  std::vector<Eigen::MatrixXd> lux{};         ///< per grid, points x luminaires
+  std::vector<Eigen::VectorXd> glare{};       ///< per observer, by DimmedObserver::glare
+  std::vector<Eigen::VectorXd> background{};  ///< per observer, by DimmedObserver::background
+};
+
 /// The levels of the least cost.
 struct DimmingPlan {
   bool is_feasible = false;       ///< true: all limits are met; false: the levels are the nearest
@@ -67,6 +75,11 @@ struct DimmingPlan {
   /// Per limit: derivative of the least cost by the value of the limit (the dual value); 0 of a
   /// limit that does not bind, and for a plan that is not feasible.
   std::vector<double> price{};
+  /// What the worst limit is missed by, relative (see best_dimming()); 0 for a plan that is
+  /// feasible.
+  double worst_miss = 0.0;
+  /// Derivatives of the least cost, or of `worst_miss` for a plan that is not feasible.
+  LightPrices light_price{};
   int rounds = 0;  ///< linear programmes that were solved
 };
 
@@ -87,7 +100,12 @@ double value_at(const DimmingProblem& problem, const DimmingLimit& limit,
 /// 1975). What the worst is missed by, relative to its value, is then as small as possible
 /// (Chebyshev goal programming: Flavell 1976); among such levels the sum of what all are missed by;
 /// among these the cost. Uniformity is missed relative to the mean at full level, glare relative to
-/// its sum there. Throws as solve_linear() does.
+/// its sum there.
+///
+/// The light of a luminaire is a factor A_ri of the programme's rows, A d >= b, whose dual values y
+/// are the derivatives of the least cost by b. By the envelope theorem (Milgrom & Segal 2002)
+/// d cost / d A_ri = -y_r d_i; DimmingPlan::light_price has the sums of these. Throws as
+/// solve_linear() does.
 DimmingPlan best_dimming(const DimmingProblem& problem);
 
 /// The same problem with all luminaires at one level, which is between the highest `least` and the

@@ -223,5 +223,79 @@ TEST(Dimming, PricesAreDerivativesOfTheCost) {
   EXPECT_EQ(binding, 4);
 }
 
+/// The objective of a problem: the least cost, or what the worst limit is missed by.
+double objective(const DimmingProblem& problem) {
+  const DimmingPlan plan = best_dimming(problem);
+  return plan.is_feasible ? plan.cost : plan.worst_miss;
+}
+
+/// Central difference of the objective by an entry of the light, over 1e-4 of the largest.
+double slope_by(DimmingProblem problem, double& (*entry)(DimmingProblem&, int), int i,
+                double largest) {
+  const double step = 1e-4 * largest;
+  double& light = entry(problem, i);
+  const double middle = light;
+  light = middle + step;
+  const double above = objective(problem);
+  light = middle - step;
+  return (above - objective(problem)) / (2.0 * step);
+}
+
+/// Prices of light are derivatives of the objective by each entry of the light. Central differences
+/// over 1e-4 are off by some 1e-8; slopes of tangents of squares by 4e-4 (see above).
+void expect_light_prices(const DimmingProblem& problem) {
+  const LightPrices prices = best_dimming(problem).light_price;
+  for (const bool is_room : {false, true}) {
+    const Eigen::MatrixXd& price = prices.lux[is_room ? 1 : 0];
+    const double largest = std::max(1e-9, prices.lux[0].cwiseAbs().maxCoeff());
+    for (int i = 0; i < price.size(); ++i) {
+      const double slope =
+          is_room
+              ? slope_by(
+                    problem,
+                    [](DimmingProblem& p, int k) -> double& { return p.grids[1].lux.data()[k]; }, i,
+                    100.0)
+              : slope_by(
+                    problem,
+                    [](DimmingProblem& p, int k) -> double& { return p.grids[0].lux.data()[k]; }, i,
+                    100.0);
+      EXPECT_NEAR(price.data()[i], slope, 1e-3 * largest) << "grid " << is_room << ", entry " << i;
+    }
+  }
+  const double of_glare = prices.glare[0].cwiseAbs().maxCoeff();
+  const double of_background = prices.background[0].cwiseAbs().maxCoeff();
+  for (int i = 0; i < prices.glare[0].size(); ++i) {
+    EXPECT_NEAR(
+        prices.glare[0][i],
+        slope_by(
+            problem, [](DimmingProblem& p, int k) -> double& { return p.observers[0].glare[k]; }, i,
+            9000.0),
+        1e-3 * of_glare + 1e-12)
+        << i;
+    EXPECT_NEAR(
+        prices.background[0][i],
+        slope_by(
+            problem,
+            [](DimmingProblem& p, int k) -> double& { return p.observers[0].background[k]; }, i,
+            10.0),
+        1e-3 * of_background + 1e-12)
+        << i;
+  }
+}
+
+TEST(Dimming, LightPricesAreDerivativesOfTheCost) {
+  expect_light_prices(office());
+}
+
+/// Out of reach, the worst miss is what light is worth something for.
+TEST(Dimming, LightPricesOutOfReachAreDerivativesOfTheWorstMiss) {
+  DimmingProblem problem = office();
+  problem.limits[0].value = 1500.0;
+  problem.limits[1].value = 0.9;
+  ASSERT_FALSE(best_dimming(problem).is_feasible);
+  EXPECT_GT(best_dimming(problem).worst_miss, 0.1);
+  expect_light_prices(problem);
+}
+
 }  // namespace
 }  // namespace lightwell::dimming_test
