@@ -118,9 +118,9 @@ void add_surfaces(const Scene& scene, const PatchMesh& mesh, GlareSum& sum) {
 /// Adds a lamp by sample points of its opening, each with an equal share of the intensity (see
 /// LampOpening). The luminance of a point is I / A and its solid angle A / d^2 over the number of
 /// points, with the projected area A seen from the eye.
-void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, double height,
+void add_lamp(const Bands& bands, const Lamp& lamp, const Spectrum& light, double height,
               GlareSum& sum) {
-  const double candela = luminous(scene.bands, light);
+  const double candela = luminous(bands, light);
   if (!(candela > 0.0)) return;
   const double least = rim_of_opening * luminous_area(lamp.opening, 0.0, Eigen::Vector3d::UnitZ());
   constexpr int places = opening_grid * opening_grid;
@@ -135,6 +135,10 @@ void add_lamp(const Scene& scene, const Lamp& lamp, const Spectrum& light, doubl
         std::max(luminous_area(lamp.opening, height, lamp.axes.transpose() * from / d), least);
     if (I > 0.0) sum.add(lamp.name, point, area / (places * d * d), I / area);
   }
+}
+
+bool has_luminous_area(const Lamp& lamp) {
+  return lamp.opening.along_c0 > 0.0 && lamp.opening.along_c90 > 0.0;
 }
 
 /// Illuminance of the eye by reflected light alone, lx: off diffuse surfaces, and the luminaires'
@@ -176,6 +180,17 @@ bool counts_for_glare(double ahead, double beside, double above) {
   return ahead > 0.0 && std::abs(beside) <= most_beside * ahead && above <= most_above * ahead;
 }
 
+double glare_share(const Bands& bands, const ElementCaster& caster, const FreeSource& lamp,
+                   const Camera& eye, double luminous_height) {
+  const auto& light = std::get<LampLight>(lamp.shape);
+  if (!has_luminous_area(light.lamp)) return 0.0;
+  GlareSum sum(eye, caster);
+  add_lamp(bands, light.lamp, lamp.light, luminous_height, sum);
+  double share = 0.0;
+  for (const GlareSource& source : sum.finish()) share += source.share;
+  return share;
+}
+
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            const Camera& eye, const GatherOptions& gathering,
@@ -187,12 +202,11 @@ Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
   for (const FreeSource& source : direct_light.free_sources()) {
     const auto* light = std::get_if<LampLight>(&source.shape);
     if (!light) continue;
-    const LampOpening& opening = light->lamp.opening;
-    if (opening.along_c0 > 0.0 && opening.along_c90 > 0.0) {
+    if (has_luminous_area(light->lamp)) {
       const double height = luminous_heights.empty()
                                 ? 0.0
                                 : luminous_heights[static_cast<std::size_t>(source.number)];
-      add_lamp(scene, light->lamp, source.light, height, sum);
+      add_lamp(scene.bands, light->lamp, source.light, height, sum);
     } else {
       glare.left_out.push_back(light->lamp.name);
     }

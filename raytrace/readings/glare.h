@@ -52,6 +52,12 @@ struct Glare {
   std::vector<std::string> left_out{};
 };
 
+/// GlareSource::share of one lamp with an opening for an eye, as unified_glare_rating() has it: 0
+/// for a lamp that is out of sight or has no luminous area. `lamp` is a source with a LampLight,
+/// `luminous_height` that of its sides, m.
+double glare_share(const Bands& bands, const ElementCaster& caster, const FreeSource& lamp,
+                   const Camera& eye, double luminous_height);
+
 /// Unified glare rating for an eye at the camera's position that looks along its direction.
 ///
 /// - Sources within counts_for_glare(): surfaces that emit, and lamps with an opening, with the
