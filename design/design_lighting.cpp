@@ -256,6 +256,7 @@ DesignTask plan_design(const Scene& scene, DesignRequest request) {
     task.limits.push_back({.kind = limit.kind, .place = place, .value = limit.value});
   }
   require_luminaires(scene, request.watts);
+  task.places = allowed_places(scene, request.limits.moves);
   task.request = std::move(request);
   return task;
 }
@@ -291,6 +292,8 @@ LightingPlan design_lighting(const DesignTask& task, const ReportedScene& of, So
     surface.grid = grid;
     surface.lines = light.lines_of(grid);
   }
+  plan.measured = problem;
+  plan.dimmed = channels;
   find_levels(task, channels, light, problem, plan, progress);
   return plan;
 }

@@ -27,11 +27,13 @@ struct DesignTask {
   std::vector<int> grids{};            ///< limited ones: indices into LightingDesign::grids
   std::vector<Camera> eyes{};          ///< of the limited observers
   std::vector<DimmingLimit> limits{};  ///< in the order of the request
+  AllowedPlaces places{};              ///< of the luminaires that may be moved
 };
 
 /// Reads the lighting design of a scene and looks up the names of grids and observers, before
 /// anything is computed. Throws InputError for a scene without units of light or without
-/// luminaires, for a name that is not there, and what read_lighting_design() throws.
+/// luminaires, for a name that is not there, and what read_lighting_design() and allowed_places()
+/// throw.
 DesignTask plan_design(const Scene& scene, DesignRequest request);
 
 /// A limit, and what was measured at the levels of a plan.
@@ -44,6 +46,14 @@ struct LimitOutcome {
   Verdict verdict = Verdict::too_close;
   double at_full = 0.0;  ///< value with all luminaires at full level
   double price = 0.0;    ///< derivative of the least cost by the limit, W or lm for each unit
+};
+
+/// A design before its luminaires were moved.
+struct EarlierPlaces {
+  std::vector<Eigen::Vector3d> positions{};  ///< m, of LightingPlan::luminaires
+  double cost = 0.0;                         ///< the least there, W or lm
+  bool meets_all = false;                    ///< false: not all limits were met there
+  int solves = 0;  ///< of the scene, each with the luminaires in other places
 };
 
 /// Levels of luminaires for the least electric power.
@@ -61,6 +71,10 @@ struct LightingPlan {
   /// The least cost with all luminaires at one level; empty: no such level meets the limits.
   std::optional<double> cost_of_even{};
   std::vector<LimitOutcome> limits{};
+  /// The measured light of each luminaire or group at full level, and the limits without margins.
+  DimmingProblem measured{};
+  std::vector<int> dimmed{};                   ///< channel of each of `measured`.luminaires
+  std::optional<EarlierPlaces> earlier{};      ///< empty: luminaires were not moved
   std::vector<CalculationSurface> surfaces{};  ///< the limited grids, with the light of the levels
   double maintenance_factor = 1.0;
   int rays = 0;

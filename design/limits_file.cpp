@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <set>
 
@@ -111,6 +112,55 @@ void read_dimming(const TomlValue& value, LightingLimits& read) {
   }
 }
 
+// The axes of a word such as "xy".
+std::vector<int> read_axes(const TomlValue& value) {
+  const std::string word = value.name();
+  std::vector<int> axes;
+  for (const char letter : word) {
+    if (letter < 'x' || letter > 'z') {
+      value.fail(fmt::format(
+          "is '{}'; write the axes that luminaires may be moved along, such as \"xy\"", word));
+    }
+    axes.push_back(letter - 'x');
+  }
+  std::ranges::sort(axes);
+  if (std::ranges::adjacent_find(axes) != axes.end()) {
+    value.fail(fmt::format("is '{}'; write each axis once", word));
+  }
+  return axes;
+}
+
+std::vector<double> read_bounds(const TomlValue& value, std::size_t axes) {
+  std::vector<double> bounds;
+  for (const TomlValue& bound : value.elements("bound")) bounds.push_back(bound.number());
+  if (bounds.size() != axes) {
+    value.fail(
+        fmt::format("has {} numbers for {} axes; write one for each axis, in the order x, "
+                    "y, z",
+                    bounds.size(), axes));
+  }
+  return bounds;
+}
+
+void read_move(const TomlValue& value, LightingLimits& read) {
+  const TomlTable table = value.table({"luminaires", "axes", "lowest", "highest", "apart"});
+  WordedMove move{.origin = origin_of(value)};
+  const TomlValue names = table.require("luminaires");
+  for (const TomlValue& name : names.elements("name")) move.names.push_back(name.name());
+  if (move.names.empty()) names.fail("is empty; name the luminaires that may be moved");
+  move.axes = read_axes(table.require("axes"));
+  move.lowest = read_bounds(table.require("lowest"), move.axes.size());
+  const TomlValue highest = table.require("highest");
+  move.highest = read_bounds(highest, move.axes.size());
+  for (std::size_t i = 0; i < move.axes.size(); ++i) {
+    if (move.lowest[i] <= move.highest[i]) continue;
+    highest.fail(fmt::format("has {:g}, which is below the lowest place, {:g}", move.highest[i],
+                             move.lowest[i]));
+  }
+  if (const auto apart = table.find("apart")) move.apart = apart->number_at_least(0.0);
+  read.moves.push_back(std::move(move));
+}
+
 }  // namespace
 
 const char* limit_key(LimitKind kind) {
@@ -135,7 +185,7 @@ LightingLimits read_limits(const std::filesystem::path& path) {
   const TextFile file(path);
   const toml::table root = parse_toml(file);
   const TomlTable document =
-      TomlValue(file.path(), root, "").table({"maintenance", "limits", "glare", "dimming"});
+      TomlValue(file.path(), root, "").table({"maintenance", "limits", "glare", "dimming", "move"});
   LightingLimits read;
   if (const auto factor = document.find("maintenance")) {
     read.maintenance_factor = factor->positive();
@@ -149,6 +199,10 @@ LightingLimits read_limits(const std::filesystem::path& path) {
     document.fail("there are no limits; add at least one [[limits]] or [[glare]] table");
   }
   if (const auto dimming = document.find("dimming")) read_dimming(*dimming, read);
+  if (const auto moves = document.find("move")) {
+    if (!moves->is_array()) moves->fail("must be an array of tables; write [[move]]");
+    for (const TomlValue& move : moves->elements("move")) read_move(move, read);
+  }
   return read;
 }
 

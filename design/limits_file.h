@@ -23,6 +23,16 @@ struct WordedGroup {
   std::string origin{};  ///< "file:line:column: group 1"
 };
 
+/// Luminaires that may be moved: a [[move]] table.
+struct WordedMove {
+  std::vector<std::string> names{};  ///< or patterns as in a shell
+  std::vector<int> axes{};           ///< 0, 1 and 2 for x, y and z; rising
+  /// Bounds along each of `axes`, in the unit of the scene's file; lowest <= highest.
+  std::vector<double> lowest{}, highest{};
+  double apart = 0.0;    ///< least distance from other lamps, in the same unit, >= 0
+  std::string origin{};  ///< "file:line:column: move 1"
+};
+
 /// Limits of a lighting design and rules of dimming, as a file has them (docs/design.md).
 struct LightingLimits {
   std::vector<WordedLimit> limits{};
@@ -30,6 +40,7 @@ struct LightingLimits {
   std::optional<double> maintenance_factor{};
   double least_level = 0.0;  ///< of each luminaire, [0,1]
   std::vector<WordedGroup> groups{};
+  std::vector<WordedMove> moves{};
 };
 
 /// Key of a kind of limit in the file, such as "mean_at_least".

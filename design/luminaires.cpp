@@ -11,6 +11,7 @@
 #include "scene/io/nearest_name.h"
 #include "scene/io/numbered_names.h"
 #include "scene/lamp.h"
+#include "scene/projected_picture.h"
 
 namespace lightwell {
 namespace {
@@ -87,7 +88,86 @@ std::vector<int> groups_of(const std::vector<Member>& members,
   return group_of;
 }
 
+// Throws InputError unless the luminaire can be moved.
+void require_movable(const Scene& scene, const Member& member, const WordedMove& move) {
+  if (member.lamp < 0) {
+    throw InputError(fmt::format(
+        "{} names '{}', which is a surface, and only lamps are moved; give the luminaire as a "
+        "[[lamps]] table with its photometric file, or leave it out",
+        move.origin, member.name));
+  }
+  const Lamp& lamp = scene.lamps[static_cast<std::size_t>(member.lamp)];
+  if (std::holds_alternative<SharedPicture>(lamp.shape)) {
+    throw InputError(fmt::format(
+        "{} names '{}', which projects a picture onto its place, and is not moved; leave it out",
+        move.origin, member.name));
+  }
+}
+
+// The box of a lamp, which must hold the lamp.
+AllowedPlace allowed_place(const Scene& scene, const Member& member, const WordedMove& move) {
+  const Eigen::Vector3d position = scene.lamps[static_cast<std::size_t>(member.lamp)].position;
+  AllowedPlace place{.lamp = member.lamp,
+                     .low = position,
+                     .high = position,
+                     .apart = move.apart * scene.metres_per_unit};
+  for (std::size_t i = 0; i < move.axes.size(); ++i) {
+    const int axis = move.axes[i];
+    place.low[axis] = move.lowest[i] * scene.metres_per_unit;
+    place.high[axis] = move.highest[i] * scene.metres_per_unit;
+    if (position[axis] >= place.low[axis] - place_tolerance &&
+        position[axis] <= place.high[axis] + place_tolerance) {
+      continue;
+    }
+    throw InputError(fmt::format(
+        "{} lets '{}' move from {} = {:g} to {:g}, and the scene has it at {:g}; widen the box, or "
+        "move the luminaire into it",
+        move.origin, member.name, static_cast<char>('x' + axis), move.lowest[i], move.highest[i],
+        position[axis] / scene.metres_per_unit));
+  }
+  return place;
+}
+
 }  // namespace
+
+AllowedPlaces allowed_places(const Scene& scene, std::span<const WordedMove> moves) {
+  const std::vector<Member> members = members_of(scene);
+  AllowedPlaces allowed;
+  std::vector<std::string> origin_of_lamp(scene.lamps.size());
+  for (const WordedMove& move : moves) {
+    for (const std::string& name : move.names) {
+      bool any = false;
+      for (const Member& member : members) {
+        if (!stands_for(name, member)) continue;
+        any = true;
+        require_movable(scene, member, move);
+        std::string& origin = origin_of_lamp[static_cast<std::size_t>(member.lamp)];
+        if (origin == move.origin) continue;
+        if (!origin.empty()) {
+          throw InputError(
+              fmt::format("{} would move '{}', as {} does; leave it out of one of them",
+                          move.origin, member.name, origin));
+        }
+        origin = move.origin;
+        allowed.moved.push_back(allowed_place(scene, member, move));
+      }
+      if (!any) {
+        throw InputError(fmt::format("{} names '{}', and there is no luminaire of that name.{}",
+                                     move.origin, name, did_you_mean(name, names_of(members))));
+      }
+    }
+  }
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
+    if (origin_of_lamp[i].empty()) allowed.fixed.push_back(scene.lamps[i].position);
+  }
+  if (!allowed.moved.empty() && !allows(allowed, places_of(scene, allowed))) {
+    throw InputError(fmt::format(
+        "{}: lamps are closer to each other than 'apart' allows; make that distance smaller, or "
+        "part the lamps in the scene",
+        moves.front().origin));
+  }
+  return allowed;
+}
 
 EmitterChannels dimming_channels(const Scene& scene, std::span<const WordedGroup> groups) {
   const std::vector<Member> members = members_of(scene);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "design/limits_file.h"
+#include "design/places/allowed_places.h"
 #include "radiosity/solution/solution.h"
 #include "scene/io/lighting_design.h"
 #include "viewer/report/requested_grids.h"
@@ -31,6 +32,12 @@ EmitterChannels dimming_channels(const Scene& scene, std::span<const WordedGroup
 
 /// Throws InputError if the scene has no luminaires, or none of a name in `watts`.
 void require_luminaires(const Scene& scene, std::span<const NamedNumber> watts);
+
+/// The lamps that [[move]] tables name, and the places that they may have. Throws InputError for a
+/// name that stands for no luminaire, for a surface that emits light and for a lamp that projects a
+/// picture, which are not moved, for a lamp of two tables, for a box that does not hold its lamp,
+/// and for lamps that are closer to each other than they may be.
+AllowedPlaces allowed_places(const Scene& scene, std::span<const WordedMove> moves);
 
 /// The luminaires of a solution with channels, surfaces first; surfaces without patches are left
 /// out. Throws InputError for a luminaire without a channel, or with several. Power is that of the

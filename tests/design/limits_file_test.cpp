@@ -32,6 +32,12 @@ ugr_at_most = 19
 [dimming]
 least = 0.1
 groups = [["row *", "spot"], ["wall washer"]]
+[[move]]
+luminaires = ["row *"]
+axes = "zx"
+lowest = [-1, 2.0]
+highest = [3.5, 2.8]
+apart = 0.5
 )");
   EXPECT_DOUBLE_EQ(limits.maintenance_factor.value(), 0.8);
   EXPECT_DOUBLE_EQ(limits.least_level, 0.1);
@@ -48,6 +54,40 @@ groups = [["row *", "spot"], ["wall washer"]]
       << limits.limits[3].origin;
   ASSERT_EQ(limits.groups.size(), 2u);
   EXPECT_EQ(limits.groups[0].names, (std::vector<std::string>{"row *", "spot"}));
+  ASSERT_EQ(limits.moves.size(), 1u);
+  EXPECT_EQ(limits.moves[0].axes, (std::vector<int>{0, 2}));
+  EXPECT_EQ(limits.moves[0].lowest, (std::vector<double>{-1.0, 2.0}));
+  EXPECT_EQ(limits.moves[0].highest, (std::vector<double>{3.5, 2.8}));
+  EXPECT_DOUBLE_EQ(limits.moves[0].apart, 0.5);
+}
+
+TEST(LimitsFile, MovesAreRefusedWithALineAndASentence) {
+  const std::string limit = "[[glare]]\nobserver = \"eye\"\nugr_at_most = 19\n";
+  const std::string move = limit + "[[move]]\nluminaires = [\"spot\"]\n";
+  const std::vector<std::pair<std::string, std::string>> cases = {
+      {"move = 3\n" + limit, "write [[move]]"},
+      {limit + "[[move]]\naxes = \"x\"\nlowest = [0]\nhighest = [1]\n", "luminaires"},
+      {limit + "[[move]]\nluminaires = []\naxes = \"x\"\nlowest = [0]\nhighest = [1]\n",
+       "is empty"},
+      {move + "lowest = [0]\nhighest = [1]\n", "axes"},
+      {move + "axes = \"xw\"\nlowest = [0, 0]\nhighest = [1, 1]\n", "is 'xw'; write the axes"},
+      {move + "axes = \"xx\"\nlowest = [0, 0]\nhighest = [1, 1]\n", "write each axis once"},
+      {move + "axes = \"\"\nlowest = []\nhighest = []\n", ":6:"},
+      {move + "axes = \"xy\"\nlowest = [0]\nhighest = [1, 1]\n", "has 1 numbers for 2 axes"},
+      {move + "axes = \"xy\"\nlowest = [0, 2]\nhighest = [1, 1]\n", "below the lowest place, 2"},
+      {move + "axes = \"x\"\nlowest = [nan]\nhighest = [1]\n", ":7:"},
+      {move + "axes = \"x\"\nlowest = [0]\nhighest = [1]\napart = -1\n", ":9:"},
+      {move + "axes = \"x\"\nlowest = [0]\nhighest = [1]\nstep = 1\n", "step"}};
+  for (const auto& [text, sentence] : cases) {
+    try {
+      read(text);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << text << "\n"
+                                                                             << error.what();
+      EXPECT_NE(std::string(error.what()).find("limits.toml"), std::string::npos) << error.what();
+    }
+  }
 }
 
 TEST(LimitsFile, IsRefusedWithALineAndASentence) {

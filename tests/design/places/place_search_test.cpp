@@ -139,5 +139,38 @@ TEST(PlaceSearch, LampsKeepTheirDistanceAndTheirBoxes) {
   EXPECT_NEAR(closest, 0.5, 0.01);
 }
 
+/// A lamp with an opening dazzles an eye that looks at it too much for the light that the strip
+/// needs. Places are found from which it does not.
+TEST(PlaceSearch, GlareIsKeptFromAnotherPlace) {
+  Strip room({{2.0, 1.5}});
+  room.scene.lamps[0].opening = {.along_c0 = 0.2, .along_c90 = 0.2};
+  const Camera eye{.name = "seat",
+                   .position = {0.5, 1.5, 1.2},
+                   .direction = Eigen::Vector3d::UnitX(),
+                   .up = Eigen::Vector3d::UnitZ()};
+  PlacedLightOptions effort;
+  effort.mesh.max_patch_size = 0.5;
+  constexpr int only[] = {0};
+  const PlacedLight light(room.scene, only, {.grids = {room.strip}, .eyes = {eye}}, {}, effort);
+  const Eigen::Matrix3Xd places = places_of(room.scene, room.allowed);
+  const PlacedReadings here = light.at(places);
+  DimmingProblem measured{.luminaires = {{.name = "lamp", .cost = 50.0}},
+                          .grids = {{.name = "strip", .lux = here.lux.value}},
+                          .observers = {{.name = "seat",
+                                         .glare = here.glare.value.row(0).transpose(),
+                                         .background = here.background.value.row(0).transpose()}},
+                          .limits = {{.kind = LimitKind::mean_at_least, .value = 18.0},
+                                     {.kind = LimitKind::ugr_at_most, .value = 13.0}}};
+  const PlaceOptimum found = descend({.light = light,
+                                      .allowed = room.allowed,
+                                      .measured = measured,
+                                      .places = places,
+                                      .luminaire = {0}});
+  EXPECT_FALSE(found.first.is_feasible);
+  EXPECT_GT(found.first.reached[1], 13.1);
+  EXPECT_TRUE(found.plan.is_feasible);
+  EXPECT_LE(found.plan.reached[1], 13.0 + 1e-3);
+}
+
 }  // namespace
 }  // namespace lightwell::place_search_test
