@@ -243,7 +243,7 @@ void Report::add_solution(const SolvedScene& solved, bool solved_now) {
   facts_["parts"] = parts_json(solved);
   facts_["outcome"] = outcome_name(solution.outcome);
   if (!solved_now) return;
-  for (const PhaseSeconds& phase : solution.seconds) phases_.push_back(phase);
+  for (const auto& [phase, seconds] : solution.seconds) add_phase(phase, seconds);
 }
 
 void Report::add_storage(const StorageReport& storage) {
@@ -255,7 +255,12 @@ void Report::add_storage(const StorageReport& storage) {
 }
 
 void Report::add_phase(const std::string& phase, double seconds) {
-  phases_.push_back({phase, seconds});
+  const auto known = std::ranges::find(phases_, phase, &PhaseSeconds::phase);
+  if (known == phases_.end()) {
+    phases_.push_back({phase, seconds});
+  } else {
+    known->seconds += seconds;
+  }
 }
 
 void Report::add_file(const std::filesystem::path& file) {

@@ -39,6 +39,24 @@ std::string luminaire_lines(const LightingPlan& plan) {
   return text;
 }
 
+// A place as an array of three numbers in the unit of the scene's file.
+Json place_json(const Eigen::Vector3d& place, double metres_per_unit) {
+  const Eigen::Vector3d p = place / metres_per_unit;
+  return {p.x(), p.y(), p.z()};
+}
+
+std::string place_lines(const LightingPlan& plan, double metres_per_unit) {
+  std::string text;
+  for (std::size_t i = 0; i < plan.luminaires.size(); ++i) {
+    const Luminaire& luminaire = plan.luminaires[i];
+    const Eigen::Vector3d& before = plan.earlier->positions[i];
+    if (before == luminaire.position) continue;
+    text += fmt::format("  {:<24} {} -> {}\n", luminaire.name, place_text(before, metres_per_unit),
+                        place_text(luminaire.position, metres_per_unit));
+  }
+  return text.empty() ? "  no luminaire was moved\n" : text;
+}
+
 std::string limit_lines(const LightingPlan& plan) {
   std::string text;
   for (const LimitOutcome& outcome : plan.limits) {
@@ -73,36 +91,61 @@ std::string levels_csv(const LightingPlan& plan, double metres_per_unit) {
   return csv;
 }
 
-Json plan_json(const LightingPlan& plan) {
+std::string places_csv(const LightingPlan& plan, double metres_per_unit) {
+  std::string csv = "luminaire,x_before,y_before,z_before,x,y,z,moved\n";
+  for (std::size_t i = 0; i < plan.luminaires.size(); ++i) {
+    const Eigen::Vector3d a = plan.earlier->positions[i] / metres_per_unit;
+    const Eigen::Vector3d b = plan.luminaires[i].position / metres_per_unit;
+    fmt::format_to(std::back_inserter(csv), "{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f}\n",
+                   quoted_field(plan.luminaires[i].name), a.x(), a.y(), a.z(), b.x(), b.y(), b.z(),
+                   (b - a).norm());
+  }
+  return csv;
+}
+
+Json plan_json(const LightingPlan& plan, double metres_per_unit) {
   Json luminaires = Json::array(), limits = Json::array();
-  for (const Luminaire& luminaire : plan.luminaires) {
+  for (std::size_t i = 0; i < plan.luminaires.size(); ++i) {
+    const Luminaire& luminaire = plan.luminaires[i];
     Json json = {{"name", luminaire.name},
                  {"group", plan.groups[static_cast<std::size_t>(luminaire.channel)]},
                  {"level", level_of(plan, luminaire)},
                  {"lumens_full", luminaire.lumens}};
     if (luminaire.watts > 0.0) json["watts_full"] = luminaire.watts;
+    if (plan.earlier) {
+      json["place_before"] = place_json(plan.earlier->positions[i], metres_per_unit);
+      json["place"] = place_json(luminaire.position, metres_per_unit);
+    }
     luminaires.push_back(std::move(json));
   }
   for (const LimitOutcome& outcome : plan.limits) limits.push_back(limit_json(outcome));
   Json even;
   if (plan.cost_of_even) even = *plan.cost_of_even;
-  return {{"feasible", plan.is_feasible},
-          {"meets_all", plan.meets_all()},
-          {"minimised", plan.is_in_watts ? "watts" : "lumens"},
-          {"at_full_power", plan.cost_at_full},
-          {"optimum", plan.cost},
-          {"optimum_without_margin", plan.cost_without_margin},
-          {"all_at_one_level", std::move(even)},
-          {"maintenance_factor", plan.maintenance_factor},
-          {"rays", plan.rays},
-          {"measurements", plan.measurements},
-          {"limits", std::move(limits)},
-          {"luminaires", std::move(luminaires)},
-          {"design_notes", plan.notes}};
+  Json figures = {{"feasible", plan.is_feasible},
+                  {"meets_all", plan.meets_all()},
+                  {"minimised", plan.is_in_watts ? "watts" : "lumens"},
+                  {"at_full_power", plan.cost_at_full},
+                  {"optimum", plan.cost},
+                  {"optimum_without_margin", plan.cost_without_margin},
+                  {"all_at_one_level", std::move(even)},
+                  {"maintenance_factor", plan.maintenance_factor},
+                  {"rays", plan.rays},
+                  {"measurements", plan.measurements},
+                  {"limits", std::move(limits)},
+                  {"luminaires", std::move(luminaires)},
+                  {"design_notes", plan.notes}};
+  if (plan.earlier) {
+    figures["moved"] = {{"optimum_before", plan.earlier->cost},
+                        {"met_all_before", plan.earlier->meets_all},
+                        {"solves", plan.earlier->solves}};
+  }
+  return figures;
 }
 
-std::string plan_text(const LightingPlan& plan) {
-  std::string text = "luminaires\n" + luminaire_lines(plan) + "limits\n" + limit_lines(plan);
+std::string plan_text(const LightingPlan& plan, double metres_per_unit) {
+  std::string text = "luminaires\n" + luminaire_lines(plan);
+  if (plan.earlier) text += "places\n" + place_lines(plan, metres_per_unit);
+  text += "limits\n" + limit_lines(plan);
   for (const std::string& sentence : power_sentences(plan)) text += sentence + "\n";
   for (const std::string& sentence : unmet_sentences(plan)) text += sentence + "\n";
   return text;

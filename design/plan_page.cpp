@@ -56,6 +56,22 @@ void add_levels(const LightingPlan& plan, std::string& page) {
   page += "</table>\n";
 }
 
+void add_places(const LightingPlan& plan, const Scene& scene, std::string& page) {
+  if (!plan.earlier) return;
+  const auto out = std::back_inserter(page);
+  fmt::format_to(out,
+                 "<h2>Places</h2>\n<table><tr><th>Luminaire</th><th>before, {0}</th><th>now, {0}"
+                 "</th></tr>\n",
+                 html_text(scene.unit_name));
+  for (std::size_t i = 0; i < plan.luminaires.size(); ++i) {
+    const Luminaire& luminaire = plan.luminaires[i];
+    fmt::format_to(out, "<tr><td>{}</td><td>{}</td><td>{}</td></tr>\n", html_text(luminaire.name),
+                   place_text(plan.earlier->positions[i], scene.metres_per_unit),
+                   place_text(luminaire.position, scene.metres_per_unit));
+  }
+  page += "</table>\n";
+}
+
 // The surface with the level of each luminaire as the label of the nearest in its plan.
 CalculationSurface labelled(const LightingPlan& plan, CalculationSurface surface) {
   constexpr double same_place = 0.01;  // m; a plan shows the middle of a luminaire's outline
@@ -104,14 +120,15 @@ std::string plan_page(const LightingPlan& plan, const Scene& scene) {
   const std::string title = scene.title.empty() ? scene.file.filename().string() : scene.title;
   std::string page = page_begin(title);
   page += fmt::format(
-      "<h1>{}</h1>\n<p>Levels of least {} within limits. Maintenance factor {:g}; "
+      "<h1>{}</h1>\n<p>{} of least {} within limits. Maintenance factor {:g}; "
       "bounds with odds of 19 to 1.</p>\n",
-      html_text(title), plan.is_in_watts ? "electric power" : "luminous flux",
-      plan.maintenance_factor);
+      html_text(title), plan.earlier ? "Levels and places" : "Levels",
+      plan.is_in_watts ? "electric power" : "luminous flux", plan.maintenance_factor);
   page += list_section("Power", power_sentences(plan));
   page += list_section("Limits that are not met", unmet_sentences(plan));
   add_limits(plan, page);
   add_levels(plan, page);
+  add_places(plan, scene, page);
   add_plans(plan, scene, page);
   page += list_section("Notes", plan.notes);
   return page + page_end;

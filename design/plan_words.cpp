@@ -75,6 +75,24 @@ std::string sentence_of(const LightingPlan& plan, const LimitOutcome& outcome) {
                      place_text(limit), quantity, value_text(limit.kind, outcome.reached), asked);
 }
 
+// The cost before luminaires were moved.
+std::string earlier_sentence(const LightingPlan& plan) {
+  const EarlierPlaces& earlier = *plan.earlier;
+  const char* const unit = cost_unit(plan);
+  if (!earlier.meets_all) {
+    return fmt::format(
+        "the luminaires where the scene has them would take {:.4g} {} and miss limits",
+        earlier.cost, unit);
+  }
+  if (!(earlier.cost > plan.cost) || !plan.meets_all()) {
+    return fmt::format(
+        "no places were found that take less than the {:.4g} {} of those in the scene",
+        earlier.cost, unit);
+  }
+  return fmt::format("the luminaires where the scene has them would take {:.4g} {}, {:.3g} % more",
+                     earlier.cost, unit, 100.0 * (earlier.cost / plan.cost - 1.0));
+}
+
 }  // namespace
 
 const char* cost_unit(const LightingPlan& plan) {
@@ -115,6 +133,11 @@ std::string cost_of_step(const LightingPlan& plan, const LimitOutcome& outcome) 
   return fmt::format("{:.3g} {} {}", cost, cost_unit(plan), step_name(outcome.limit.kind));
 }
 
+std::string place_text(const Eigen::Vector3d& place, double metres_per_unit) {
+  const Eigen::Vector3d p = place / metres_per_unit;
+  return fmt::format("({:.2f}, {:.2f}, {:.2f})", p.x(), p.y(), p.z());
+}
+
 double level_of(const LightingPlan& plan, const Luminaire& luminaire) {
   return plan.levels[static_cast<std::size_t>(luminaire.channel)];
 }
@@ -124,12 +147,16 @@ std::vector<std::string> power_sentences(const LightingPlan& plan) {
   std::vector<std::string> sentences = {fmt::format("{} {:.4g} {} of {:.4g} {}",
                                                     plan.is_in_watts ? "power" : "flux", plan.cost,
                                                     unit, plan.cost_at_full, unit)};
-  if (!plan.is_feasible) return sentences;
+  if (!plan.is_feasible) {
+    if (plan.earlier) sentences.push_back(earlier_sentence(plan));
+    return sentences;
+  }
   if (plan.cost > plan.cost_without_margin) {
     sentences.back() +=
         fmt::format(", of which {:.2g} {} keep the limits by the error of the light",
                     plan.cost - plan.cost_without_margin, unit);
   }
+  if (plan.earlier) sentences.push_back(earlier_sentence(plan));
   if (!plan.cost_of_even) {
     sentences.emplace_back("all luminaires at one level would not meet the limits");
   } else if (plan.cost > 0.0) {

@@ -19,8 +19,11 @@ std::string value_text(LimitKind kind, double value);
 /// The cost of a small step to a stricter limit, such as "2.4 W for 10 lx"; empty: nothing.
 std::string cost_of_step(const LightingPlan& plan, const LimitOutcome& outcome);
 
-/// Power at the levels, the margin in it, the power of even dimming and the limit that binds most:
-/// a sentence each, without full stops.
+/// A place such as "(1.20, 3.40, 2.79)", in the unit of the scene's file.
+std::string place_text(const Eigen::Vector3d& place, double metres_per_unit);
+
+/// Power at the levels, the margin in it, the power before luminaires were moved, the power of even
+/// dimming and the limit that binds most: a sentence each, without full stops.
 std::vector<std::string> power_sentences(const LightingPlan& plan);
 
 /// A sentence without full stop for each limit that is not met.

@@ -72,6 +72,67 @@ TEST_F(DesignCommand, WritesLevelsFiguresAndTheLight) {
   EXPECT_GE(report["surfaces"][0]["E_m"].get<double>(), 60.0);
 }
 
+const std::string move_spots =
+    "[[move]]\nluminaires = [\"spot\"]\naxes = \"xy\"\nlowest = [0.5, 0.5]\n"
+    "highest = [3.5, 2.5]\napart = 0.3\n";
+
+/// The scene is written with the lamps where they were moved to, and the solution is of that scene.
+TEST_F(DesignCommand, MovesLampsAndWritesTheScene) {
+  const std::string limits =
+      "maintenance = 0.8\n[[limits]]\ngrid = \"plane\"\nmean_at_least = 130\n"
+      "uniformity_at_least = 0.3\n";
+  // A panel that takes so much stays off where spots can give the light.
+  const Json json = run_json(design(limits + move_spots) + Words{"--watts", "panel=900"});
+  EXPECT_TRUE(json["meets_all"]);
+  EXPECT_LT(json["optimum"].get<double>(), json["moved"]["optimum_before"].get<double>());
+  EXPECT_GE(json["moved"]["solves"].get<int>(), 2);
+  const Json& spot = json["luminaires"][1];
+  EXPECT_EQ(spot["name"], "spot 1");
+  EXPECT_EQ(spot["place_before"], Json({3.0, 2.0, 2.4}));
+  EXPECT_NE(spot["place"], spot["place_before"]);
+  EXPECT_EQ(json["luminaires"][0]["place"], json["luminaires"][0]["place_before"]) << "a surface";
+  const std::string table = content_of(folder / "out/places.csv");
+  EXPECT_EQ(table.rfind("luminaire,x_before,y_before,z_before,x,y,z,moved\n", 0), 0u) << table;
+  EXPECT_TRUE(says(content_of(folder / "out/design.html"), "<h2>Places</h2>"));
+
+  const Json info = run_json({"info", "out/solution.vtp"});
+  EXPECT_EQ(info["scene"], "out/moved.toml");
+  const Json report =
+      run_json({"report", "out/moved.toml", "out/solution.vtp", "--maintenance", "0.8"});
+  EXPECT_GE(report["surfaces"][0]["E_m"].get<double>(), 130.0);
+  const Ended of_before = run({"report", "room.toml", "out/solution.vtp"});
+  EXPECT_EQ(of_before.code, 3) << "the solution is not that of the scene as it was";
+}
+
+TEST_F(DesignCommand, MovesThatCannotBeAreRefusedWithASentence) {
+  const std::string limit = "[[limits]]\ngrid = \"plane\"\nmean_at_least = 60\n";
+  const auto move = [&](const std::string& name, const std::string& axes, const std::string& low) {
+    return limit + "[[move]]\nluminaires = [\"" + name + "\"]\naxes = \"" + axes +
+           "\"\nlowest = [" + low + "]\nhighest = [3.5]\n";
+  };
+  expect_refused(move("spt", "x", "0.5"), "Did you mean 'spot'?");
+  expect_refused(move("panel", "x", "0.5"), "which is a surface, and only lamps are moved");
+  expect_refused(move("spot", "w", "0.5"), "write the axes that luminaires may be moved along");
+  expect_refused(move("spot", "x", "2"), "the scene has it at 1");
+  expect_refused(limit + move_spots +
+                     "[[move]]\nluminaires = [\"spot 2\"]\naxes = \"z\"\n"
+                     "lowest = [2]\nhighest = [2.4]\n",
+                 "would move 'spot 2', as ");
+}
+
+TEST_F(DesignCommand, OfASolutionLampsAreNotMoved) {
+  ASSERT_EQ(
+      run(Words{"solve", "room.toml", "-o", "room.vtp", "--channels", "per-luminaire"} + quick())
+          .code,
+      0);
+  const Words words = design("[[limits]]\ngrid = \"plane\"\nmean_at_least = 60\n" + move_spots);
+  const Ended ended =
+      run(Words{words[0], words[1], "room.vtp"} + Words(words.begin() + 2, words.end()));
+  EXPECT_EQ(ended.code, 3) << ended.err;
+  EXPECT_NE(ended.err.find("leave the solution or the [[move]] tables out"), std::string::npos)
+      << ended.err;
+}
+
 TEST_F(DesignCommand, LimitsOutOfReachEndWithCodeFourAndTheNearestLevels) {
   const Ended ended = run(design("[[limits]]\ngrid = \"plane\"\nmean_at_least = 90000\n"));
   EXPECT_EQ(ended.code, 4) << ended.err;
