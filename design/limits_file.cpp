@@ -134,10 +134,9 @@ std::vector<double> read_bounds(const TomlValue& value, std::size_t axes) {
   std::vector<double> bounds;
   for (const TomlValue& bound : value.elements("bound")) bounds.push_back(bound.number());
   if (bounds.size() != axes) {
-    value.fail(
-        fmt::format("has {} numbers for {} axes; write one for each axis, in the order x, "
-                    "y, z",
-                    bounds.size(), axes));
+    value.fail(fmt::format(
+        "must have as many numbers as there are axes, {}, in the order x, y, z; it has {}", axes,
+        bounds.size()));
   }
   return bounds;
 }
@@ -201,7 +200,7 @@ LightingLimits read_limits(const std::filesystem::path& path) {
   if (const auto dimming = document.find("dimming")) read_dimming(*dimming, read);
   if (const auto moves = document.find("move")) {
     if (!moves->is_array()) moves->fail("must be an array of tables; write [[move]]");
-    for (const TomlValue& move : moves->elements("move")) read_move(move, read);
+    for (const TomlValue& move : moves->elements("table")) read_move(move, read);
   }
   return read;
 }

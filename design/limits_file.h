@@ -30,7 +30,7 @@ struct WordedMove {
   /// Bounds along each of `axes`, in the unit of the scene's file; lowest <= highest.
   std::vector<double> lowest{}, highest{};
   double apart = 0.0;    ///< least distance from other lamps, in the same unit, >= 0
-  std::string origin{};  ///< "file:line:column: move 1"
+  std::string origin{};  ///< "file:line:column: table 1 of move"
 };
 
 /// Limits of a lighting design and rules of dimming, as a file has them (docs/design.md).

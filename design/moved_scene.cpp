@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 #include <vector>
@@ -30,8 +31,7 @@ class EditedText {
     }
   }
 
-  void replace(const toml::node& node, std::string with) {
-    const toml::source_region& at = node.source();
+  void replace(const toml::source_region& at, std::string with) {
     edits_.push_back({.begin = byte_of(at.begin), .end = byte_of(at.end), .with = std::move(with)});
   }
 
@@ -88,7 +88,7 @@ void name_anew(const toml::node& node, const NamedFiles& named, EditedText& edit
     if (word->get().empty() || given.is_absolute()) return;
     const fs::path file = fs::weakly_canonical(named.before / given);
     if (!named.files.contains(file)) return;
-    edited.replace(node, quoted(file.lexically_relative(named.after).generic_string()));
+    edited.replace(node.source(), quoted(file.lexically_relative(named.after).generic_string()));
   }
 }
 
@@ -99,19 +99,36 @@ std::string coordinate(double metres, double metres_per_unit) {
   return text + (text.back() == '.' ? "0" : "");
 }
 
-void place_lamps(const Scene& scene, const toml::array& lamps, EditedText& edited) {
-  for (std::size_t i = 0; i < std::min(lamps.size(), scene.lamps.size()); ++i) {
-    const auto* table = lamps[i].as_table();
-    const toml::array* position = table ? (*table)["position"].as_array() : nullptr;
-    if (!position) continue;
-    for (int axis = 0; axis < 3; ++axis) {
-      const toml::node* value = position->get(static_cast<std::size_t>(axis));
-      const auto given = value ? value->value<double>() : std::nullopt;
-      const double place = scene.lamps[i].position[axis];
-      if (!given || scene.metres_per_unit * *given == place) continue;
-      edited.replace(*value, coordinate(place, scene.metres_per_unit));
+// Gives a lamp that looks at a point the direction of before, as the reader has it: the point less
+// the position, to the last bit.
+void keep_direction(const toml::table& lamp, const std::array<double, 3>& position,
+                    EditedText& edited) {
+  for (const auto& [key, value] : lamp) {
+    const auto* point = value.as_array();
+    if (key.str() != "look_at" || !point) continue;
+    std::array<double, 3> aim{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      aim[axis] = (*point)[axis].value_or(0.0) - position[axis];
     }
+    edited.replace(key.source(), "aim");
+    edited.replace(value.source(), fmt::format("[{}, {}, {}]", aim[0], aim[1], aim[2]));
   }
+}
+
+void place_lamp(const toml::table& table, const Lamp& lamp, double metres_per_unit,
+                EditedText& edited) {
+  const toml::array* position = table["position"].as_array();
+  if (!position || position->size() != 3) return;
+  std::array<double, 3> given{};
+  bool is_moved = false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    given[axis] = (*position)[axis].value_or(0.0);
+    const double place = lamp.position[static_cast<Eigen::Index>(axis)];
+    if (metres_per_unit * given[axis] == place) continue;
+    edited.replace((*position)[axis].source(), coordinate(place, metres_per_unit));
+    is_moved = true;
+  }
+  if (is_moved) keep_direction(table, given, edited);
 }
 
 }  // namespace
@@ -125,7 +142,12 @@ std::optional<std::string> moved_scene_text(const Scene& scene, const fs::path& 
                    .after = fs::weakly_canonical(folder)};
   for (const fs::path& path : scene.files) named.files.insert(fs::weakly_canonical(path));
   name_anew(document, named, edited);
-  if (const auto* lamps = document["lamps"].as_array()) place_lamps(scene, *lamps, edited);
+  if (const auto* lamps = document["lamps"].as_array()) {
+    for (std::size_t i = 0; i < std::min(lamps->size(), scene.lamps.size()); ++i) {
+      const auto* table = (*lamps)[i].as_table();
+      if (table) place_lamp(*table, scene.lamps[i], scene.metres_per_unit, edited);
+    }
+  }
   return edited.text();
 }
 

@@ -18,7 +18,7 @@ TILT=NONE
 100 80 0
 )";
 
-/// The lamps of a file in centimetres, with comments and letters of several bytes before places.
+/// Lamps of a file in centimetres, with comments and letters of several bytes before places.
 const std::string text = R"(unit = "cm"
 [materials.grau]
 reflectance = 0.5  # größer
@@ -36,6 +36,11 @@ position = [
   200,  # x
   150, 240]
 candela = 10
+[[lamps]]
+position = [310.1, 20.7, 200]
+look_at = [100.3, 150, 0.1]
+cone = [20, 30]
+lumens = 100
 )";
 
 TEST(MovedScene, ReadsAsTheSceneWithItsLampsMoved) {
@@ -46,12 +51,15 @@ TEST(MovedScene, ReadsAsTheSceneWithItsLampsMoved) {
   Scene scene = read_scene(folder.write("room.toml", text));
   scene.lamps[0].position.x() = scene.metres_per_unit * 87.654321;
   scene.lamps[1].position.y() = scene.metres_per_unit * 33.25;
+  scene.lamps[2].position.x() = scene.metres_per_unit * 299.9;
   const auto moved = moved_scene_text(scene, folder / "out");
   ASSERT_TRUE(moved);
   EXPECT_NE(moved->find("position = [87.654321, 120.5, 240]   # oben"), std::string::npos)
       << *moved;
   EXPECT_NE(moved->find("  200,  # x\n  33.25, 240]"), std::string::npos) << *moved;
   EXPECT_NE(moved->find("file = \"../luminaires/spot.ies\""), std::string::npos) << *moved;
+  EXPECT_EQ(moved->find("look_at"), std::string::npos) << "the lamp keeps its direction\n"
+                                                       << *moved;
   const Scene again = read_scene(folder.write("out/moved.toml", *moved));
   EXPECT_EQ(scene_hash(again), scene_hash(scene));
 }
