@@ -75,8 +75,7 @@ struct DimmingPlan {
   /// Per limit: derivative of the least cost by the value of the limit (the dual value); 0 of a
   /// limit that does not bind, and for a plan that is not feasible.
   std::vector<double> price{};
-  /// What the worst limit is missed by, relative (see best_dimming()); 0 for a plan that is
-  /// feasible.
+  /// Largest miss of a limit, relative (see best_dimming()); 0 for a plan that is feasible.
   double worst_miss = 0.0;
   /// Derivatives of the least cost, or of `worst_miss` for a plan that is not feasible.
   LightPrices light_price{};

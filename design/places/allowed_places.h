@@ -16,7 +16,7 @@ struct AllowedPlace {
   double apart = 0.0;  ///< between middles, >= 0
 };
 
-/// Where lamps may be together.
+/// Boxes and distances of lamps that are moved together.
 struct AllowedPlaces {
   std::vector<AllowedPlace> moved{};     ///< a lamp each
   std::vector<Eigen::Vector3d> fixed{};  ///< m, places of lamps that stay

@@ -25,7 +25,7 @@ struct PlacedLightOptions {
   Progress progress{};
 };
 
-/// What light is needed at: points of grids, and eyes.
+/// Receivers of light: points of grids, and eyes.
 struct LightReceivers {
   std::vector<LuxGrid> grids{};
   std::vector<Camera> eyes{};

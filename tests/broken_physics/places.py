@@ -107,4 +107,10 @@ PLACES = [
      "return std::numbers::inv_pi * std::min(height * above / (r2 * r2), light.most);",
      "return broken(34) * std::numbers::inv_pi * std::min(height * above / (r2 * r2), light.most);",
      "radiosity:VirtualLight.* raytrace"),
+    (35, "design/places/kernel_slope.cpp", "derivative of a lamp's light by its place",
+     ".gradient = S / r3 *", ".gradient = broken(35) * S / r3 *",
+     "design:KernelSlope*:*KernelSlopes* design"),
+    (36, "design/optimum/dimming.cpp", "price of a luminaire's light at a point",
+     "price -= y * d.transpose();", "price -= broken(36) * y * d.transpose();",
+     "design:Dimming.* design"),
 ]

@@ -59,8 +59,8 @@ struct Strip {
 
 class OneLamp : public testing::TestWithParam<LimitKind> {};
 
-/// By symmetry a lamp above a strip gives the most light in the mean, and the most at the darkest
-/// point, from above the middle. In a black room nothing but the last steps is left of the way.
+/// A lamp above a strip gives the most light in the mean, and the most at the darkest point, above
+/// the middle, by symmetry. In a black room nothing but the last steps is left of the way.
 TEST_P(OneLamp, MovesAboveTheMiddleOfAStrip) {
   Strip room({{0.9, 0.6}}, 0.0f);
   const PlaceOptimum found = descend(room.problem({{.kind = GetParam(), .value = 10.0}}));
@@ -72,8 +72,8 @@ TEST_P(OneLamp, MovesAboveTheMiddleOfAStrip) {
   EXPECT_EQ(found.places(2, 0), 2.2);
 }
 
-/// With reflections the random numbers of patches, which do not know of the symmetry, shift the
-/// optimum; the lamp finds a place at least as good as the middle.
+/// Random numbers of patches do not know of the symmetry and shift the optimum by reflected light;
+/// the lamp finds a place at least as good as the middle.
 TEST_P(OneLamp, FindsAPlaceAsGoodAsTheMiddleWithReflections) {
   Strip room({{0.9, 0.6}});
   const PlaceProblem problem = room.problem({{.kind = GetParam(), .value = 15.0}});
@@ -119,6 +119,26 @@ TEST(PlaceSearch, GradientIsThatOfCentralDifferences) {
       EXPECT_NEAR(here.gradient(axis, lamp), difference, 1e-3 * here.gradient.cwiseAbs().maxCoeff())
           << "lamp " << lamp << ", axis " << axis;
     }
+  }
+}
+
+/// Two lamps that are dimmed together are one luminaire of the programme, and each has a gradient.
+TEST(PlaceSearch, GradientOfAGroupIsThatOfCentralDifferences) {
+  Strip room({{1.1, 1.2}, {2.7, 2.0}});
+  PlaceProblem problem = room.problem({{.kind = LimitKind::least_at_least, .value = 15.0}});
+  room.measured.luminaires = {{.name = "both", .cost = 100.0}};
+  const Eigen::VectorXd sum = room.measured.grids[0].lux.rowwise().sum();
+  room.measured.grids[0].lux = sum;
+  problem.luminaire = {0, 0};
+  const Eigen::Matrix3Xd gradient = cost_at(problem, problem.places).gradient;
+  constexpr double h = 0.005;
+  for (int lamp = 0; lamp < 2; ++lamp) {
+    Eigen::Matrix3Xd forth = problem.places, back = problem.places;
+    forth(0, lamp) += h;
+    back(0, lamp) -= h;
+    const double difference =
+        (cost_at(problem, forth).plan.cost - cost_at(problem, back).plan.cost) / (2.0 * h);
+    EXPECT_NEAR(gradient(0, lamp), difference, 1e-3 * gradient.cwiseAbs().maxCoeff()) << lamp;
   }
 }
 

@@ -117,7 +117,7 @@ TEST(PlacedLight, LuxIsThatOfASolve) {
 TEST(PlacedLight, GlareIsThatOfARating) {
   Scene scene = room_with_lamps();
   scene.lamps.pop_back();
-  // Without the kinks of a table, which central differences would round.
+  // Central differences would round the kinks of a table.
   scene.lamps[0].shape = EvenIntensity{};
   scene.lamps[0].intensity *= 200.0f;
   const Camera eye{.name = "seat",
