@@ -218,7 +218,10 @@ SkySites::CellVisibility SkySites::sample_cells(const ElementCaster& caster,
   for (const Sample& sample : first) {
     if (seeing.empty() || sees[sample.point] != 0) count_in(sample);
   }
-  for (const Sample& sample : samples_from(seeing.empty() ? all : seeing, 1)) count_in(sample);
+  // Half of a room's places see no sky, and as many rays again would hardly find an opening there:
+  // estimates send a share of their own rays to cells that are not known as open.
+  if (seeing.empty()) return visibility;
+  for (const Sample& sample : samples_from(seeing, 1)) count_in(sample);
   return visibility;
 }
 
