@@ -16,6 +16,20 @@ LightingLimits read(const std::string& text) {
   return read_limits(folder.write("limits.toml", text));
 }
 
+// Each text is refused with a sentence that names the file and holds the other string.
+void expect_refusals(const std::vector<std::pair<std::string, std::string>>& cases) {
+  for (const auto& [text, sentence] : cases) {
+    try {
+      read(text);
+      ADD_FAILURE() << "accepted: " << text;
+    } catch (const InputError& error) {
+      EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << text << "\n"
+                                                                             << error.what();
+      EXPECT_NE(std::string(error.what()).find("limits.toml"), std::string::npos) << error.what();
+    }
+  }
+}
+
 TEST(LimitsFile, HoldsLimitsInTheirOrder) {
   const LightingLimits limits = read(R"(
 maintenance = 0.8
@@ -79,16 +93,7 @@ TEST(LimitsFile, MovesAreRefusedWithALineAndASentence) {
       {move + "axes = \"x\"\nlowest = [nan]\nhighest = [1]\n", ":7:"},
       {move + "axes = \"x\"\nlowest = [0]\nhighest = [1]\napart = -1\n", ":9:"},
       {move + "axes = \"x\"\nlowest = [0]\nhighest = [1]\nstep = 1\n", "step"}};
-  for (const auto& [text, sentence] : cases) {
-    try {
-      read(text);
-      ADD_FAILURE() << "accepted: " << text;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << text << "\n"
-                                                                             << error.what();
-      EXPECT_NE(std::string(error.what()).find("limits.toml"), std::string::npos) << error.what();
-    }
-  }
+  expect_refusals(cases);
 }
 
 TEST(LimitsFile, IsRefusedWithALineAndASentence) {
@@ -111,16 +116,7 @@ TEST(LimitsFile, IsRefusedWithALineAndASentence) {
       {"[[glare]]\nobserver = \"eye\"\nugr_at_most = 0\n", ":3:"},
       {"[[glare]]\nobserver = \"eye\"\nugr_at_most = 19\n[dimming]\nleast = 2\n", ":5:"},
       {"[[glare]]\nobserver = \"eye\"\nugr_at_most = 19\n[dimming]\ngroups = [[]]\n", "is empty"}};
-  for (const auto& [text, sentence] : cases) {
-    try {
-      read(text);
-      ADD_FAILURE() << "accepted: " << text;
-    } catch (const InputError& error) {
-      EXPECT_NE(std::string(error.what()).find(sentence), std::string::npos) << text << "\n"
-                                                                             << error.what();
-      EXPECT_NE(std::string(error.what()).find("limits.toml"), std::string::npos) << error.what();
-    }
-  }
+  expect_refusals(cases);
 }
 
 }  // namespace

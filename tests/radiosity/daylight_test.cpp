@@ -21,14 +21,6 @@ using Eigen::Vector3d;
 
 constexpr double pi = std::numbers::pi;
 
-Sky grey_sky(const Bands& bands, float radiance, float ground) {
-  return {.up = Vector3d::UnitZ(),
-          .north = Vector3d::UnitY(),
-          .bright = Vector3d::UnitZ(),
-          .scale = constant_spectrum(bands, radiance),
-          .ground = constant_spectrum(bands, ground)};
-}
-
 // A room of 4 x 4 x 3 m whose wall x1 has a hole of 1.6 x 1.4 m.
 Scene room(float rho) {
   Scene scene;
@@ -65,7 +57,7 @@ TEST(Daylight, ConvexBodyUnderAnEvenSkyIsAFurnace) {
   Scene scene;
   const int m = test::add_material(scene, test::diffuse(scene.bands, 0.6f));
   test::add_box(scene, {0, 0, 0}, {1.0, 1.3, 0.8}, {m, m, m, m, m, m}, false);
-  scene.sky = grey_sky(scene.bands, 2.0f, 2.0f);
+  scene.sky = test::even_sky(scene.bands, 2.0f, 2.0f);
   const SolvedScene solved = solve_scene(scene, quick());
   const BandArray E = solved.solution.irradiance();
   // Every ray brings the same light, so there is no noise. The dome's directions are 512 around: a
@@ -79,7 +71,7 @@ TEST(Daylight, ConvexBodyUnderAnEvenSkyIsAFurnace) {
 
 TEST(Daylight, RoomWithAWindowBalancesAndItsDirectLightIsTheClosedForm) {
   Scene scene = room(0.5f);
-  scene.sky = grey_sky(scene.bands, 100.0f, 100.0f);
+  scene.sky = test::even_sky(scene.bands, 100.0f, 100.0f);
   const SolvedScene solved = solve_scene(scene, quick());
   expect_balance(solved);
   const std::vector<Vector3d> window = {{4, 1.2, 0.9}, {4, 1.2, 2.3}, {4, 2.8, 2.3}, {4, 2.8, 0.9}};
@@ -105,7 +97,7 @@ TEST(Daylight, RoomWithAWindowBalancesAndItsDirectLightIsTheClosedForm) {
 
 TEST(Daylight, ShootingAndSolvingAgree) {
   Scene scene = room(0.5f);
-  scene.sky = grey_sky(scene.bands, 100.0f, 20.0f);
+  scene.sky = test::even_sky(scene.bands, 100.0f, 20.0f);
   const SolvedScene solved = solve_scene(scene, quick());
   SolveOptions shooting = quick();
   shooting.progressive = ProgressiveOptions{.tolerance = 1e-3};
@@ -118,7 +110,7 @@ TEST(Daylight, ShootingAndSolvingAgree) {
 // A horizontal sun draws the window as a bright patch on the far wall.
 TEST(Daylight, SunDrawsTheWindowOnTheWall) {
   Scene scene = room(0.0f);
-  scene.sky = grey_sky(scene.bands, 0.0f, 0.0f);
+  scene.sky = test::even_sky(scene.bands, 0.0f, 0.0f);
   scene.sky->sun =
       Sun{.direction = Vector3d::UnitX(), .irradiance = constant_spectrum(scene.bands, 500.0f)};
   const PatchMesh mesh = build_patches(scene, {});
@@ -149,7 +141,7 @@ TEST(Daylight, MirrorGivesBackItsHalfOfTheSky) {
   test::add_polygon(scene, "ground", ground, {{0, -1, 0}, {2, -1, 0}, {2, 1, 0}, {0, 1, 0}});
   test::add_polygon(scene, "mirror", silver,
                     {{0, -far, 0}, {0, far, 0}, {0, far, far}, {0, -far, far}});
-  scene.sky = grey_sky(scene.bands, 1.0f, 0.0f);
+  scene.sky = test::even_sky(scene.bands, 1.0f, 0.0f);
   const PatchMesh mesh = build_patches(scene, {});
   const ElementCaster caster(mesh);
   const DirectLight light(scene, mesh);
@@ -173,7 +165,7 @@ TEST(Daylight, MirrorGivesBackItsHalfOfTheSky) {
 
 TEST(Daylight, SkyAndSunAreChannelsThatAddUp) {
   Scene scene = room(0.5f);
-  scene.sky = grey_sky(scene.bands, 100.0f, 20.0f);
+  scene.sky = test::even_sky(scene.bands, 100.0f, 20.0f);
   scene.sky->sun = Sun{.direction = Vector3d(1, 0.1, 0.5).normalized(),
                        .irradiance = constant_spectrum(scene.bands, 2000.0f)};
   SolveOptions options = quick();
@@ -192,7 +184,7 @@ TEST(Daylight, SkyAndSunAreChannelsThatAddUp) {
 
 TEST(Daylight, SameBitsOnAnyNumberOfThreads) {
   Scene scene = room(0.5f);
-  scene.sky = grey_sky(scene.bands, 100.0f, 20.0f);
+  scene.sky = test::even_sky(scene.bands, 100.0f, 20.0f);
   scene.sky->sun = Sun{.direction = Vector3d(1, 0.1, 0.5).normalized(),
                        .irradiance = constant_spectrum(scene.bands, 2000.0f)};
   const auto found = [&](int threads) {
@@ -216,7 +208,7 @@ class SunBehindAPane : public testing::Test {
       test::add_polygon(scene, "pane", test::add_material(scene, material),
                         {{4.1, 1, 0.7}, {4.1, 3, 0.7}, {4.1, 3, 2.5}, {4.1, 1, 2.5}});
     }
-    scene.sky = grey_sky(scene.bands, 0.0f, 0.0f);
+    scene.sky = test::even_sky(scene.bands, 0.0f, 0.0f);
     scene.sky->sun = Sun{.direction = Vector3d(1, 0.1, 0.7).normalized(),
                          .irradiance = constant_spectrum(scene.bands, 2000.0f)};
     return scene;
@@ -267,7 +259,7 @@ TEST_F(SunBehindAPane, IsTintedByEverySolver) {
 
 TEST(Daylight, SceneWithoutLightIsStillRefused) {
   Scene scene = room(0.5f);
-  scene.sky = grey_sky(scene.bands, 0.0f, 0.0f);
+  scene.sky = test::even_sky(scene.bands, 0.0f, 0.0f);
   EXPECT_ANY_THROW(solve_scene(scene, quick()));
 }
 

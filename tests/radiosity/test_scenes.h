@@ -15,6 +15,15 @@ inline Material diffuse(const Bands& bands, float rho, float exitance = 0.0f) {
           .one_sided = true};
 }
 
+/// A sky of one radiance above the horizon and another below, W/(m^2 sr); z is up.
+inline Sky even_sky(const Bands& bands, float above, float below) {
+  return {.up = Eigen::Vector3d::UnitZ(),
+          .north = Eigen::Vector3d::UnitY(),
+          .bright = Eigen::Vector3d::UnitZ(),
+          .scale = constant_spectrum(bands, above),
+          .ground = constant_spectrum(bands, below)};
+}
+
 inline int add_material(Scene& scene, const Material& material) {
   scene.materials.push_back(material);
   return static_cast<int>(scene.materials.size()) - 1;

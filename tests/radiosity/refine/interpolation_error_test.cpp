@@ -20,11 +20,7 @@ Scene roofless_room() {
   test::add_polygon(scene, "right", grey, {{4, 0, 0}, {4, 0, 3}, {4, 4, 3}, {4, 4, 0}});
   test::add_polygon(scene, "back", grey, {{4, 4, 0}, {4, 4, 3}, {0, 4, 3}, {0, 4, 0}});
   test::add_polygon(scene, "left", grey, {{0, 4, 0}, {0, 4, 3}, {0, 0, 3}, {0, 0, 0}});
-  scene.sky = Sky{.up = Vector3d::UnitZ(),
-                  .north = Vector3d::UnitY(),
-                  .bright = Vector3d::UnitZ(),
-                  .scale = constant_spectrum(scene.bands, 1.0f),
-                  .ground = constant_spectrum(scene.bands, 0.2f)};
+  scene.sky = test::even_sky(scene.bands, 1.0f, 0.2f);
   return scene;
 }
 

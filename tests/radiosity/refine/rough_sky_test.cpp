@@ -36,11 +36,7 @@ Scene half_open_place() {
     }
   }
   scene.surfaces.push_back({.name = "sheet", .material = grey, .shape = std::move(sheet)});
-  scene.sky = Sky{.up = Vector3d::UnitZ(),
-                  .north = Vector3d::UnitY(),
-                  .bright = Vector3d::UnitZ(),
-                  .scale = constant_spectrum(scene.bands, 1.0f),
-                  .ground = constant_spectrum(scene.bands, 0.2f)};
+  scene.sky = test::even_sky(scene.bands, 1.0f, 0.2f);
   return scene;
 }
 
