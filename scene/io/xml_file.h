@@ -16,8 +16,9 @@ namespace lightwell {
 class XmlFile {
  public:
   /// `kind` names files of the format in messages: "TM-27 files". Throws InputError naming file and
-  /// line if the file is missing, unreadable or no well-formed XML; LimitError if the file is larger
-  /// than 32 MiB, because a parsed file takes up to 18 times its size in memory (empty elements).
+  /// line if the file is missing, unreadable or no well-formed XML; LimitError if the file is
+  /// larger than 32 MiB, because a parsed file takes up to 18 times its size in memory (empty
+  /// elements).
   XmlFile(const std::filesystem::path& path, std::string_view kind);
 
   const pugi::xml_document& document() const { return document_; }

@@ -32,6 +32,12 @@ void read_ldt_luminaire(std::string_view bytes) {
   place(read_luminaire(input_file("lamp.ldt", bytes)));
 }
 
+void read_tm33_luminaire(std::string_view bytes) {
+  const auto path = input_file("lamp.xml", bytes);
+  is_luminaire_file(path);
+  place(read_luminaire(path));
+}
+
 void read_png_or_jpeg(std::string_view bytes) {
   read_picture(bytes, PictureCode::srgb, "picture");
   picture_mean(bytes, PictureCode::linear, "picture");

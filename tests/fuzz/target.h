@@ -41,6 +41,7 @@ void read_obj_and_mtl(std::string_view bytes);
 void read_serialized(std::string_view bytes);
 void read_ies_luminaire(std::string_view bytes);
 void read_ldt_luminaire(std::string_view bytes);
+void read_tm33_luminaire(std::string_view bytes);
 void read_png_or_jpeg(std::string_view bytes);
 void read_exr_picture(std::string_view bytes);
 void read_hdr_picture(std::string_view bytes);

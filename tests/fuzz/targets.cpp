@@ -43,6 +43,7 @@ std::span<const Target> targets() {
       {.name = "stl", .read = [](std::string_view b) { read_scene_file("scene.stl", b); }},
       {.name = "ies", .read = read_ies_luminaire, .sources = "scene/io/luminaires"},
       {.name = "ldt", .read = read_ldt_luminaire},
+      {.name = "tm33", .read = read_tm33_luminaire, .sources = "scene/io/luminaires"},
       {.name = "png", .read = read_png_or_jpeg, .mutate = mutate_png},
       {.name = "jpeg", .read = read_png_or_jpeg},
       {.name = "exr", .read = read_exr_picture},

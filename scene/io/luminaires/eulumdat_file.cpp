@@ -65,8 +65,6 @@ class Lines {
   std::size_t at_ = 0;
 };
 
-enum Symmetry { none, all_around, about_c0, about_c90, quarters };
-
 struct LampSet {
   double lumens = 0.0, watts = 0.0;
   bool is_absolute = false;
@@ -87,7 +85,8 @@ LampSet read_lamp_set(Lines& lines) {
 }
 
 // First index and number of the stored planes, numbered from 0 as in EULUMDAT.
-std::pair<int, int> stored_planes(int symmetry, int count) {
+std::pair<int, int> stored_planes(PlaneSymmetry symmetry, int count) {
+  using enum PlaneSymmetry;
   switch (symmetry) {
     case all_around:
       return {0, 1};
@@ -100,29 +99,6 @@ std::pair<int, int> stored_planes(int symmetry, int count) {
     default:
       return {0, count};
   }
-}
-
-PlaneTable all_eulumdat_planes(int symmetry, const std::vector<double>& stored,
-                               const Eigen::ArrayXXd& rows) {
-  if (symmetry == all_around) return {.planes = {0.0}, .values = rows};
-  std::vector<std::pair<double, Eigen::Index>> planes;
-  const auto add = [&](auto&& angle) {
-    for (std::size_t i = 0; i < stored.size(); ++i) {
-      planes.emplace_back(angle(stored[i]), static_cast<Eigen::Index>(i));
-    }
-  };
-  add([](double c) { return c; });
-  if (symmetry == about_c0 || symmetry == quarters) add([](double c) { return 360.0 - c; });
-  if (symmetry == about_c90 || symmetry == quarters) add([](double c) { return 180.0 - c; });
-  if (symmetry == quarters) add([](double c) { return 180.0 + c; });
-  return sorted_planes(planes, rows);
-}
-
-const char* words_for(int symmetry) {
-  constexpr const char* words[] = {
-      "none", "the same all around", "two halves alike about the plane C0-C180",
-      "two halves alike about the plane C90-C270", "four quarters alike"};
-  return words[symmetry];
 }
 
 void read_eulumdat_sizes(Lines& lines, LuminaireFile& result) {
@@ -147,25 +123,21 @@ void read_eulumdat_sizes(Lines& lines, LuminaireFile& result) {
     height = std::max(height, mm * lines.number("a height of the luminous area"));
   }
   result.opening_height = height;
-  if (height > 0.0) {
-    result.notes.push_back(
-        fmt::format("Its light also leaves sideways from a height of {:.3g} m; here all leaves "
-                    "from the opening "
-                    "across its axis.",
-                    height));
-  }
+  if (height > 0.0) result.notes.push_back(sideways_note(height));
 }
 
 }  // namespace
 
 LuminaireFile read_eulumdat(const std::filesystem::path& path, int lamp_set) {
+  using enum PlaneSymmetry;
   const TextFile file(path);
   Lines lines(file);
   LuminaireFile result{.file = path, .format = "EULUMDAT"};
   result.maker = as_utf8(lines.text("the maker"));
   lines.number("the type");
-  const int symmetry = lines.whole("the symmetry", none, quarters);
-  result.symmetry = words_for(symmetry);
+  const auto symmetry = static_cast<PlaneSymmetry>(
+      lines.whole("the symmetry", static_cast<int>(none), static_cast<int>(quarters)));
+  result.symmetry = symmetry_words(symmetry);
   const int plane_count = lines.whole("the number of C planes", 1, most_eulumdat_angles);
   const int divisor = symmetry == quarters || symmetry == about_c90 ? 4
                       : symmetry == about_c0                        ? 2
@@ -227,15 +199,15 @@ LuminaireFile read_eulumdat(const std::filesystem::path& path, int lamp_set) {
     stored.push_back(angles[static_cast<std::size_t>((first + p) % plane_count)]);
     for (int g = 0; g < gamma_count; ++g) {
       const double value = lines.number("an intensity");
-      if (!(value >= 0.0)) {
-        lines.fail(fmt::format("the intensity is {:g}; it must not be below 0", value));
+      if (const std::string fault = fault_of_intensity(value, candela); !fault.empty()) {
+        lines.fail(fault);
       }
       values(p, g) = candela * value;
     }
   }
   result.watts = lamps.watts;
   if (!lamps.is_absolute) result.lamp_lumens = lamps.lumens;
-  PlaneTable table = all_eulumdat_planes(symmetry, stored, values);
+  PlaneTable table = unfolded_planes(symmetry, stored, values);
   if (table.planes.front() != 0.0) lines.fail("there is no plane C0; there must be one");
   result.web =
       std::make_shared<const PhotometricWeb>(std::move(table.planes), gammas, table.values);

@@ -156,44 +156,6 @@ void check_rising(const Numbers& numbers, const std::vector<double>& angles, con
   }
 }
 
-// Completes the planes of the file by its symmetry.
-PlaneTable all_ies_planes(const Numbers& numbers, const std::vector<double>& angles,
-                          const Eigen::ArrayXXd& rows, std::string& symmetry) {
-  std::vector<std::pair<double, Eigen::Index>> planes;
-  const auto count = static_cast<Eigen::Index>(angles.size());
-  const auto add = [&](auto&& angle) {
-    for (Eigen::Index i = 0; i < count; ++i) {
-      planes.emplace_back(angle(angles[static_cast<std::size_t>(i)]), i);
-    }
-  };
-  if (count == 1) {
-    symmetry = "the same all around";
-    return {.planes = {0.0}, .values = rows};
-  }
-  const double first = angles.front(), last = angles.back();
-  add([](double c) { return c; });
-  if (first == 0.0 && last == 90.0) {
-    symmetry = "four quarters alike";
-    add([](double c) { return 180.0 - c; });
-    add([](double c) { return 180.0 + c; });
-    add([](double c) { return 360.0 - c; });
-  } else if (first == 0.0 && last == 180.0) {
-    symmetry = "two halves alike about the plane C0-C180";
-    add([](double c) { return 360.0 - c; });
-  } else if (first == 90.0 && last == 270.0) {
-    symmetry = "two halves alike about the plane C90-C270";
-    add([](double c) { return 180.0 - c; });
-  } else if (first == 0.0 && last > 180.0 && last <= 360.0) {
-    symmetry = "none";
-  } else {
-    numbers.fail(
-        fmt::format("the horizontal angles go from {:g} to {:g}; from 0 they end at 0, 90, "
-                    "180 or, all around, up to 360, and from 90 at 270",
-                    first, last));
-  }
-  return sorted_planes(planes, rows);
-}
-
 // Luminous dimensions by LM-63-2002, table 1, also for files of 1995: a negative number marks a
 // round opening.
 void read_ies_sizes(double width, double length, double height, LuminaireFile& result) {
@@ -207,13 +169,7 @@ void read_ies_sizes(double width, double length, double height, LuminaireFile& r
     result.opening.along_c90 = result.opening.along_c0;
   }
   result.opening_height = std::abs(height);
-  if (result.opening_height > 0.0) {
-    result.notes.push_back(
-        fmt::format("Its light also leaves sideways from a height of {:.3g} m; here all leaves "
-                    "from the opening "
-                    "across its axis.",
-                    result.opening_height));
-  }
+  if (result.opening_height > 0.0) result.notes.push_back(sideways_note(result.opening_height));
 }
 
 }  // namespace
@@ -268,8 +224,8 @@ LuminaireFile read_ies(const std::filesystem::path& path) {
           fmt::format("the intensity at horizontal angle {:g}, vertical "
                       "angle {:g}",
                       planes[static_cast<std::size_t>(p)], gammas[static_cast<std::size_t>(g)]));
-      if (!(value >= 0.0)) {
-        numbers.fail(fmt::format("the intensity is {:g}; it must not be below 0", value));
+      if (const std::string fault = fault_of_intensity(value, factor); !fault.empty()) {
+        numbers.fail(fault);
       }
       values(p, g) = factor * value;
     }
@@ -277,7 +233,10 @@ LuminaireFile read_ies(const std::filesystem::path& path) {
   result.is_radiometric = header.is_in_milliwatts || header.is_in_watts;
   if (header.is_in_milliwatts) values *= 1e-3;
   if (lumens > 0.0 && !result.is_radiometric) result.lamp_lumens = lamps * lumens;
-  PlaneTable table = all_ies_planes(numbers, planes, values, result.symmetry);
+  const auto symmetry = symmetry_of_planes(planes);
+  if (!symmetry) numbers.fail(no_symmetry_of_planes(planes));
+  result.symmetry = symmetry_words(*symmetry);
+  PlaneTable table = unfolded_planes(*symmetry, planes, values);
   result.web =
       std::make_shared<const PhotometricWeb>(std::move(table.planes), gammas, table.values);
   return result;

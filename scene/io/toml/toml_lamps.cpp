@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <iterator>
 
 #include "scene/degree.h"
 #include "scene/errors.h"
@@ -157,6 +158,20 @@ void read_shape(const TomlTable& table, const TomlBands& bands, double metres_pe
   lamp.intensity *= projector.brightest;
 }
 
+// Hue of a measured lamp: its key `colour`, or else the spectra of its file.
+Spectrum colour_of(const TomlTable& table, const LuminaireFile& luminaire, const TomlBands& bands,
+                   std::vector<std::string>& notes) {
+  if (table.has("colour") || luminaire.spectra.empty()) return read_toml_colour(table, bands);
+  if (bands.bands.wavelengths_nm.empty()) {
+    notes.push_back(
+        fmt::format("{}: Its spectra are for scenes of wavelengths; in RGB it is white without a "
+                    "'colour'.",
+                    luminaire.file.filename().string()));
+    return read_toml_colour(table, bands);
+  }
+  return toml_colour_of_spectra(table.require("file"), luminaire.spectra, bands);
+}
+
 // Sets a lamp's distribution and intensity from a photometric file.
 void read_measured(const TomlTable& table, const TomlBands& bands, Scene& scene, Lamp& lamp) {
   for (const auto& key : table.present({"intensity", "candela", "power", "cone"})) {
@@ -164,22 +179,24 @@ void read_measured(const TomlTable& table, const TomlBands& bands, Scene& scene,
   }
   const TomlValue file = table.require("file");
   const auto path = (file.file().parent_path() / file.name()).lexically_normal();
+  std::vector<std::string> notes;
   int lamp_set = 1;
   if (const auto set = table.find("lamp_set"))
     lamp_set = static_cast<int>(set->integer_within(1, 20));
   try {
     const LuminaireFile luminaire = read_luminaire(path, lamp_set);
-    place_luminaire(luminaire, bands.bands, read_toml_colour(table, bands), lamp);
+    place_luminaire(luminaire, bands.bands, colour_of(table, luminaire, bands, notes), lamp);
     if (luminaire.is_radiometric) scene.relative_units = true;
     if (const auto lumens = table.find("lumens")) {
       if (luminaire.is_radiometric) lumens->fail("is asked of a file that is not in candela");
       lamp.intensity *= static_cast<float>(lumens->number_at_least(0.0) / luminaire.flux());
     }
-    for (const std::string& note : luminaire_notes(luminaire)) {
-      if (std::ranges::find(scene.notes, note) == scene.notes.end()) scene.notes.push_back(note);
-    }
+    std::ranges::copy(luminaire_notes(luminaire), std::back_inserter(notes));
   } catch (const InputError& error) {
     file.fail(fmt::format("cannot be used: {}", error.what()));
+  }
+  for (const std::string& note : notes) {
+    if (std::ranges::find(scene.notes, note) == scene.notes.end()) scene.notes.push_back(note);
   }
 }
 

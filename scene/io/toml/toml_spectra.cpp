@@ -250,6 +250,24 @@ Spectrum read_toml_daylight_colour(const TomlTable& table, const TomlBands& band
   return powers / powers.maxCoeff();
 }
 
+Spectrum toml_colour_of_spectra(const TomlValue& file, const std::vector<EmitterSpectrum>& spectra,
+                                const TomlBands& bands) {
+  Spectrum colour = constant_spectrum(bands.bands, 0.0f);
+  for (const EmitterSpectrum& spectrum : spectra) {
+    const Spectrum powers = band_powers(file, spectrum.samples, bands);
+    const double lumens = luminous(bands.bands, powers);
+    if (!(powers >= 0.0f).all() || !powers.isFinite().all() || !(lumens > 0.0)) {
+      file.fail(
+          fmt::format("has a spectrum, of the emitter '{}', without visible light in the scene's "
+                      "bands, or with "
+                      "less than none in one of them; give the lamp a 'colour'",
+                      spectrum.name));
+    }
+    colour += powers * static_cast<float>(spectrum.flux / lumens);
+  }
+  return colour;
+}
+
 Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands) {
   const auto colour = table.find("colour");
   if (!colour) return constant_spectrum(bands.bands, 1.0f);

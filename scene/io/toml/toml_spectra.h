@@ -1,5 +1,8 @@
 #pragma once
 
+#include <vector>
+
+#include "scene/io/luminaires/luminaire_file.h"
 #include "scene/io/spectrum_file.h"
 #include "scene/io/toml/toml_value.h"
 #include "scene/scene.h"
@@ -25,6 +28,11 @@ Spectrum read_toml_colour(const TomlTable& table, const TomlBands& bands);
 /// illuminant, "D50", "D55", "D65" or "D75", or a file of a spectrum (.csv or .spdx). RGB bands get
 /// the chromaticity of a spectrum (CIE 1931), without what lies outside their gamut.
 Spectrum read_toml_daylight_colour(const TomlTable& table, const TomlBands& bands);
+/// Hue of a luminaire by the spectra in its file: their powers in the bands, each by the flux of
+/// its emitter. Throws InputError at `file` if a spectrum does not cover the bands, or has no light
+/// in them.
+Spectrum toml_colour_of_spectra(const TomlValue& file, const std::vector<EmitterSpectrum>& spectra,
+                                const TomlBands& bands);
 /// Reads a share in [0,1]: a number, a number for each band, or a spectrum.
 Spectrum read_toml_share(const TomlValue& value, const TomlBands& bands);
 /// The same at `key` of a table; without the key `otherwise` in every band.

@@ -213,6 +213,10 @@ TEST_F(WrittenFiles, MistakesAreToldWithTheirLine) {
   expect_error("TILT=NONE\n1 1000 1 2 2 1 2 0 0 0 1 1 9\n0 90 0 100 1 1 1 1",
                {"0 to 100", "from 0"});
   expect_error("TILT=NONE\n1 1000 0 2 1 1 2 0 0 0 1 1 9\n0 90 0 1 1", {"make 0", "above 0"});
+  expect_error("TILT=NONE\n1 1000 1 2 2 1 2 0 0 0 1 1 9\n0 90 90 270 1 1 1 1",
+               {"from 90 by way of 180 at 270"});
+  expect_error("TILT=NONE\n1 1000 10 2 1 1 2 0 0 0 1 1 9\n0 90 0\n1e308 1",
+               {"it.ies:4:", "1e+308, by a factor of 10", "not be above 1e+18"});
   expect_error("maker\n1\n7\n", {"it.ldt:3:", "symmetry is 7"}, "it.ldt");
   expect_error("maker\n1\n", {"it.ldt:2:", "cut short"}, "it.ldt");
   expect_error("", {"it.txt", "'.txt' is of no known photometric format"}, "it.txt");
