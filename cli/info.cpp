@@ -272,6 +272,17 @@ Json luminaire_json(const LuminaireFile& luminaire) {
                      {"height", body.height},
                      {"is", body.is_round ? "cylinder" : "box"}};
   }
+  if (!luminaire.spectra.empty()) {
+    Json spectra = Json::array();
+    for (const EmitterSpectrum& spectrum : luminaire.spectra) {
+      spectra.push_back({{"name", spectrum.name},
+                         {"lumens", spectrum.flux},
+                         {"from_nm", spectrum.samples.wavelengths_nm.front()},
+                         {"to_nm", spectrum.samples.wavelengths_nm.back()},
+                         {"samples", spectrum.samples.values.size()}});
+    }
+    facts["spectra"] = std::move(spectra);
+  }
   if (luminaire.is_radiometric) {
     facts["watts_radiated"] = luminaire.flux();
     facts["peak_watts_per_sr"] = web.peak();
@@ -430,7 +441,7 @@ Action add_info(CLI::App& command) {
   const auto arguments = std::make_shared<Arguments>();
   command.description(
       fmt::format("Describes a scene ({}), a solution (.vtp), a picture (.exr), a luminaire "
-                  "(.ies, .ldt) or a year's weather (.epw, .wea).",
+                  "(.ies, .ldt, TM-33 .xml) or a year's weather (.epw, .wea).",
                   scene_extensions));
   command.add_option("file", arguments->file, "the file")->required()->type_name("FILE");
   command.add_flag("--ugr", arguments->ugr,
@@ -441,9 +452,10 @@ Action add_info(CLI::App& command) {
   return [arguments](Console& console) {
     const std::string& file = arguments->file;
     if (arguments->ugr && !is_luminaire_file(file)) {
-      throw InputError(fmt::format(
-          "{}: '--ugr' is for luminaires (.ies, .ldt); 'lightwell report' has the UGR of a room",
-          file));
+      throw InputError(
+          fmt::format("{}: '--ugr' is for luminaires (.ies, .ldt, TM-33 .xml); 'lightwell report' "
+                      "has the UGR of a room",
+                      file));
     }
     Json facts = describe(file, arguments->surfaces, console.options());
     if (!arguments->ugr) {

@@ -402,5 +402,17 @@ TEST_F(InfoCommand, PrintsAndHandsOverTheUgrTable) {
   }
 }
 
+// An XML file of TM-33 is a luminaire, in spite of its extension.
+TEST_F(InfoCommand, DescribesLuminairesInXml) {
+  const std::string file = std::string(LIGHTWELL_DOCS) + "/luminaires/panel.xml";
+  const Json facts = run_json({"info", file, "--ugr"});
+  EXPECT_EQ(facts["kind"], "luminaire");
+  EXPECT_EQ(facts["format"], "IES TM-33-23");
+  EXPECT_EQ(facts["input_watts"], 28.0);
+  EXPECT_EQ(facts["spectra"][0]["samples"], 21);
+  EXPECT_EQ(facts["ugr"]["rooms"].size(), 19u);
+  EXPECT_TRUE(says(run({"info", file}).out, "board, lumens"));
+}
+
 }  // namespace
 }  // namespace lightwell::lighting_test
