@@ -80,6 +80,11 @@ std::string xml_root_name(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(stream.gcount()));
+  // UTF-16 becomes the bytes of the ASCII characters that stand before a name and in it.
+  if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff")) {
+    head.erase(0, 2);
+    std::erase(head, '\0');
+  }
   std::string_view rest = head;
   if (rest.starts_with("\xef\xbb\xbf")) rest.remove_prefix(3);
   const auto skip_past = [&rest](std::string_view end) {

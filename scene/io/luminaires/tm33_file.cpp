@@ -197,7 +197,7 @@ LuminaireFile read_tm33(const std::filesystem::path& path) {
   if (metric.is_radiometric || std::ranges::any_of(result.spectra, has_none)) {
     if (!std::ranges::all_of(result.spectra, has_none)) {
       result.notes.emplace_back(
-          "Its spectra are not used: they are taken of candela, and where every emitter has one.");
+          "Its spectra are not used: that takes candela, and a spectrum for every emitter.");
     }
     result.spectra.clear();
   }

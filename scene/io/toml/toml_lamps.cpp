@@ -179,22 +179,26 @@ void read_measured(const TomlTable& table, const TomlBands& bands, Scene& scene,
   }
   const TomlValue file = table.require("file");
   const auto path = (file.file().parent_path() / file.name()).lexically_normal();
-  std::vector<std::string> notes;
   int lamp_set = 1;
   if (const auto set = table.find("lamp_set"))
     lamp_set = static_cast<int>(set->integer_within(1, 20));
-  try {
-    const LuminaireFile luminaire = read_luminaire(path, lamp_set);
-    place_luminaire(luminaire, bands.bands, colour_of(table, luminaire, bands, notes), lamp);
-    if (luminaire.is_radiometric) scene.relative_units = true;
-    if (const auto lumens = table.find("lumens")) {
-      if (luminaire.is_radiometric) lumens->fail("is asked of a file that is not in candela");
-      lamp.intensity *= static_cast<float>(lumens->number_at_least(0.0) / luminaire.flux());
+  const auto of_file = [&file](auto&& use) {
+    try {
+      return use();
+    } catch (const InputError& error) {
+      file.fail(fmt::format("cannot be used: {}", error.what()));
     }
-    std::ranges::copy(luminaire_notes(luminaire), std::back_inserter(notes));
-  } catch (const InputError& error) {
-    file.fail(fmt::format("cannot be used: {}", error.what()));
+  };
+  const LuminaireFile luminaire = of_file([&] { return read_luminaire(path, lamp_set); });
+  std::vector<std::string> notes;
+  const Spectrum colour = colour_of(table, luminaire, bands, notes);
+  of_file([&] { place_luminaire(luminaire, bands.bands, colour, lamp); });
+  if (luminaire.is_radiometric) scene.relative_units = true;
+  if (const auto lumens = table.find("lumens")) {
+    if (luminaire.is_radiometric) lumens->fail("is asked of a file that is not in candela");
+    lamp.intensity *= static_cast<float>(lumens->number_at_least(0.0) / luminaire.flux());
   }
+  std::ranges::copy(luminaire_notes(luminaire), std::back_inserter(notes));
   for (const std::string& note : notes) {
     if (std::ranges::find(scene.notes, note) == scene.notes.end()) scene.notes.push_back(note);
   }

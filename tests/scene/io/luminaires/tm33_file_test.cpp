@@ -211,6 +211,8 @@ TEST_F(Tm33, RootElementsTellLuminairesFromScenes) {
   EXPECT_TRUE(
       is_one("\xef\xbb\xbf<?xml version='1.0'?>\r\n<!-- <scene> -->\n<!DOCTYPE x>\n<IESTM33/>"));
   EXPECT_TRUE(is_one("<IESTM33-18 version='1.0'>"));
+  const std::string wide("\xff\xfe<\0I\0E\0S\0T\0M\0003\0003\0>\0", 20);
+  EXPECT_TRUE(is_one(wide));
   EXPECT_FALSE(is_one("<scene version='3.0.0'><IESTM33/></scene>"));
   EXPECT_FALSE(is_one("<!-- <IESTM33/>"));
   EXPECT_FALSE(is_one(""));
@@ -353,7 +355,7 @@ TEST_F(Tm33Spectra, TheKeyColourGoesFirstAndRgbIsWhite) {
   read(file_of(emitter(luminous_data(grid({0})) +
                        spectrum("<PwrData w='400'>1</PwrData><PwrData w='700'>1</PwrData>"))));
   test::expect_message([&] { scene("", "kind = \"spectral\"\nfrom = 380\nto = 780\ncount = 4"); },
-                       {"covers 400-700 nm", "380-480nm"});
+                       {"file of lamp 'lamp1' covers 400-700 nm", "380-480nm"});
 }
 
 // Emitters of 1:3 candela and of one line each share the light of the bands as their flux.
@@ -399,7 +401,7 @@ TEST_F(Tm33Spectra, SpectraThatCannotBeUsed) {
   const LuminaireFile one_of_two = read(file_of(emitter(luminous_data(grid({0})) + spectrum(two)) +
                                                 emitter(luminous_data(grid({0})))));
   EXPECT_TRUE(one_of_two.spectra.empty());
-  EXPECT_TRUE(notes(one_of_two, "where every emitter has one"));
+  EXPECT_TRUE(notes(one_of_two, "a spectrum for every emitter"));
   read(with(spectrum("<PwrData w='300'>-1</PwrData><PwrData w='900'>-1</PwrData>")));
   test::expect_message([&] { scene("", "kind = \"spectral\"\nfrom = 400\nto = 700\ncount = 3"); },
                        {"emitter 'board'", "without visible light", "'colour'"});
