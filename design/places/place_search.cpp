@@ -45,15 +45,6 @@ Eigen::Matrix3Xd free_part(const AllowedPlaces& allowed, const Eigen::Matrix3Xd&
   return gradient;
 }
 
-}  // namespace
-
-bool is_better(const DimmingPlan& a, const DimmingPlan& b) {
-  if (a.is_feasible != b.is_feasible) return a.is_feasible;
-  return objective(a) < objective(b);
-}
-
-namespace {
-
 // The problem with the light that moves change. What was measured has noise, which a change may
 // leave below zero.
 DimmingProblem moved_problem(const PlaceProblem& problem, const PlacedReadings& before,

@@ -43,10 +43,6 @@ struct PlaceCost {
 /// are optimal (envelope theorem; Milgrom & Segal 2002).
 PlaceCost cost_at(const PlaceProblem& problem, const Eigen::Matrix3Xd& places);
 
-/// True if levels of `a` are better than those of `b`: feasible where the others are not, then of
-/// less cost; if neither is feasible, nearer to the limits.
-bool is_better(const DimmingPlan& a, const DimmingPlan& b);
-
 /// Places that a descent found.
 struct PlaceOptimum {
   Eigen::Matrix3Xd places{};    ///< 3 x lamps, m

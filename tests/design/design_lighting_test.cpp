@@ -10,6 +10,7 @@
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/solve.h"
 #include "scene/errors.h"
+#include "tests/design/coarse_solve.h"
 #include "tests/raytrace/lit_scene.h"
 
 namespace lightwell::design_lighting_test {
@@ -47,17 +48,7 @@ Scene office() {
 
 /// office() by a coarse solve with a channel for each luminaire.
 const SolvedScene& solved_office() {
-  static const SolvedScene solved = [] {
-    const Scene scene = office();
-    SolveOptions options;
-    options.mesh.max_patch_size = 2.0;
-    options.form_factors.rays_per_patch = 128;
-    options.gather.rays = 64;
-    options.refine.tolerance = 0.0;  // elements are not refined
-    options.error_points = 64;
-    options.channels = dimming_channels(scene, {});
-    return solve_scene(scene, options);
-  }();
+  static const SolvedScene solved = [] { return test::coarse_solve(office(), 2.0); }();
   return solved;
 }
 

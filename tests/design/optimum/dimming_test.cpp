@@ -244,6 +244,7 @@ double slope_by(DimmingProblem problem, double& (*entry)(DimmingProblem&, int), 
 /// Prices of light are derivatives of the objective by each entry of the light. Central differences
 /// over 1e-4 are off by some 1e-8; slopes of tangents of squares by 4e-4 (see above).
 void expect_light_prices(const DimmingProblem& problem) {
+  constexpr double of_tangents = 4e-4;
   const LightPrices prices = best_dimming(problem).light_price;
   for (const bool is_room : {false, true}) {
     const Eigen::MatrixXd& price = prices.lux[is_room ? 1 : 0];
@@ -259,7 +260,8 @@ void expect_light_prices(const DimmingProblem& problem) {
                     problem,
                     [](DimmingProblem& p, int k) -> double& { return p.grids[0].lux.data()[k]; }, i,
                     100.0);
-      EXPECT_NEAR(price.data()[i], slope, 1e-3 * largest) << "grid " << is_room << ", entry " << i;
+      EXPECT_NEAR(price.data()[i], slope, of_tangents * largest)
+          << "grid " << is_room << ", entry " << i;
     }
   }
   const double of_glare = prices.glare[0].cwiseAbs().maxCoeff();
@@ -270,7 +272,7 @@ void expect_light_prices(const DimmingProblem& problem) {
         slope_by(
             problem, [](DimmingProblem& p, int k) -> double& { return p.observers[0].glare[k]; }, i,
             9000.0),
-        1e-3 * of_glare + 1e-12)
+        of_tangents * of_glare + 1e-12)
         << i;
     EXPECT_NEAR(
         prices.background[0][i],
@@ -278,7 +280,7 @@ void expect_light_prices(const DimmingProblem& problem) {
             problem,
             [](DimmingProblem& p, int k) -> double& { return p.observers[0].background[k]; }, i,
             10.0),
-        1e-3 * of_background + 1e-12)
+        of_tangents * of_background + 1e-12)
         << i;
   }
 }

@@ -103,8 +103,8 @@ TEST(RoughSky, IsSharpenedWhereLittleOtherErrorIsLeft) {
   const int after = count_of_differences(rough, fine, vertices);
   EXPECT_LT(after, before);
   constexpr double half_of_dome = 0.5 * std::numbers::pi;
-  // What differs still had reached the goal with fewer rays: 0.7 of sky_noise times the root of the
-  // fineness, which is 8 at most, as a share of the place's irradiance.
+  // Vertices that still differ had reached the goal with fewer rays: 0.7 of sky_noise times the
+  // root of the fineness, which is 8 at most, as a share of the place's irradiance.
   constexpr double goal = 0.7 * 8.0 * 0.01;
   for (int v = 0; v < vertices; ++v) {
     const double E = double{rough.direct()(v, 0)};
