@@ -2,7 +2,7 @@
 
 #include "radiosity/gather/caustic_irradiance.h"
 #include "radiosity/paths/light_path.h"
-#include "radiosity/refine/refine_solution.h"
+#include "radiosity/refine/element_limits.h"
 
 namespace lightwell {
 namespace {

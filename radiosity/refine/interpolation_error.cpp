@@ -5,7 +5,6 @@
 
 #include "radiosity/refine/cell_vertices.h"
 #include "radiosity/refine/error_reference.h"
-#include "radiosity/refine/refine_solution.h"
 #include "scene/parallel.h"
 
 namespace lightwell {

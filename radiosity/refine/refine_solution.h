@@ -7,28 +7,12 @@
 #include "mesh/elements/refine_elements.h"
 #include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/refine/channel_light.h"
+#include "radiosity/refine/element_limits.h"
 #include "radiosity/refine/interpolated_vertices.h"
 #include "radiosity/refine/refine_options.h"
 
 namespace lightwell {
-
-/// Throws InputError if `mesh` has more elements than `options` allow.
-void require_room(const PatchMesh& mesh, const RefineOptions& options);
-
-/// The least area of the leaves that make up the larger half of all area, m^2, one side counted.
-double typical_leaf_area(const RefinedElements& elements);
-
-/// RefineOptions::max_elements, or its default for `elements` where none are given; no more than
-/// RefineOptions::room.
-std::int64_t most_elements(const RefinedElements& elements, const RefineOptions& options);
-
-/// Light at the base's vertices with the columns of each channel side by side (see DirectLight);
-/// W/m^2, vertices x columns.
-struct ChannelLight {
-  const DirectLight& direct_light;
-  const BandArray& radiosity;  ///< as gatherable_radiosity makes it
-  const BandArray& caustic;    ///< irradiance, or empty
-};
 
 /// Refined elements, and the pilot gather at their vertices.
 struct RefinedSolution {

@@ -1,17 +1,14 @@
 #include "radiosity/refine/vertex_gathers.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <limits>
 #include <numeric>
 
 #include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
-#include "radiosity/refine/effort.h"
+#include "radiosity/refine/channel_light.h"
 #include "radiosity/refine/error_reference.h"
 #include "radiosity/refine/gather_noise.h"
-#include "radiosity/refine/refine_solution.h"
 
 namespace lightwell {
 namespace {
@@ -21,11 +18,6 @@ constexpr std::uint64_t first_pilot_replica = 1000;
 // Distance of vertices from their elements' corners, as a share of the way to the centre of an
 // element of the deepest level (see vertex_gather_points).
 constexpr double finest_inset = 0.02;
-
-// Vertices at the start above which half the pilot rays serve as well, since predictions average
-// the noise of many neighbours. In a hall with some 50 000 vertices the picture stayed within 1.3 %
-// of its reference, in the median over its squares.
-constexpr int many_vertices = 1 << 15;
 
 std::vector<int> vertices_of(const PatchMesh& mesh) {
   std::vector<int> all(static_cast<std::size_t>(mesh.vertex_count()));
@@ -56,64 +48,19 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
       radiosity_(radiosity),
       elements_(elements),
       options_(options),
-      parts_(refine.parts),
-      rays_of_part_(static_cast<std::size_t>(parts_.judged_count()), options.rays),
-      has_noise_goal_(!refine.efforts.empty() && refine.efforts.front().noise > 0.0),
-      few_rays_suffice_(has_noise_goal_ || elements.base().vertex_count() > many_vertices),
-      efforts_(refine.efforts),
       inset_(std::ldexp(finest_inset, -refine.max_level)),
-      fineness_(vertex_fineness(elements.base(), parts_)),
       visibility_(lit.direct_light.light_count()),
       unread_patch_(unread_patches(lit.scene, elements.base())),
-      shared_(find_shared_gathers(lit.scene, elements.base())) {
-  // Refinement of few elements does not get near its tolerance in most scenes, and exact light at
-  // all of the start's vertices would be in vain.
-  constexpr std::int64_t much_room = 2;
-  const bool is_start_large =
-      most_elements(elements, refine) < much_room * elements.element_count();
-  has_rough_sky_.assign(
-      rays_of_part_.size(),
-      is_start_large && !has_noise_goal_ && direct_light_.dome() && !efforts_.empty() ? 1 : 0);
+      shared_(find_shared_gathers(lit.scene, elements.base())),
+      effort_(elements, options, refine, lit.direct_light.dome() != nullptr, shared_.read),
+      parts_(refine.parts) {
   if (options.run.progress) {
     options_.run.progress = [progress = options.run.progress](std::string_view, double share) {
       return progress("refine", share);
     };
   }
-  share_pilot_rays();
   sharpen_radiosity(caustic);
   gather_indirect_at(vertices_of(elements.base()));
-}
-
-// Rays of each of the two pilot gathers, for a final one of `rays`.
-int VertexGathers::pilot_rays(int rays) const {
-  // With half as many as an eighth, the predictions made of the pilot gathers showed as faint
-  // blotches on walls.
-  const int share = few_rays_suffice_ ? 16 : 8;
-  // The noise of two gathers of 16 rays hid errors of 11 % (root mean square) in a daylit room that
-  // asked for 10 %: the estimate stays above the target, and attempts split elements that are small
-  // enough.
-  // In a hall with a goal of 5 %, the second attempt had 326, 272, 134 and 141 thousand elements by
-  // 16, 32, 64 and 128 rays.
-  constexpr int fewest_for_a_goal = 64;
-  const int wanted = std::max(rays / share, has_noise_goal_ ? fewest_for_a_goal : 1);
-  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(wanted)));
-}
-
-// Vertices of small elements cast fewer rays, but a quarter at least: with fewer, noise would hide
-// the differences that the gathers are made for. Vertices that share gathers cast an eighth: what
-// the noise hides is left out for the whole group.
-void VertexGathers::share_pilot_rays() {
-  const PatchMesh& mesh = elements_.base();
-  std::vector<int> rays;
-  for (const int of_part : rays_of_part_) rays.push_back(pilot_rays(of_part));
-  rays_ = share_rays(mesh, {}, parts_, rays);
-  const std::vector<int> patch = vertex_patches(mesh);
-  std::vector<char> shares(static_cast<std::size_t>(mesh.vertex_count()), 0);
-  for (const InterpolatedVertex& at : shared_.read) shares[at.vertex] = 1;
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const int times = shares[v] != 0 ? 1 : 2;
-    rays_[v] = std::min(times * rays_[v], rays[parts_.judged_with(patch[v])]);
-  }
 }
 
 GatherPoint VertexGathers::gather_point(int vertex) const {
@@ -127,39 +74,8 @@ GatherPoint VertexGathers::gather_point(int vertex) const {
 GatherPoint VertexGathers::keyed_point(int vertex) const {
   GatherPoint point = gather_point(vertex);
   point.key = static_cast<std::uint64_t>(vertex);
-  point.sky_noise = sky_noise_at(vertex);
+  point.sky_noise = effort_.sky_noise(vertex);
   return point;
-}
-
-// The number of the scene's part that a vertex is judged with.
-int VertexGathers::part_of(int vertex) const {
-  return parts_.judged_with(elements_.base().patch[elements_.inside(vertex, 0.0).element]);
-}
-
-// Rays of a part's typical vertices over those of a vertex, or its fineness; 1 or more.
-double VertexGathers::fewness(int vertex) const {
-  const auto v = static_cast<std::size_t>(vertex);
-  const double typical = pilot_rays(rays_of_part_[static_cast<std::size_t>(part_of(vertex))]);
-  return std::max({1.0, typical / rays_[v], static_cast<double>(fineness_[v])});
-}
-
-// The noise that the sky's light may have: more where fewer rays are cast than at a part's typical
-// vertices, and where errors matter less for what somebody looks at.
-NoiseGoal VertexGathers::sky_noise_at(int vertex) const {
-  // Interpolation averages vertices, so that half of the square is left on surfaces.
-  constexpr double averaged = 0.7;
-  constexpr float least_importance = 1.0f / 64.0f;
-  if (efforts_.empty()) return {};
-  const int patch = elements_.base().patch[elements_.inside(vertex, 0.0).element];
-  const auto part = static_cast<std::size_t>(part_of(vertex));
-  const float importance = std::max(parts_.importance_of(patch), least_importance);
-  const double times = roughness_[static_cast<std::size_t>(vertex)] *
-                       std::sqrt(fewness(vertex) / static_cast<double>(importance));
-  NoiseGoal goal =
-      noise_goal(efforts_[part].irradiance, averaged * times * efforts_[part].sky_noise);
-  // Without an accuracy the goal saves rays, and asks for no more than the options do.
-  if (!has_noise_goal_) goal.most_times = 1;
-  return goal;
 }
 
 Spectrum VertexGathers::total(int vertex) const {
@@ -177,36 +93,8 @@ void VertexGathers::make_room() {
   }
   has_direct_.resize(count, 0);
   indirect_.resize(count, Indirect::unknown);
-  // A new vertex casts as many rays as the ends between which it lies: with fewer, noise would hide
-  // the differences that decide over the next split.
-  for (int v = static_cast<int>(rays_.size()); v < count; ++v) {
-    int most = 0;
-    float coarsest = std::numeric_limits<float>::max();
-    for (const int end : elements_.ends(v)) {
-      if (end < 0) continue;
-      most = std::max(most, rays_[end]);
-      coarsest = std::min(coarsest, fineness_[end]);
-    }
-    rays_.push_back(most);
-    fineness_.push_back(coarsest);
-  }
-  make_sky_rough(static_cast<int>(roughness_.size()));
+  effort_.make_room();
   visibility_.resize(count);
-}
-
-// Sets the roughness of new vertices, from `first_vertex` on. Small elements bear more noise, and a
-// part's typical ones, on which it would be seen, none: vertices at corners of a grid, with a
-// quarter of the area of others, have a fineness of 2. Twice and four times the noise begin where a
-// vertex has a ninth and a 36th of the typical area: a third and a sixth of the edge, so that the
-// multiple times the edge stays below that of typical ones.
-void VertexGathers::make_sky_rough(int first_vertex) {
-  const int count = elements_.vertex_count();
-  roughness_.resize(static_cast<std::size_t>(count), 1);
-  for (int v = first_vertex; v < count; ++v) {
-    if (has_rough_sky_[static_cast<std::size_t>(part_of(v))] == 0) continue;
-    const double few = fewness(v);
-    roughness_[static_cast<std::size_t>(v)] = few > 6.0 ? 4 : few > 3.0 ? 2 : 1;
-  }
 }
 
 void VertexGathers::shrink_to_fit() {
@@ -215,9 +103,7 @@ void VertexGathers::shrink_to_fit() {
   }
   has_direct_.shrink_to_fit();
   indirect_.shrink_to_fit();
-  rays_.shrink_to_fit();
-  fineness_.shrink_to_fit();
-  roughness_.shrink_to_fit();
+  effort_.shrink_to_fit();
   visibility_.shrink_to_fit();
 }
 
@@ -235,25 +121,25 @@ void VertexGathers::gather_direct_at_base() {
   for (const InterpolatedVertex& at : shared_.unread) has_direct_[at.vertex] = 1;
 }
 
-// Direct light at vertices, with the rays to the sky that their roughness asks for; vertices x
-// columns of `light`.
+// Direct light at vertices, with the rays to the sky that their noise asks for; vertices x columns
+// of `light`.
 BandArray VertexGathers::direct_at(const DirectLight& light, const std::vector<int>& vertices,
                                    std::vector<EmitterVisibility>* visibilities) const {
   const auto count = static_cast<Eigen::Index>(vertices.size());
   BandArray direct = BandArray::Zero(count, light.channel_count() * scene_.bands.count());
   if (visibilities) visibilities->assign(vertices.size(), {});
-  for (const int roughness : {1, 2, 4}) {
+  for (const int multiple : VertexEffort::multiples) {
     std::vector<int> rows;
     std::vector<GatherPoint> points;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
-      if (roughness_[static_cast<std::size_t>(vertices[i])] != roughness) continue;
+      if (effort_.sky_noise_multiple(vertices[i]) != multiple) continue;
       rows.push_back(static_cast<int>(i));
       points.push_back(keyed_point(vertices[i]));
     }
     if (points.empty()) continue;
     GatherOptions options = options_;
     // The least number of rays falls with the goal.
-    options.shadows.sky_rays = (options.shadows.sky_rays + roughness - 1) / roughness;
+    options.shadows.sky_rays = (options.shadows.sky_rays + multiple - 1) / multiple;
     std::vector<EmitterVisibility> seen;
     const BandArray found =
         gather_direct({scene_, caster_, light}, points, options, visibilities ? &seen : nullptr);
@@ -287,27 +173,16 @@ void VertexGathers::gather_direct_at(const std::vector<int>& vertices) {
 }
 
 bool VertexGathers::sharpen_sky(const std::vector<double>& left) {
-  std::vector<char> is_sharpened(has_rough_sky_.size(), 0);
-  for (std::size_t p = 0; p < left.size(); ++p) {
-    // The roughest light has four times the noise of the goal, on small elements.
-    constexpr double roughest = 4.0;
-    if (has_rough_sky_[p] == 0 || left[p] > roughest * efforts_[p].sky_noise) continue;
-    has_rough_sky_[p] = 0;
-    is_sharpened[p] = 1;
-  }
   std::vector<int> vertices;
-  for (int v = 0; v < elements_.vertex_count(); ++v) {
-    auto& roughness = roughness_[static_cast<std::size_t>(v)];
-    if (roughness == 1 || is_sharpened[static_cast<std::size_t>(part_of(v))] == 0) continue;
-    const std::uint8_t rough = roughness;
-    roughness = 1;
+  for (const VertexEffort::Sharpened& at : effort_.sharpen_sky(left)) {
+    const int v = at.vertex;
     if (has_direct_[v] == 0) continue;
-    const NoiseGoal goal = sky_noise_at(v);
+    const NoiseGoal goal = effort_.sky_noise(v);
     const double enough = std::max(goal.irradiance, goal.share * double{direct_.row(v).mean()});
     if (visibility_[v].drawn_noise > enough) {
       vertices.push_back(v);
     } else {
-      roughness = rough;
+      effort_.keep_sky_noise(at);
     }
   }
   set_direct(vertices);
@@ -331,10 +206,10 @@ GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,
     const int patch = mesh.patch[elements_.inside(v, 0.0).element];
     point.key = random_key(static_cast<std::uint64_t>(mesh.surface[patch]),
                            mesh.is_back[patch] != 0 ? 1 : 0);
-    point.rays = rays_[static_cast<std::size_t>(v)];
+    point.rays = effort_.rays(v);
   }
   GatherOptions options = options_;
-  options.rays = pilot_rays(options_.rays);
+  options.rays = effort_.pilot_rays(options_.rays);
   options.replica = options_.replica + first_pilot_replica + replica;
   GatheredIrradiance found =
       gather_indirect({scene_, caster_, direct_light_}, radiosity, points, options);
@@ -350,8 +225,8 @@ GatheredIrradiance VertexGathers::sharpened_indirect(const BandArray& radiosity)
   interpolate_vertices(shared_.read, all.indirect);
   for (const InterpolatedVertex& at : shared_.read) {
     for (int i = 0; i < at.end_count(); ++i) {
-      const auto share = static_cast<float>(rays_[at.ends[i]]) /
-                         static_cast<float>(rays_[at.vertex] * at.end_count());
+      const auto share = static_cast<float>(effort_.rays(at.ends[i])) /
+                         static_cast<float>(effort_.rays(at.vertex) * at.end_count());
       all.variance[at.vertex] += share * all.variance[at.ends[i]];
     }
   }
@@ -370,16 +245,14 @@ void VertexGathers::sharpen_radiosity(const BandArray& caustic) {
   radiosity_ = with_pools(
       mesh, radiosity_,
       gatherable_radiosity(mesh, direct_light_, irradiance, direct_.topRows(mesh.vertex_count())));
-  if (!has_noise_goal_) return;
-  const Eigen::ArrayXf rays =
-      Eigen::Map<const Eigen::ArrayXi>(rays_.data(), mesh.vertex_count()).cast<float>();
-  const std::vector<double> found = rms_noises(
-      mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays, parts_), parts_);
-  for (std::size_t p = 0; p < rays_of_part_.size(); ++p) {
-    rays_of_part_[p] = rays_for_noise(pilot_rays(rays_of_part_[p]), found[p], efforts_[p].noise);
-  }
-  options_.rays = *std::ranges::max_element(rays_of_part_);
-  share_pilot_rays();
+  if (!effort_.has_noise_goal()) return;
+  Eigen::ArrayXf rays(mesh.vertex_count());
+  for (int v = 0; v < mesh.vertex_count(); ++v) rays[v] = static_cast<float>(effort_.rays(v));
+  effort_.choose_rays(
+      rms_noises(mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays, parts_),
+                 parts_),
+      shared_.read);
+  options_.rays = effort_.most_rays();
 }
 
 void VertexGathers::gather_indirect_at(const std::vector<int>& vertices) {

@@ -11,6 +11,7 @@
 #include "radiosity/refine/interpolated_vertices.h"
 #include "radiosity/refine/refine_options.h"
 #include "radiosity/refine/shared_gathers.h"
+#include "radiosity/refine/vertex_effort.h"
 
 namespace lightwell {
 
@@ -18,23 +19,16 @@ struct ChannelLight;
 
 /// Pilot gathers at the vertices of refined elements, each made at most once.
 ///
-/// - Direct light is gathered as for the final solution. The light of the sky is rough at first at
-///   the vertices of small elements, if those of the start leave little room for others: see
-///   sharpen_sky().
-/// - Indirect light is gathered twice, independently. Each gather casts a share of the final
-///   gather's rays, rounded up to a power of two:
-///     * an eighth;
-///     * a sixteenth, but 64 at least, if the noise of the final gather has a goal;
-///     * a sixteenth if there are more than 32 768 vertices at the start;
-///     * down to a quarter of that at the smallest elements of the start, and down to an eighth at
-///       vertices of SharedGathers::read.
+/// - Direct light is gathered as for the final solution. The light of the sky has more noise at
+///   first where VertexEffort says so: see sharpen_sky().
+/// - Indirect light is gathered twice, independently, with the rays of VertexEffort.
 ///
 ///   The rays take the same directions all over a side of a surface, so that most of the noise is
 ///   alike at neighbours and not in the difference between them.
 /// - The rays read the light at the base's vertices, which a gather of the same kind has sharpened
 ///   before.
-/// - On unread_patches() no indirect light is gathered, and direct light of crumbs at records
-/// alone.
+/// - On unread_patches() no indirect light is gathered, and direct light of crumbs at
+///   records alone.
 ///
 /// Vertices are numbered as in RefinedElements. Values are in W/m^2, vertices x bands.
 class VertexGathers {
@@ -54,15 +48,15 @@ class VertexGathers {
   /// Options of the final gather, with the most rays of any part; progress is that of "refine".
   const GatherOptions& options() const { return options_; }
   /// Rays of the final gather in each part.
-  const std::vector<int>& rays() const { return rays_of_part_; }
+  const std::vector<int>& rays() const { return effort_.rays_of_part(); }
 
   /// Makes room for all vertices that exist; needed before a gather at new ones.
   void make_room();
   /// Gathers direct light at the vertices that have none yet.
   void gather_direct_at(const std::vector<int>& vertices);
-  /// Gathers direct light anew where that of the sky is rough and its noise is above the goal, in
-  /// the parts of the scene in which that noise is notable beside the error that is left, relative
-  /// to the part's mean. Returns whether there were such vertices.
+  /// Gathers direct light anew where that of the sky has more noise than is asked for, in the parts
+  /// of the scene in which that noise is notable beside the error that is left, relative to the
+  /// part's mean. Returns whether there were such vertices.
   bool sharpen_sky(const std::vector<double>& left);
   /// Gathers indirect light, both times, at the vertices at which none was gathered yet.
   void gather_indirect_at(const std::vector<int>& vertices);
@@ -104,12 +98,6 @@ class VertexGathers {
   BandArray direct_at(const DirectLight& light, const std::vector<int>& vertices,
                       std::vector<EmitterVisibility>* visibilities) const;
   void set_direct(const std::vector<int>& vertices);
-  double fewness(int vertex) const;
-  int part_of(int vertex) const;
-  int pilot_rays(int rays) const;
-  void share_pilot_rays();
-  NoiseGoal sky_noise_at(int vertex) const;
-  void make_sky_rough(int first_vertex);
   void sharpen_radiosity(const BandArray& caustic);
   GatherPoint gather_point(int vertex) const;
   GatherPoint keyed_point(int vertex) const;
@@ -124,23 +112,17 @@ class VertexGathers {
   BandArray radiosity_;  // at the base's vertices
   RefinedElements& elements_;
   GatherOptions options_;
-  SceneParts parts_;
-  std::vector<int> rays_of_part_;
-  bool has_noise_goal_, few_rays_suffice_;
-  std::vector<PartEffort> efforts_;  // of each part, or empty
   double inset_;
   // Per vertex.
   std::vector<char> has_direct_;
   enum class Indirect : char { unknown, interpolated, gathered };
   std::vector<Indirect> indirect_;
-  std::vector<int> rays_;                // of each of the two gathers of indirect light
-  std::vector<float> fineness_;          // see vertex_fineness()
-  std::vector<char> has_rough_sky_;      // of each part: new vertices have
-  std::vector<std::uint8_t> roughness_;  // of the sky's light: noise in multiples of the goal
   BandArray direct_, first_, second_;
   EmitterVisibilityList visibility_;
   std::vector<char> unread_patch_;  // per patch
   SharedGathers shared_;
+  VertexEffort effort_;
+  SceneParts parts_;
   std::int64_t gathers_ = 0;
 };
 

@@ -8,7 +8,7 @@
 #include "radiosity/refine/vertex_gathers.h"
 #include "tests/radiosity/test_scenes.h"
 
-namespace lightwell::rough_sky_test {
+namespace lightwell::vertex_effort_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -72,13 +72,13 @@ int count_of_differences(const VertexGathers& a, const VertexGathers& b, int ver
   return count;
 }
 
-TEST(RoughSky, IsThatOfSmallElementsWhereFewMayBeSplit) {
+TEST(VertexEffort, SkyNoiseIsLargerAtSmallElementsWhereFewMayBeSplit) {
   Place place;
-  const VertexGathers fine = place.gathers(16), rough = place.gathers(1);
+  const VertexGathers fine = place.gathers(16), noisy = place.gathers(1);
   const std::vector<int> patch = vertex_patches(place.mesh);
   int typical = 0, small = 0;
   for (int v = 0; v < place.mesh.vertex_count(); ++v) {
-    const bool is_alike = (fine.direct().row(v) == rough.direct().row(v)).all();
+    const bool is_alike = (fine.direct().row(v) == noisy.direct().row(v)).all();
     if (place.scene.surfaces[place.mesh.surface[patch[v]]].name == "sheet") {
       small += is_alike ? 0 : 1;
     } else {
@@ -90,29 +90,29 @@ TEST(RoughSky, IsThatOfSmallElementsWhereFewMayBeSplit) {
   EXPECT_GT(small, 0);
 }
 
-TEST(RoughSky, IsSharpenedWhereLittleOtherErrorIsLeft) {
+TEST(VertexEffort, SkyNoiseFallsWhereLittleOtherErrorIsLeft) {
   Place place;
   const VertexGathers fine = place.gathers(16);
-  VertexGathers rough = place.gathers(1);
+  VertexGathers noisy = place.gathers(1);
   const int vertices = place.mesh.vertex_count();
-  const int before = count_of_differences(rough, fine, vertices);
+  const int before = count_of_differences(noisy, fine, vertices);
   constexpr double much = 0.2, little = 0.01;
-  EXPECT_FALSE(rough.sharpen_sky({much}));
-  EXPECT_EQ(count_of_differences(rough, fine, vertices), before);
-  EXPECT_TRUE(rough.sharpen_sky({little}));
-  const int after = count_of_differences(rough, fine, vertices);
+  EXPECT_FALSE(noisy.sharpen_sky({much}));
+  EXPECT_EQ(count_of_differences(noisy, fine, vertices), before);
+  EXPECT_TRUE(noisy.sharpen_sky({little}));
+  const int after = count_of_differences(noisy, fine, vertices);
   EXPECT_LT(after, before);
   constexpr double half_of_dome = 0.5 * std::numbers::pi;
   // Vertices that still differ had reached the goal with fewer rays: 0.7 of sky_noise times the
   // root of the fineness, which is 8 at most, as a share of the place's irradiance.
   constexpr double goal = 0.7 * 8.0 * 0.01;
   for (int v = 0; v < vertices; ++v) {
-    const double E = double{rough.direct()(v, 0)};
-    if ((rough.direct().row(v) == fine.direct().row(v)).all()) continue;
-    EXPECT_LE(rough.visibility(v).drawn_noise, goal * std::max(half_of_dome, E / 4.0)) << v;
+    const double E = double{noisy.direct()(v, 0)};
+    if ((noisy.direct().row(v) == fine.direct().row(v)).all()) continue;
+    EXPECT_LE(noisy.visibility(v).drawn_noise, goal * std::max(half_of_dome, E / 4.0)) << v;
   }
-  EXPECT_FALSE(rough.sharpen_sky({little}));
+  EXPECT_FALSE(noisy.sharpen_sky({little}));
 }
 
 }  // namespace
-}  // namespace lightwell::rough_sky_test
+}  // namespace lightwell::vertex_effort_test
