@@ -1,5 +1,6 @@
 #include "radiosity/refine/cell_errors.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace lightwell {
@@ -20,38 +21,50 @@ CellErrors::CellErrors(const RefinedElements& elements, const SceneParts& parts,
 
 void CellErrors::make_room() {
   squares_.resize(elements_.side_total());
-  is_known_.resize(elements_.cell_count(), 0);
-  measured_.resize(elements_.cell_count(), 0);
+  state_.resize(elements_.cell_count(), State::unknown);
+}
+
+// Squared error times area, with half of what noise may hide.
+double CellErrors::square(int cell) const {
+  double sum = 0.0;
+  for (int side = 0; side < elements_.side_count(cell); ++side) {
+    const Square& at = squares_[elements_.side_number(cell, side)];
+    sum += double{at.known} + 0.5 * double{at.hidden};
+  }
+  return sum * elements_.area(cell);
 }
 
 void CellErrors::expect(int cell, const std::array<double, 2>& of_sides) {
   for (int side = 0; side < elements_.side_count(cell); ++side) {
     squares_[elements_.side_number(cell, side)] = {static_cast<float>(of_sides[side]), 0.0f};
   }
-  is_known_[cell] = 1;
+  state_[cell] = State::expected;
 }
 
 void CellErrors::set_measured(int cell, const InterpolationError::Measured& squares) {
+  const bool is_of_start = elements_.level(cell) == 0;
+  if (is_of_start && state_[cell] == State::expected) expected_at_start_ += square(cell);
+  if (is_of_start && state_[cell] == State::stale) found_at_start_ -= square(cell);
   for (int side = 0; side < elements_.side_count(cell); ++side) {
     squares_[elements_.side_number(cell, side)] = {static_cast<float>(squares.error[side]),
                                                    static_cast<float>(squares.hidden[side])};
   }
-  is_known_[cell] = 1;
-  measured_[cell] = 1;
+  if (is_of_start) found_at_start_ += square(cell);
+  state_[cell] = State::measured;
 }
 
 // A child may be known already: a cell that was merged is split into the same children again.
 void CellErrors::expect_of_parents() {
   make_room();
   for (const int cell : elements_.leaves()) {
-    if (is_known_[cell]) continue;
+    if (state_[cell] != State::unknown) continue;
     for (int side = 0; side < elements_.side_count(cell); ++side) {
       const Square& whole = squares_[elements_.side_number(elements_.parent(cell), side)];
       squares_[elements_.side_number(cell, side)] = {
           static_cast<float>(whole.known * of_children_),
           static_cast<float>(whole.hidden * of_children_)};
     }
-    is_known_[cell] = 1;
+    state_[cell] = State::expected;
   }
 }
 
@@ -72,7 +85,9 @@ double CellErrors::counted(int cell, int part, double allowed) const {
 }
 
 double CellErrors::share_left(int cell) const {
-  return measured_[cell] || elements_.level(cell) == 0 ? 1.0 : in_the_end_;
+  if (state_[cell] != State::expected) return 1.0;
+  if (elements_.level(cell) > 0) return in_the_end_;
+  return expected_at_start_ > 0.0 ? std::min(found_at_start_ / expected_at_start_, 1.0) : 1.0;
 }
 
 float CellErrors::relative_error(int cell, int side) const {

@@ -18,9 +18,10 @@ class CellErrors {
   /// smooth light, a half along the edge of a shadow, for which most cells (not all) are split.
   static constexpr double of_a_split = 0.4;
 
-  /// If refinement `may_go_on` later, children are expected to have of_a_split of their parent's
-  /// squared error. Otherwise they are taken to be as bad as their parent until they are measured,
-  /// and share_left() alone expects less.
+  /// Cells of the start are taken to be as bad as InterpolationError::expected() says until they
+  /// are measured. If refinement `may_go_on` later, children are expected to have of_a_split of
+  /// their parent's squared error. Otherwise they are taken to be as bad as their parent. In both
+  /// cases share_left() expects less.
   CellErrors(const RefinedElements& elements, const SceneParts& parts, bool may_go_on);
 
   /// Sets the squared errors that are expected of a cell of the start.
@@ -29,9 +30,11 @@ class CellErrors {
   void set_measured(int cell, const InterpolationError::Measured& squares);
   /// Expects errors of the leaves that splits have made, by those of their parents.
   void expect_of_parents();
-  bool is_measured(int cell) const { return measured_[cell] != 0; }
-  /// Forgets that a cell was measured; its errors stay.
-  void measure_again(int cell) { measured_[cell] = 0; }
+  bool is_measured(int cell) const { return state_[cell] == State::measured; }
+  /// Asks for another measurement of a cell; its errors stay until then.
+  void measure_again(int cell) {
+    if (is_measured(cell)) state_[cell] = State::stale;
+  }
 
   /// Squared error times area of the sides of a cell in a part, weighted by their importance. The
   /// error that noise may hide in a cell is nothing for the most part, and counts only if it could
@@ -45,7 +48,9 @@ class CellErrors {
     if (elements_.side_count(cell) < 2) return;
     if (const int second = part_of(cell, 1); second != first) visit(second);
   }
-  /// The share of a cell's squared error that is there when nothing is split any more.
+  /// The share of a cell's squared error that is expected to be there when nothing is split any
+  /// more: of cells of the start that are not measured, what measured ones have of what was
+  /// expected of them.
   double share_left(int cell) const;
   /// RMS error of a side when nothing is split any more; includes half of the squared error that
   /// noise may hide, which is between none and all of it.
@@ -56,6 +61,7 @@ class CellErrors {
     float known = 0.0f, hidden = 0.0f;
   };
   void make_room();
+  double square(int cell) const;
   int part_of(int cell, int side) const {
     return parts_.group_of(elements_.base().patch[elements_.element(cell, side)]);
   }
@@ -63,8 +69,11 @@ class CellErrors {
   const RefinedElements& elements_;
   const SceneParts& parts_;
   double of_children_, in_the_end_;
-  std::vector<Square> squares_{};              // per side
-  std::vector<char> is_known_{}, measured_{};  // per cell
+  std::vector<Square> squares_{};  // per side
+  enum class State : char { unknown, expected, stale, measured };
+  std::vector<State> state_{};  // per cell
+  // Squared errors times area of the measured cells of the start, m^2: expected, and found.
+  double expected_at_start_ = 0.0, found_at_start_ = 0.0;
 };
 
 }  // namespace lightwell

@@ -25,7 +25,8 @@ Marking::Marking(const RefinedElements& elements, const CellErrors& errors, int 
       smallest_(std::ldexp(typical_leaf_area(elements), -2 * (max_level + 1))),
       of_children_(may_go_on ? CellErrors::of_a_split : 1.0),
       allowed_(static_cast<std::size_t>(part_count), 0.0),
-      sum_(allowed_) {}
+      sum_(allowed_),
+      measured_(allowed_) {}
 
 // False for the smallest cells: those of the deepest level, and those of the start that are smaller
 // by a level than such cells of most of the area are.
@@ -61,11 +62,13 @@ std::vector<int> Marking::joined(const PartMarks& by_part) const {
 Marking::PartMarks Marking::mark() {
   std::vector<std::vector<std::pair<double, int>>> by_error(allowed_.size());
   std::ranges::fill(sum_, 0.0);
+  std::ranges::fill(measured_, 0.0);
   std::vector<double> rest(allowed_.size(), 0.0);
   for (const int cell : elements_.leaves()) {
     errors_.for_each_part(cell, [&](int p) {
       const double square = counted(cell, p);
       sum_[p] += square;
+      if (errors_.is_measured(cell)) measured_[p] += square;
       if (may_be_split(cell) && square > 0.0) {
         by_error[p].emplace_back(-square, cell);
         rest[p] += square;
@@ -106,7 +109,7 @@ std::vector<int> Marking::worst_half(std::vector<std::pair<double, int>>& by_err
 std::vector<int> Marking::worst_of(PartMarks by_part, std::size_t most) const {
   constexpr double of_a_child = CellErrors::of_a_split / 4.0;
   for (std::size_t p = 0; p < by_part.size(); ++p) {
-    if (by_part[p].empty()) continue;
+    if (by_part[p].empty() || measured_[p] <= allowed_[p]) continue;
     const auto error = [&](int cell) { return counted(cell, static_cast<int>(p)); };
     const double least = about_equal * of_a_child * error(by_part[p].front());
     const auto end =

@@ -34,7 +34,8 @@ class Marking {
   std::vector<int> joined(const PartMarks& by_part) const;
   /// The first of each part's leaves: those above the expected error of the first one's children,
   /// and at most `most` in all. The others wait, so that elements go to the largest errors, however
-  /// few there may be.
+  /// few there may be. All leaves stay of a part whose measured errors alone are what its tolerance
+  /// allows: measured as well, they may be small enough.
   std::vector<int> worst_of(PartMarks by_part, std::size_t most) const;
   /// CellErrors::counted() beside what the part allows.
   double counted(int cell, int part) const {
@@ -51,7 +52,8 @@ class Marking {
   int max_level_;
   double smallest_;  // area, m^2, above which cells may be split
   double of_children_;
-  std::vector<double> allowed_, sum_;  // of each part
+  // Of each part; squared errors of all leaves, and of those that are measured.
+  std::vector<double> allowed_, sum_, measured_;
 };
 
 }  // namespace lightwell

@@ -63,29 +63,40 @@ class Refinement {
   void split_to_the_end() {
     report_.outcome = RefineOutcome::off;
     while (report_.outcome == RefineOutcome::off) {
-      Marking::PartMarks by_part = marking_.mark();
-      std::vector<int> marks = marking_.joined(by_part);
-      // Measures no more cells than can be split, since each split adds at least three elements. (A
-      // measured error is below its bound, and other cells come to the front.)
-      const std::int64_t room =
-          std::max<std::int64_t>(max_elements_ - elements_.element_count(), 0);
-      constexpr std::size_t at_once = 4096;
-      const std::size_t most = std::max(static_cast<std::size_t>(room / 3 + 1), at_once);
-      if (marks.size() > most) marks.resize(most);
+      const std::vector<int> marks = cells_to_split();
       if (marking_.are_reached()) {
         report_.outcome = RefineOutcome::tolerance_reached;
       } else if (report_.rounds > 0 && error_.run().is_time_up()) {
         report_.outcome = RefineOutcome::time_limit_reached;
       } else if (marks.empty()) {
         report_.outcome = RefineOutcome::smallest_size_reached;
+      } else if (report_.rounds > 0 && room() == 0) {
+        report_.outcome = no_more_elements();
       } else if (!measure(marks)) {
-        if (!split(may_wait(marks) ? marking_.worst_of(std::move(by_part), most) : marks)) {
-          report_.outcome = is_memory_short_ ? RefineOutcome::memory_limit_reached
-                                             : RefineOutcome::max_elements_reached;
-        }
+        if (!split(marks)) report_.outcome = no_more_elements();
         ++report_.rounds;
       }
     }
+  }
+
+  // Elements that may still be made.
+  std::int64_t room() const {
+    return std::max<std::int64_t>(max_elements_ - elements_.element_count(), 0);
+  }
+  RefineOutcome no_more_elements() const {
+    return is_memory_short_ ? RefineOutcome::memory_limit_reached
+                            : RefineOutcome::max_elements_reached;
+  }
+
+  // The next cells to split, once all of them are measured: no more than can be, since each split
+  // adds at least three elements.
+  std::vector<int> cells_to_split() {
+    Marking::PartMarks by_part = marking_.mark();
+    std::vector<int> marks = marking_.joined(by_part);
+    constexpr std::size_t at_once = 4096;
+    const std::size_t most = std::max(static_cast<std::size_t>(room() / 3 + 1), at_once);
+    if (marks.size() > most) marks.resize(most);
+    return may_wait(marks) ? marking_.worst_of(std::move(by_part), most) : marks;
   }
 
   // Sharpens the light of the sky where its noise is notable beside the errors that are left, and
