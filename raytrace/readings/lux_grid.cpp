@@ -15,6 +15,7 @@
 
 #include "mesh/patches/mesh_bounds.h"
 #include "raytrace/readings/cylinder.h"
+#include "raytrace/readings/grid_outline.h"
 #include "scene/errors.h"
 #include "scene/sampling.h"
 
@@ -22,6 +23,8 @@ namespace lightwell {
 namespace {
 
 using Edge = std::pair<int, int>;
+using Line = std::pair<Eigen::Vector3d, Eigen::Vector3d>;
+using Loop = std::vector<Eigen::Vector3d>;
 
 /// Facets that lie in one plane.
 struct MeshPlane {
@@ -50,7 +53,7 @@ std::vector<MeshPlane> planes_of(const PolygonMesh& mesh, double size) {
 }
 
 /// Returns the edges of the outline, each of which belongs to one facet alone.
-std::vector<Edge> outline_of(const MeshPlane& plane) {
+std::vector<Line> outline_of(const PolygonMesh& mesh, const MeshPlane& plane) {
   std::set<Edge> edges;
   const auto add = [&](const std::vector<int>& loop) {
     for (std::size_t i = 0; i < loop.size(); ++i) {
@@ -62,25 +65,26 @@ std::vector<Edge> outline_of(const MeshPlane& plane) {
     add(facet->boundary);
     for (const std::vector<int>& hole : facet->holes) add(hole);
   }
-  return {edges.begin(), edges.end()};
+  std::vector<Line> lines;
+  const auto place = [&](int v) { return mesh.vertices[static_cast<std::size_t>(v)]; };
+  for (const auto& [a, b] : edges) lines.emplace_back(place(a), place(b));
+  return lines;
 }
 
-/// The outline in coordinates of the plane.
-struct FlatOutline {
-  std::vector<std::pair<Eigen::Vector2d, Eigen::Vector2d>> edges{};
-
-  bool holds(const Eigen::Vector2d& p, double margin) const {
-    bool inside = false;
-    for (const auto& [a, b] : edges) {
-      const Eigen::Vector2d along = b - a;
-      const double t = std::clamp(along.dot(p - a) / along.squaredNorm(), 0.0, 1.0);
-      if ((p - a - t * along).norm() < margin * (1.0 - 1e-9)) return false;
-      if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-      if (p.x() < a.x() + (p.y() - a.y()) * along.x() / along.y()) inside = !inside;
+/// Returns the edges of closed lines, moved onto the plane.
+std::vector<Line> lines_of(const std::vector<Loop>& loops, const MeshPlane& plane) {
+  std::vector<Line> lines;
+  const auto place = [&](const Eigen::Vector3d& p) {
+    return Eigen::Vector3d(p - plane.normal.dot(p - plane.point) * plane.normal);
+  };
+  for (const Loop& loop : loops) {
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const Line line(place(loop[i]), place(loop[(i + 1) % loop.size()]));
+      if (line.first != line.second) lines.push_back(line);
     }
-    return inside;
   }
-};
+  return lines;
+}
 
 const MeshPlane& largest(const std::vector<MeshPlane>& planes, const Eigen::Vector3d& up) {
   constexpr double alike = 1e-6;
@@ -105,7 +109,7 @@ namespace {
 /// The plane that a grid covers, and its outline in the grid's coordinates from `plane.point`.
 struct GridPlane {
   MeshPlane plane{};
-  FlatOutline outline{};
+  GridOutline outline{};
   Eigen::Vector2d low{}, high{};  ///< corners of the rectangle of the grid, margin left out
 };
 
@@ -124,12 +128,11 @@ void stand_upright(const Eigen::Vector3d& up, LuxGrid& grid) {
 }
 
 // Sets the axes of a grid over the edges of an outline: u follows the longest edge.
-void set_axes(const PolygonMesh& mesh, const std::vector<Edge>& edges, const MeshPlane& plane,
-              const Eigen::Vector3d& up, LuxGrid& grid) {
+void set_axes(const std::vector<Line>& edges, const MeshPlane& plane, const Eigen::Vector3d& up,
+              LuxGrid& grid) {
   double longest = 0.0;
   for (const auto& [a, b] : edges) {
-    const Eigen::Vector3d along =
-        mesh.vertices[static_cast<std::size_t>(b)] - mesh.vertices[static_cast<std::size_t>(a)];
+    const Eigen::Vector3d along = b - a;
     // The first of equally long edges is kept, in spite of rounding.
     if (along.norm() <= longest * (1.0 + 1e-9)) continue;
     longest = along.norm();
@@ -139,14 +142,19 @@ void set_axes(const PolygonMesh& mesh, const std::vector<Edge>& edges, const Mes
   stand_upright(up, grid);
 }
 
+// A point in the axes of a grid, from `origin`.
+Eigen::Vector2d flat_point(const LuxGrid& grid, const Eigen::Vector3d& origin,
+                           const Eigen::Vector3d& p) {
+  return {grid.u.dot(p - origin), grid.v.dot(p - origin)};
+}
+
 // Cuts the rectangle of the grid down to that of a box.
 void keep_part(const Eigen::AlignedBox3d& part, const LuxGrid& grid, GridPlane& found) {
   Eigen::Vector2d low = Eigen::Vector2d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector2d high = -low;
   for (int corner = 0; corner < 8; ++corner) {
-    const Eigen::Vector3d p =
-        part.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)) - found.plane.point;
-    const Eigen::Vector2d at(grid.u.dot(p), grid.v.dot(p));
+    const Eigen::Vector2d at = flat_point(
+        grid, found.plane.point, part.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner)));
     low = low.cwiseMin(at);
     high = high.cwiseMax(at);
   }
@@ -159,17 +167,16 @@ GridPlane plane_of_grid(const Scene& scene, const PolygonMesh& mesh, const Eigen
                         LuxGrid& grid) {
   GridPlane found{.plane = largest(planes_of(mesh, scene_bounds(scene).diagonal()), up)};
   MeshPlane& plane = found.plane;
-  const std::vector<Edge> edges = outline_of(plane);
+  const std::vector<Line> edges = grid.options.outline.empty()
+                                      ? outline_of(mesh, plane)
+                                      : lines_of(grid.options.outline, plane);
   if (grid.options.towards && plane.normal.dot(*grid.options.towards - plane.point) < 0.0) {
     plane.normal = -plane.normal;
   }
-  set_axes(mesh, edges, plane, up, grid);
+  set_axes(edges, plane, up, grid);
   found.low.setConstant(std::numeric_limits<double>::infinity());
   found.high = -found.low;
-  const auto flat = [&](int v) {
-    const Eigen::Vector3d p = mesh.vertices[static_cast<std::size_t>(v)] - plane.point;
-    return Eigen::Vector2d(grid.u.dot(p), grid.v.dot(p));
-  };
+  const auto flat = [&](const Eigen::Vector3d& p) { return flat_point(grid, plane.point, p); };
   for (const auto& [a, b] : edges) {
     found.outline.edges.emplace_back(flat(a), flat(b));
     found.low = found.low.cwiseMin(flat(a));
@@ -213,6 +220,22 @@ void set_cells(const Eigen::Vector2d& size, LuxGrid& grid) {
 
 }  // namespace
 
+namespace {
+
+// Area that a grid stands for, m^2.
+double area_of(const LuxGrid& grid, const GridPlane& found) {
+  if (grid.options.part) return (found.high - found.low).prod();
+  if (grid.options.outline.empty()) return found.plane.area;
+  std::vector<std::vector<Eigen::Vector2d>> loops;
+  for (const Loop& loop : grid.options.outline) {
+    auto& flat = loops.emplace_back();
+    for (const Eigen::Vector3d& p : loop) flat.push_back(flat_point(grid, found.plane.point, p));
+  }
+  return area_within(loops);
+}
+
+}  // namespace
+
 LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
                  const LuxGridOptions& options) {
   const Surface& named = scene.surfaces[static_cast<std::size_t>(surface)];
@@ -222,10 +245,10 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
         "surface '{}' is round; over it there is no plane grid; name a plane surface", named.name));
   }
   LuxGrid grid{.name = named.name, .surface = surface, .options = options};
-  const auto [plane, outline, low, high] = plane_of_grid(scene, *mesh, up, grid);
-  const Eigen::Vector2d size = high - low;
-  grid.area = options.part ? size.prod() : plane.area;
-  set_cells(size, grid);
+  const GridPlane found = plane_of_grid(scene, *mesh, up, grid);
+  const auto& [plane, outline, low, high] = found;
+  grid.area = area_of(grid, found);
+  set_cells(high - low, grid);
   grid.corner = plane.point + low.x() * grid.u + low.y() * grid.v + options.height * plane.normal;
   for (int row = 0; row < grid.rows; ++row) {
     for (int column = 0; column < grid.columns; ++column) {
@@ -261,7 +284,15 @@ LuxGrid with_points(const LuxGrid& grid, const std::function<bool(const Probe&)>
 }  // namespace
 
 LuxGrid without_points_over(const LuxGrid& other, LuxGrid grid) {
+  GridOutline outline;
+  for (const auto& [a, b] : lines_of(other.options.outline, {.normal = other.u.cross(other.v)})) {
+    outline.edges.emplace_back(flat_point(other, other.corner, a),
+                               flat_point(other, other.corner, b));
+  }
   return with_points(grid, [&](const Probe& point) {
+    if (!outline.edges.empty()) {
+      return !outline.holds(flat_point(other, other.corner, point.position), 0.0);
+    }
     const Eigen::Vector3d p = point.position - other.corner;
     const double u = p.dot(other.u), v = p.dot(other.v);
     return u < 0.0 || v < 0.0 || u > other.columns * other.step_u || v > other.rows * other.step_v;

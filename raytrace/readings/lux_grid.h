@@ -23,6 +23,9 @@ struct LuxGridOptions {
   /// Part of the surface that the grid covers, m: the rectangle of a box, which may be flat. Its
   /// extent across the surface does not matter. Empty: all of the surface.
   std::optional<Eigen::AlignedBox3d> part{};
+  /// Corners of a polygon, then of its holes, m, in place of the surface's outline. Heights above
+  /// the surface do not matter. Empty: the surface's own.
+  std::vector<std::vector<Eigen::Vector3d>> outline{};
   /// Point, m, that the grid's plane faces: with the front or the back of the surface. Empty: the
   /// front.
   std::optional<Eigen::Vector3d> towards{};
@@ -43,7 +46,7 @@ struct LuxGrid {
   Eigen::Vector3d u = Eigen::Vector3d::UnitX(), v = Eigen::Vector3d::UnitY();  ///< unit, in plane
   double step_u = 0.0, step_v = 0.0;  ///< m, size of a cell
   int columns = 0, rows = 0;
-  double area = 0.0;        ///< m^2, of the surface, margin included; of the rectangle of a part
+  double area = 0.0;        ///< m^2, of the surface or the outline, margin included; or of the part
   std::vector<int> cell{};  ///< row * columns + column of each point, rising
   std::vector<Probe> points{};  ///< points inside the surface's outline less the margin
 };
@@ -67,8 +70,8 @@ LuxGrid lux_grid(const Scene& scene, int surface, const Eigen::Vector3d& up,
 /// is.
 LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid);
 
-/// Returns the grid without the points over the rectangle of another one, such as the surroundings
-/// of a task area without the task area.
+/// Returns the grid without the points over the rectangle or outline of another one, such as the
+/// surroundings of a task area without the task area.
 LuxGrid without_points_over(const LuxGrid& other, LuxGrid grid);
 
 /// Returns the grid without the points that surfaces hide from all points of `eyes`, or from 64 of

@@ -29,7 +29,9 @@ struct CalculationGrid {
   double spacing = 0.0;            ///< m between points, at most; 0: the usual spacing
   /// Box, m, whose rectangle on the surface is the part that counts; empty: all of the surface.
   std::optional<Eigen::AlignedBox3d> part{};
-  std::vector<int> leaves_out{};  ///< earlier grids, over whose rectangles there are no points
+  /// Corners of a polygon and of its holes, m, that stand in place of the surface's outline.
+  std::vector<std::vector<Eigen::Vector3d>> outline{};
+  std::vector<int> leaves_out{};  ///< earlier grids, over which there are no points
   GridQuantity quantity = GridQuantity::planar;
   Eigen::Vector3d facing = Eigen::Vector3d::UnitX();  ///< of vertical and semicylindrical
 };

@@ -297,9 +297,9 @@ std::optional<PowerDensity> power_density(const LightingReport& report,
     if (!(row.watts > 0.0)) return {};
     watts += row.watts;
   }
-  const bool is_working_plane = surface.grid.options.height > 0.0 && !surface.grid.is_of_area &&
-                                !surface.grid.options.part &&
-                                surface.grid.quantity == GridQuantity::planar;
+  const bool is_working_plane =
+      surface.grid.options.height > 0.0 && !surface.grid.is_of_area && !surface.grid.options.part &&
+      surface.grid.options.outline.empty() && surface.grid.quantity == GridQuantity::planar;
   if (!(is_working_plane && watts > 0.0)) return {};
   PowerDensity density{.watts_per_area = watts / surface.grid.area};
   const LuxField* const electric = electric_field(report, surface);

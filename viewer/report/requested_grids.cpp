@@ -135,6 +135,7 @@ std::vector<LuxGrid> requested_grids(const GridRequest& asked,
                              .margin = grid.margin.value_or(usual),
                              .spacing = grid.spacing > 0.0 ? grid.spacing : spacing,
                              .part = grid.part,
+                             .outline = grid.outline,
                              .towards = above(scene, caster, grid.surface, grid.height, up)});
     made.name = grid.name;
     for (const int other : grid.leaves_out) {

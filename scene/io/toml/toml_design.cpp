@@ -38,6 +38,30 @@ Eigen::AlignedBox3d read_part(const TomlValue& value, double metres) {
   return part;
 }
 
+std::vector<Eigen::Vector3d> read_loop(const TomlValue& value, double metres) {
+  std::vector<Eigen::Vector3d> loop;
+  for (const TomlValue& corner : value.elements("corner")) {
+    loop.push_back(metres * corner.vector());
+  }
+  if (loop.size() < 3) value.fail("has fewer than three corners; give at least three");
+  return loop;
+}
+
+// A polygon and its holes, in place of the surface's outline.
+std::vector<std::vector<Eigen::Vector3d>> read_outline(const TomlTable& table, double metres) {
+  std::vector<std::vector<Eigen::Vector3d>> loops;
+  const auto outline = table.find("outline");
+  const auto holes = table.find("holes");
+  if (outline && table.has("part")) {
+    outline->fail("is a second statement of the area, beside 'part'; give one of them");
+  }
+  if (holes && !outline) holes->fail("need an 'outline' about them");
+  if (outline) loops.push_back(read_loop(*outline, metres));
+  if (!holes) return loops;
+  for (const TomlValue& hole : holes->elements("hole")) loops.push_back(read_loop(hole, metres));
+  return loops;
+}
+
 // The grid of a name among `grids`; `where` says where they stand.
 int find_grid(const TomlValue& value, const std::vector<CalculationGrid>& grids,
               const char* where = "") {
@@ -57,7 +81,7 @@ CalculationGrid read_grid(const TomlValue& value, const Scene& scene,
   CalculationGrid grid{.name = given ? given->name() : fmt::format("grid{}", earlier.size() + 1)};
   const TomlTable table = value.renamed(fmt::format("grid '{}'", grid.name))
                               .table({"name", "surface", "height", "margin", "spacing", "part",
-                                      "leaves_out", "measures", "facing"});
+                                      "outline", "holes", "leaves_out", "measures", "facing"});
   if (std::ranges::find(earlier, grid.name, &CalculationGrid::name) != earlier.end()) {
     table.fail("has the name of another grid; give each its own");
   }
@@ -67,6 +91,7 @@ CalculationGrid read_grid(const TomlValue& value, const Scene& scene,
   if (const auto margin = table.find("margin")) grid.margin = metres * margin->number_at_least(0);
   if (const auto spacing = table.find("spacing")) grid.spacing = metres * spacing->positive();
   if (const auto part = table.find("part")) grid.part = read_part(*part, metres);
+  grid.outline = read_outline(table, metres);
   if (const auto names = table.find("leaves_out")) {
     for (const TomlValue& name : names->elements("grid")) {
       grid.leaves_out.push_back(find_grid(name, earlier, " before it"));

@@ -186,6 +186,36 @@ TEST(LuxGrid, LeavesOutThePointsOverAnotherGrid) {
   for (const Probe& probe : around.points) EXPECT_FALSE(part.contains(probe.position));
 }
 
+/// An L of 12 cells of 1 m x 1 m on the floor, given 0.3 m above it, with a hole of one of them.
+/// Cells of 0.5 m have four points each.
+TEST(LuxGrid, KeepsToAnOutlineWithAHole) {
+  const std::vector<std::vector<Eigen::Vector3d>> outline = {
+      {{0, 0, 0.3}, {4, 0, 0.3}, {4, 2, 0.3}, {2, 2, 0.3}, {2, 4, 0.3}, {0, 4, 0.3}},
+      {{1, 1, 0.3}, {2, 1, 0.3}, {2, 2, 0.3}, {1, 2, 0.3}}};
+  const Scene scene = floor_of_an_office();
+  const LuxGrid grid = lux_grid(scene, 0, up, {.height = 0.75, .spacing = 0.5, .outline = outline});
+  EXPECT_EQ(grid.points.size(), 4u * 11u);
+  EXPECT_NEAR(grid.area, 11.0, 1e-12);  // sums of products up to 16 in double precision
+  for (const Probe& probe : grid.points) {
+    const Eigen::Vector3d& p = probe.position;
+    EXPECT_TRUE(p.x() < 2.0 || p.y() < 2.0) << p.transpose();
+    EXPECT_FALSE(p.x() > 1.0 && p.x() < 2.0 && p.y() > 1.0 && p.y() < 2.0) << p.transpose();
+    EXPECT_NEAR(p.z(), 0.75, 1e-12);
+  }
+  // Around it, 9 of the floor's 20 cells of 1 m.
+  const LuxGrid around = without_points_over(grid, lux_grid(scene, 0, up, {.spacing = 1.0}));
+  EXPECT_EQ(around.points.size(), 9u);
+  // A margin also keeps off the hole.
+  const LuxGrid within =
+      lux_grid(scene, 0, up, {.margin = 0.25, .spacing = 0.1, .outline = outline});
+  for (const Probe& probe : within.points) {
+    const Eigen::Vector2d middle(1.5, 1.5);
+    const Eigen::Vector2d from =
+        ((probe.position.head<2>() - middle).cwiseAbs().array() - 0.5).max(0.0);
+    EXPECT_GT(from.norm(), 0.25 * (1.0 - 1e-8)) << probe.position.transpose();
+  }
+}
+
 /// A cupboard stands 1 cm before a wall, and hides its own width and height from the eyes before
 /// it.
 TEST(LuxGrid, LeavesOutWhatFurnitureHides) {

@@ -38,6 +38,21 @@ class Design : public testing::Test {
   TemporaryFolder folder;
 };
 
+TEST_F(Design, HasOutlinesOfGridsInMetres) {
+  const std::string grid = "[[grids]]\nsurface = \"floor\"\n";
+  const std::string outline = "outline = [[0, 0, 0], [200, 0, 0], [0, 300, 0]]\n";
+  const std::string holes = "holes = [[[10, 10, 0], [20, 10, 0], [10, 20, 0]]]\n";
+  const LightingDesign design = read(grid + outline + holes);
+  ASSERT_EQ(design.grids[0].outline.size(), 2u);
+  EXPECT_EQ(design.grids[0].outline[0][2], Eigen::Vector3d(0, 3, 0));
+  EXPECT_EQ(design.grids[0].outline[1][1], Eigen::Vector3d(0.2, 0.1, 0));
+  const std::string part = "part = { min = [0, 0, 0], max = [1, 1, 0] }\n";
+  EXPECT_NE(refused(grid + outline + part).find("beside 'part'"), std::string::npos);
+  EXPECT_NE(refused(grid + holes).find("need an 'outline'"), std::string::npos);
+  EXPECT_NE(refused(grid + "outline = [[0, 0, 0], [1, 0, 0]]\n").find("fewer than three"),
+            std::string::npos);
+}
+
 TEST_F(Design, HasTheGridsInMetres) {
   const LightingDesign design = read(R"(
 [[grids]]
