@@ -17,6 +17,19 @@ void place(PolygonMesh& mesh, const Eigen::Isometry3d& to) {
   }
 }
 
+void place(Camera& camera, const Eigen::Isometry3d& to) {
+  camera.position = to * camera.position;
+  camera.direction = to.linear() * camera.direction;
+  camera.up = to.linear() * camera.up;
+}
+
+// Pose of a camera's motion at its rest time.
+Eigen::Isometry3d rest_pose(const Scene& scene, const Camera& camera) {
+  if (camera.motion < 0) return Eigen::Isometry3d::Identity();
+  const RigidMotion& motion = scene.motions[static_cast<std::size_t>(camera.motion)];
+  return motion.pose(motion.rest_time);
+}
+
 }  // namespace
 
 void place_at_rest(Scene& scene, double time) {
@@ -32,13 +45,17 @@ void place_at_rest(Scene& scene, double time) {
       set_shape(surface, moved(*round_shape(surface), pose(surface.motion)));
     }
   }
-  for (Camera& camera : scene.cameras) {
-    if (camera.motion < 0) continue;
-    const Eigen::Isometry3d to = pose(camera.motion);
-    camera.position = to * camera.position;
-    camera.direction = to.linear() * camera.direction;
-    camera.up = to.linear() * camera.up;
-  }
+  for (Camera& camera : scene.cameras) place_at_rest(scene, camera);
+}
+
+void place_at_rest(const Scene& scene, Camera& camera) {
+  if (camera.motion >= 0) place(camera, rest_pose(scene, camera));
+}
+
+Camera placed_as_in_file(const Scene& scene, const Camera& camera) {
+  Camera moved = camera;
+  if (camera.motion >= 0) place(moved, rest_pose(scene, camera).inverse());
+  return moved;
 }
 
 }  // namespace lightwell

@@ -9,4 +9,11 @@ namespace lightwell {
 /// motions must be sound (see fault()).
 void place_at_rest(Scene& scene, double time);
 
+/// Moves one more camera, whose coordinates are those of the file, to its pose at the rest time of
+/// the motions of a scene that is placed already.
+void place_at_rest(const Scene& scene, Camera& camera);
+
+/// The camera of such a scene with the coordinates that it has in the file.
+Camera placed_as_in_file(const Scene& scene, const Camera& camera);
+
 }  // namespace lightwell

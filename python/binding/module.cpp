@@ -30,6 +30,7 @@ NB_MODULE(_lightwell, module) {
   using namespace lightwell::python;
   module.doc() = "The compiled part of the package lightwell; use the package itself.";
   add_errors();
+  add_camera(module);
   add_scene(module);
   add_form_factors(module);
   add_solve(module);

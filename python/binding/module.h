@@ -6,6 +6,7 @@
 namespace lightwell::python {
 
 void add_errors();
+void add_camera(nanobind::module_& module);
 void add_scene(nanobind::module_& module);
 void add_form_factors(nanobind::module_& module);
 void add_solve(nanobind::module_& module);

@@ -13,6 +13,7 @@
 #include "python/binding/module.h"
 #include "python/binding/solution_data.h"
 #include "scene/errors.h"
+#include "scene/io/scene_text.h"
 #include "viewer/report/make_report.h"
 
 namespace nb = nanobind;
@@ -21,7 +22,7 @@ namespace lightwell::python {
 namespace {
 
 // Measures, writes the files, and returns the figures as JSON.
-std::string report(const SharedSolution& solution, const ReportRequest& request,
+std::string report(const SharedSolution& solution, const ReportRequest& asked,
                    const std::vector<std::filesystem::path>& files, const std::string& code,
                    const nb::object& progress) {
   const std::optional<Language> language = language_of(code);
@@ -29,6 +30,8 @@ std::string report(const SharedSolution& solution, const ReportRequest& request,
   for (const std::filesystem::path& file : files) require_report_file(file);
   const SceneData& scene = solution->its_scene("a report");
   return result_of_long(progress, [&](const Progress& run) {
+    ReportRequest request = asked;
+    if (scene.text) request.design = read_lighting_text(*scene.text, scene.clean);
     const ReportPlan plan = plan_report(scene.clean, request);
     if (plan.is_empty()) {
       throw InputError(

@@ -6,7 +6,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <Eigen/Geometry>
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -14,13 +14,13 @@
 #include <vector>
 
 #include "python/binding/arrays.h"
-#include "python/binding/checked.h"
 #include "python/binding/long_work.h"
 #include "python/binding/module.h"
 #include "python/binding/scene_data.h"
 #include "scene/errors.h"
 #include "scene/io/polygon_arrays.h"
-#include "scene/limits.h"
+#include "scene/io/scene_text.h"
+#include "scene/place_at_rest.h"
 
 namespace nb = nanobind;
 
@@ -69,109 +69,6 @@ void add_material(nb::module_& module) {
       .def_rw("emits_both_sides", &Material::emits_both_sides);
 }
 
-Eigen::Vector3d vector_of(const char* what, const std::vector<double>& values) {
-  if (values.size() == 3) return {values[0], values[1], values[2]};
-  throw InputError(fmt::format("{} has {} coordinates; three are needed", what, values.size()));
-}
-
-/// A camera from a place towards a target, whose picture has `up` upwards.
-struct View {
-  std::string name{};
-  std::vector<double> position{}, target{}, up{};
-  std::optional<double> fov_degrees{};
-  int width = 512, height = 512;
-  std::string projection = "perspective";
-  std::vector<double> shift{0.0, 0.0};
-  std::vector<double> distortion{0.0, 0.0, 0.0, 0.0, 0.0};  ///< k1, k2, k3, p1, p2
-};
-
-Projection projection_of(const View& view) {
-  if (const auto known = projection_named(view.projection)) return *known;
-  std::string names;
-  for (const NamedProjection& each : named_projections) names += fmt::format(" {}", each.name);
-  throw InputError(fmt::format("camera '{}': there is no projection '{}'; choose from:{}",
-                               view.name, view.projection, names));
-}
-
-void set_lens(const View& view, Camera& camera) {
-  if (view.shift.size() != 2) {
-    throw InputError(fmt::format(
-        "camera '{}': shift has {} numbers; give two, shares of the width and of the height",
-        view.name, view.shift.size()));
-  }
-  if (view.distortion.size() != 5) {
-    throw InputError(
-        fmt::format("camera '{}': distortion has {} numbers; give five, k1, k2, k3, p1 and p2",
-                    view.name, view.distortion.size()));
-  }
-  camera.shift = {view.shift[0], view.shift[1]};
-  camera.distortion = {.k1 = view.distortion[0],
-                       .k2 = view.distortion[1],
-                       .k3 = view.distortion[2],
-                       .p1 = view.distortion[3],
-                       .p2 = view.distortion[4]};
-}
-
-Camera camera_of(const View& view) {
-  Camera camera{.name = view.name, .position = vector_of("position", view.position)};
-  const Eigen::Vector3d ahead = vector_of("target", view.target) - camera.position;
-  const Eigen::Vector3d up = vector_of("up", view.up);
-  const Eigen::Vector3d upwards = up - ahead * (ahead.dot(up) / ahead.squaredNorm());
-  if (!(ahead.norm() > 0.0) || !(upwards.norm() > parallel_sine * up.norm())) {
-    throw InputError(
-        fmt::format("camera '{}': it looks along its direction upwards, or nowhere; "
-                    "give another target, or another direction upwards",
-                    view.name));
-  }
-  camera.direction = ahead.normalized();
-  camera.up = upwards.normalized();
-  camera.projection = projection_of(view);
-  camera.fov_degrees = view.fov_degrees.value_or(named(camera.projection).usual);
-  camera.width = whole_number("width", view.width, 1, max_picture_edge);
-  camera.height = whole_number("height", view.height, 1, max_picture_edge);
-  set_lens(view, camera);
-  validate(camera);
-  return camera;
-}
-
-std::vector<double> coordinates(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-void add_camera(nb::module_& module) {
-  nb::class_<View>(module, "View")
-      .def(nb::init<>())
-      .def_rw("name", &View::name)
-      .def_rw("position", &View::position)
-      .def_rw("target", &View::target)
-      .def_rw("up", &View::up)
-      .def_rw("fov_degrees", &View::fov_degrees)
-      .def_rw("width", &View::width)
-      .def_rw("height", &View::height)
-      .def_rw("projection", &View::projection)
-      .def_rw("shift", &View::shift)
-      .def_rw("distortion", &View::distortion);
-  module.def("camera_of", camera_of, nb::arg("view"));
-  nb::class_<Camera>(module, "Camera")
-      .def_prop_ro("name", [](const Camera& c) { return c.name; })
-      .def_prop_ro("position", [](const Camera& c) { return coordinates(c.position); })
-      .def_prop_ro("direction", [](const Camera& c) { return coordinates(c.direction); })
-      .def_prop_ro("up", [](const Camera& c) { return coordinates(c.up); })
-      .def_ro("fov_degrees", &Camera::fov_degrees)
-      .def_ro("width", &Camera::width)
-      .def_ro("height", &Camera::height)
-      .def_prop_ro("projection",
-                   [](const Camera& c) { return std::string(named(c.projection).name); })
-      .def_prop_ro("shift",
-                   [](const Camera& c) {
-                     return std::vector{c.shift.x(), c.shift.y()};
-                   })
-      .def_prop_ro("distortion", [](const Camera& c) {
-        const LensDistortion& d = c.distortion;
-        return std::vector{d.k1, d.k2, d.k3, d.p1, d.p2};
-      });
-}
-
 SharedScene read(const std::filesystem::path& path, bool inside_folder,
                  const nb::object& progress) {
   const References references = inside_folder ? References::inside_folder : References::anywhere;
@@ -185,38 +82,70 @@ SharedScene read(const std::filesystem::path& path, bool inside_folder,
   });
 }
 
-/// A scene without its faces: a name and a material for each surface.
-struct SceneParts {
-  std::string title{};
+/// The surfaces of a scene without their faces: a name and a material for each.
+struct SurfaceList {
   std::vector<std::string> names{};
   std::vector<Material> materials{};
-  std::vector<Camera> cameras{};
+  /// Number of a material of the scene's text, by its name, in place of the one above; empty: none.
+  std::vector<std::string> named_materials{};
 };
 
-Scene scene_without_faces(const SceneParts& parts) {
-  Scene scene{.title = parts.title, .materials = parts.materials, .cameras = parts.cameras};
-  for (const std::string& name : parts.names) {
-    scene.surfaces.push_back({.name = name, .material = static_cast<int>(scene.surfaces.size())});
+int material_named(const Scene& scene, const std::string& name) {
+  const auto found = std::ranges::find(scene.materials, name, &Material::name);
+  if (found == scene.materials.end()) {
+    throw InputError(fmt::format("there is no material '{}'", name));
   }
-  return scene;
+  return static_cast<int>(found - scene.materials.begin());
 }
+
+void add_surfaces(const SurfaceList& list, Scene& scene) {
+  for (std::size_t s = 0; s < list.names.size(); ++s) {
+    int material = static_cast<int>(scene.materials.size());
+    if (!list.named_materials[s].empty()) {
+      material = material_named(scene, list.named_materials[s]);
+    } else {
+      scene.materials.push_back(list.materials[s]);
+    }
+    scene.surfaces.push_back({.name = list.names[s], .material = material});
+  }
+}
+
+using PairsIn = nb::ndarray<const double, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
 
 template <class Scalar>
 auto entries(const ListIn<Scalar>& list) {
   return std::span<const Scalar>(list.data(), list.size());
 }
 
-SharedScene from_arrays(const SceneParts& parts, const PointsIn& vertices,
+SharedScene from_arrays(const SurfaceList& list, const SceneText& text, const PointsIn& vertices,
                         const ListIn<std::int32_t>& corners, const ListIn<std::int64_t>& first,
-                        const ListIn<std::int32_t>& surface) {
+                        const ListIn<std::int32_t>& surface, const PairsIn& uv,
+                        const PointsIn& normals) {
   PolygonArrays polygons{.vertices = points_from(vertices)};
   polygons.corners.assign(entries(corners).begin(), entries(corners).end());
   polygons.first.assign(entries(first).begin(), entries(first).end());
   polygons.surface.assign(entries(surface).begin(), entries(surface).end());
+  polygons.normals = points_from(normals);
+  polygons.uv.resize(uv.shape(0));
+  for (std::size_t v = 0; v < polygons.uv.size(); ++v) polygons.uv[v] = {uv(v, 0), uv(v, 1)};
   return result_of_long(nb::none(), [&](const Progress&) {
-    NumberedScene faces = scene_of_polygons(scene_without_faces(parts), polygons);
-    Scene given = faces.scene;
-    return scene_data(std::move(given), References::anywhere, std::move(faces));
+    NumberedScene faces;
+    Scene given = read_scene_text(text, [&](Scene& scene) {
+      add_surfaces(list, scene);
+      faces = scene_of_polygons(std::move(scene), polygons);
+      scene = faces.scene;
+    });
+    faces.scene = given;
+    SharedScene data = scene_data(std::move(given), text.references, std::move(faces), text);
+    return data;
+  });
+}
+
+SharedScene from_tables(const SceneText& text) {
+  return result_of_long(nb::none(), [&](const Progress&) {
+    Scene given = read_scene_text(text);
+    NumberedScene faces = numbered_by_facets(given);
+    return scene_data(std::move(given), text.references, std::move(faces), text);
   });
 }
 
@@ -231,6 +160,15 @@ nb::tuple triangles(const SceneData& scene) {
   return nb::make_tuple(owned(std::move(points), {found.vertices.size(), 3}),
                         owned(std::vector<int>(found.corners), {count, 3}),
                         owned(std::vector<int>(found.surface), {count}));
+}
+
+// Cameras with the coordinates of the file, which moving ones leave at the instant of the light.
+std::vector<Camera> cameras_as_given(const SceneData& data) {
+  std::vector<Camera> cameras;
+  for (const Camera& camera : data.given.cameras) {
+    cameras.push_back(placed_as_in_file(data.given, camera));
+  }
+  return cameras;
 }
 
 template <class Items, class Text>
@@ -272,7 +210,11 @@ void add_scene_data(nb::module_& module) {
                        areas.push_back(surface_area(surface));
                      return areas;
                    })
-      .def_prop_ro("cameras", [](const SceneData& s) { return s.given.cameras; })
+      .def_prop_ro("cameras", cameras_as_given)
+      .def_prop_ro("motions",
+                   [](const SceneData& s) {
+                     return texts_of(s.given.motions, [](const RigidMotion& x) { return x.name; });
+                   })
       .def_prop_ro("notes", [](const SceneData& s) { return s.given.notes; })
       .def_prop_ro("losses", [](const SceneData& s) { return s.given.losses; })
       .def_prop_ro("gives_light", [](const SceneData& s) { return gives_light(s.given); })
@@ -284,17 +226,29 @@ void add_scene_data(nb::module_& module) {
 
 void add_scene(nb::module_& module) {
   add_material(module);
-  add_camera(module);
   add_scene_data(module);
   module.def("read", read, nb::arg("path"), nb::arg("inside_folder"), nb::arg("progress").none());
-  nb::class_<SceneParts>(module, "SceneParts")
+  nb::class_<SurfaceList>(module, "SurfaceList")
       .def(nb::init<>())
-      .def_rw("title", &SceneParts::title)
-      .def_rw("names", &SceneParts::names)
-      .def_rw("materials", &SceneParts::materials)
-      .def_rw("cameras", &SceneParts::cameras);
-  module.def("from_arrays", from_arrays, nb::arg("parts"), nb::arg("vertices"), nb::arg("corners"),
-             nb::arg("first"), nb::arg("surface"));
+      .def_rw("names", &SurfaceList::names)
+      .def_rw("materials", &SurfaceList::materials)
+      .def_rw("named_materials", &SurfaceList::named_materials);
+  nb::class_<SceneText>(module, "SceneText")
+      .def(
+          "__init__",
+          [](SceneText* made, std::string text, const std::filesystem::path& folder,
+             bool inside_folder) {
+            new (made) SceneText{
+                .text = std::move(text),
+                .folder = folder,
+                .references = inside_folder ? References::inside_folder : References::anywhere};
+          },
+          nb::arg("text"), nb::arg("folder"), nb::arg("inside_folder"))
+      .def_ro("text", &SceneText::text);
+  module.def("from_arrays", from_arrays, nb::arg("surfaces"), nb::arg("text"), nb::arg("vertices"),
+             nb::arg("corners"), nb::arg("first"), nb::arg("surface"), nb::arg("uv"),
+             nb::arg("normals"));
+  module.def("from_tables", from_tables, nb::arg("text"));
 }
 
 }  // namespace lightwell::python

@@ -6,6 +6,7 @@
 #include "mesh/cleaning/planar_regions.h"
 #include "scene/io/numbered_scene.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/scene_text.h"
 #include "scene/progress.h"
 #include "scene/scene.h"
 
@@ -22,10 +23,13 @@ struct SceneData {
   References references = References::anywhere;
   /// The faces that the scene was made from; empty for a scene that was read from a file.
   std::optional<NumberedScene> faces{};
+  /// The tables that the scene was made from; empty for a scene that was read from a file.
+  std::optional<SceneText> text{};
 };
 using SharedScene = std::shared_ptr<const SceneData>;
 
 /// Cleans a scene up. Throws InputError as merge_planar_regions() does.
-SharedScene scene_data(Scene given, References references, std::optional<NumberedScene> faces = {});
+SharedScene scene_data(Scene given, References references, std::optional<NumberedScene> faces = {},
+                       std::optional<SceneText> text = {});
 
 }  // namespace lightwell::python

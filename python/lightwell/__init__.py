@@ -18,13 +18,15 @@ same bits for any number of threads.
 """
 
 from ._errors import Error, InputError, Interrupted  # isort: skip  (the compiled module needs it)
+from ._camera import Camera
 from ._form_factors import FormFactors, form_factors
 from ._ifc import convert_ifc, from_ifc
 from ._lightwell import thread_count
 from ._lightwell import version as __version__
+from ._material import Material
 from ._pictures import tone_map, write_picture
 from ._radiation import Radiation, radiation
-from ._scene import Camera, Material, Scene, read
+from ._scene import Scene, read
 from ._shortwave import PointLight, Shortwave, shortwave
 from ._solution import Readings, Solution
 from ._solve import load, solve

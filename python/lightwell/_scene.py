@@ -1,18 +1,21 @@
 """Scenes: surfaces with materials, cameras and light."""
 
 import os
-from dataclasses import dataclass, replace
-from typing import Any, Callable, List, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, List, Mapping, Optional, Sequence, Tuple, Union
 
 import numpy as np
 
 from . import _lightwell
-from ._arrays import checked_progress, faces_of, integers_of, points_of, real_number, whole_number
+from ._arrays import array_of, checked_progress, faces_of, integers_of, points_of
+from ._camera import Camera, camera_of
 from ._errors import InputError
+from ._material import Material, material_of, materials_of
+from ._toml import mapping_of, mappings_of, toml_text
 
+Path = Union[str, "os.PathLike[str]"]
 Progress = Callable[[str, float], Optional[bool]]
-Values = Union[float, Sequence[float]]
-"""One value for all bands, or one each for red, green and blue."""
+Table = Mapping[str, Any]
+"""Keys and values of a table of the scene format."""
 
 
 def fixed(array: np.ndarray) -> np.ndarray:
@@ -21,115 +24,14 @@ def fixed(array: np.ndarray) -> np.ndarray:
     return array
 
 
-def _values(name: str, values: Any) -> List[float]:
-    if np.ndim(values) == 0:
-        return [real_number(name, values)]
-    return [real_number(name, value) for value in values]
-
-
-@dataclass(frozen=True)
-class Material:
-    """Reflection and emission of a surface. Shares add up to at most 1 in every band."""
-
-    name: str = "material"
-    reflectance: Values = 0.5
-    """Diffuse reflectance rho, 0 to 1."""
-    emission: Values = 0.0
-    """Exitance M = pi L of a Lambertian emitter, W/m^2."""
-    specular: Values = 0.0
-    """Mirror reflectance, 0 to 1."""
-    roughness: float = 0.0
-    """GGX alpha of the mirror, 0 to 1; 0 is smooth."""
-    transmittance: Values = 0.0
-    """Diffuse transmittance of a thin sheet, 0 to 1."""
-    one_sided: bool = False
-    """True: the back is black."""
-    emits_both_sides: bool = False
-
-    def _compiled(self) -> "_lightwell.Material":
-        made = _lightwell.Material()
-        made.name = str(self.name)
-        made.reflectance = _values("reflectance", self.reflectance)
-        made.emission = _values("emission", self.emission)
-        made.specular = _values("specular", self.specular)
-        made.roughness = real_number("roughness", self.roughness)
-        made.transmittance = _values("transmittance", self.transmittance)
-        made.one_sided = bool(self.one_sided)
-        made.emits_both_sides = bool(self.emits_both_sides)
-        return made
-
-
-@dataclass(frozen=True)
-class Camera:
-    """A place to look from. Lengths in metres, angles in degrees, sizes in pixels."""
-
-    position: Sequence[float]
-    target: Sequence[float]
-    """A point that is seen in the middle of the picture."""
-    up: Sequence[float] = (0.0, 0.0, 1.0)
-    """The direction that is upwards in the picture."""
-    fov: Optional[float] = None
-    """Full horizontal angle; None: the usual one of the projection, 40 for perspective."""
-    width: int = 512
-    height: int = 512
-    projection: str = "perspective"
-    name: str = "camera"
-    shift: Sequence[float] = (0.0, 0.0)
-    """Shift of the lens to the right and upwards, in shares of the picture's width and height."""
-    distortion: Sequence[float] = (0.0, 0.0, 0.0, 0.0, 0.0)
-    """Coefficients k1, k2, k3, p1, p2 of Brown's lens distortion, of perspective cameras."""
-
-    def _compiled(self) -> "_lightwell.Camera":
-        view = _lightwell.View()
-        view.name = str(self.name)
-        view.position = _values("position", self.position)
-        view.target = _values("target", self.target)
-        view.up = _values("up", self.up)
-        view.fov_degrees = None if self.fov is None else real_number("fov", self.fov)
-        view.width = whole_number("width", self.width, 1, 32768)
-        view.height = whole_number("height", self.height, 1, 32768)
-        view.projection = str(self.projection)
-        view.shift = _values("shift", self.shift)
-        view.distortion = _values("distortion", self.distortion)
-        return _lightwell.camera_of(view)
-
-
-def _camera(compiled: "_lightwell.Camera") -> Camera:
-    ahead = zip(compiled.position, compiled.direction)
-    return Camera(
-        position=tuple(compiled.position),
-        target=tuple(place + way for place, way in ahead),
-        up=tuple(compiled.up),
-        fov=compiled.fov_degrees,
-        width=compiled.width,
-        height=compiled.height,
-        projection=compiled.projection,
-        name=compiled.name,
-        shift=tuple(compiled.shift),
-        distortion=tuple(compiled.distortion),
-    )
-
-
-def _material(compiled: "_lightwell.Material") -> Material:
-    return Material(
-        name=compiled.name,
-        reflectance=tuple(compiled.reflectance),
-        emission=tuple(compiled.emission),
-        specular=tuple(compiled.specular),
-        roughness=compiled.roughness,
-        transmittance=tuple(compiled.transmittance) or 0.0,
-        one_sided=compiled.one_sided,
-        emits_both_sides=compiled.emits_both_sides,
-    )
-
-
 class Scene:
-    """A room and its contents. Made by `read` or `Scene.from_arrays`; never changed afterwards."""
+    """A room and its contents. Made by `read`, `Scene.from_arrays` or `Scene.from_tables`; never changed."""
 
     def __init__(self, data: "_lightwell.SceneData"):
         if not isinstance(data, _lightwell.SceneData):
             raise InputError(
-                "a Scene is made by lightwell.read(path) or lightwell.Scene.from_arrays(vertices, faces)"
+                "a Scene is made by lightwell.read(path), lightwell.Scene.from_arrays(vertices, faces) or "
+                "lightwell.Scene.from_tables(tables)"
             )
         self._data = data
         self._first_notes: List[str] = []
@@ -143,10 +45,17 @@ class Scene:
         *,
         surface: Any = None,
         names: Optional[Sequence[str]] = None,
-        materials: Union[Material, Sequence[Material], None] = None,
+        materials: Union[Material, Table, Sequence[Union[Material, Table]], None] = None,
         reflectance: Any = None,
         emission: Any = None,
+        uv: Any = None,
+        normals: Any = None,
         cameras: Union[Camera, Sequence[Camera]] = (),
+        lamps: Union[Table, Sequence[Table]] = (),
+        sky: Optional[Table] = None,
+        grids: Union[Table, Sequence[Table]] = (),
+        tables: Table = {},
+        folder: Path = ".",
         title: str = "",
     ) -> "Scene":
         """A scene of polygons.
@@ -157,32 +66,78 @@ class Scene:
         surface: (m,) integers from 0, the surface that each face belongs to. None: all faces are one
             surface, or each is its own where the arguments below have m entries.
         names: a name for each surface.
-        materials: a Material for each surface, or one for all.
+        materials: a Material for each surface, or one for all; or dictionaries with a `name` and the keys
+            of [materials.NAME] of the scene format: textures, glass, coats, lumens.
         reflectance: diffuse reflectance, 0 to 1: one for all, (s,) one for each surface, or (s, 3).
             Comes before that of the materials.
         emission: exitance, W/m^2: likewise.
+        uv: (n, 2), texture coordinates of the vertices; (0, 0) is a picture's top left corner.
+        normals: (n, 3), of any length, at the vertices: faces are smooth in pictures.
         cameras: cameras for pictures.
+        lamps, grids: dictionaries with the keys of [[lamps]] and [[grids]] of the scene format, metres.
+        sky: a dictionary with the keys of [sky].
+        tables: other tables by their names: areas, maintenance, energy, report, motions, windows.
+        folder: where photometric files and pictures that are named lie.
 
         Faces that are not flat are cut, and those without area left out; `notes` says so.
 
         Raises InputError for arrays of the wrong shape or type, coordinates that are not finite,
-        vertex numbers out of range, and materials that would create energy.
+        vertex numbers out of range, materials that would create energy, and keys that are not known.
         """
         points = points_of("vertices", vertices)
         corners, first = faces_of(faces)
         count = len(first) - 1
         each = (names, materials, reflectance, emission)
         owner, surfaces = _owners(surface, count, max(_length(values) for values in each))
-        made = _materials(surfaces, materials, reflectance, emission)
-        parts = _lightwell.SceneParts()
-        parts.title = str(title)
-        parts.names = _names(surfaces, names)
-        parts.materials = [material._compiled() for material in made]
-        views = [cameras] if isinstance(cameras, Camera) else list(cameras)
-        if not all(isinstance(view, Camera) for view in views):
-            raise InputError("cameras must be a list of lightwell.Camera")
-        parts.cameras = [view._compiled() for view in views]
-        return cls(_lightwell.from_arrays(parts, points, corners, first, owner))
+        made = materials_of(surfaces, materials, reflectance, emission)
+        listed = _lightwell.SurfaceList()
+        listed.names = _names(surfaces, names)
+        listed.materials = [made_of._compiled() for made_of in made.compiled]
+        listed.named_materials = made.named
+        unknown = set(tables) - {"areas", "maintenance", "energy", "report", "motions", "windows"}
+        if unknown:
+            raise InputError(
+                f"tables has '{sorted(map(str, unknown))[0]}', which from_arrays takes as an argument, or not at all"
+            )
+        document = {
+            "title": str(title),
+            "materials": made.tables or None,
+            "cameras": [view._table() for view in _cameras(cameras)] or None,
+            "lamps": mappings_of("lamps", lamps) or None,
+            "sky": None if sky is None else mapping_of("sky", sky),
+            "grids": mappings_of("grids", grids) or None,
+            **tables,
+        }
+        return cls(
+            _lightwell.from_arrays(
+                listed, _text(document, folder, False), points, corners, first, owner,
+                _at_vertices("uv", uv, len(points), 2), _at_vertices("normals", normals, len(points), 3),
+            )
+        )
+
+    @classmethod
+    def from_tables(cls, tables: Table, *, folder: Path = ".", inside_folder: bool = False) -> "Scene":
+        """A scene of the tables of a scene file (docs/scene-format.md), without the file.
+
+        tables: by name: materials, surfaces, lamps, sky, cameras, grids and all others, with the keys and
+            units of the format. Arrays of NumPy may stand for lists: {"polygons": vertices[faces]} is the
+            surface of (m, k, 3) corners. Materials and cameras may be `Material` and `Camera`.
+        folder: where meshes, photometric files, pictures and spectra that are named lie.
+        inside_folder: refuse references to files outside of the folder.
+
+        Raises InputError that names the table, the key and what to do.
+        """
+        document = dict(mapping_of("tables", tables))
+        materials = mapping_of("materials", document.get("materials", {}))
+        document["materials"] = {
+            name: made._table() if isinstance(made, Material) else made for name, made in materials.items()
+        }
+        views = document.get("cameras", ())
+        listed = list(views) if isinstance(views, (list, tuple)) else [views]
+        if document.get("unit", "m") != "m" and any(isinstance(view, Camera) for view in listed):
+            raise InputError("a lightwell.Camera has metres, and these tables another unit; give its table instead")
+        document["cameras"] = [view._table() if isinstance(view, Camera) else view for view in listed]
+        return cls(_lightwell.from_tables(_text(document, folder, bool(inside_folder))))
 
     @classmethod
     def from_trimesh(cls, mesh: Any, **options: Any) -> "Scene":
@@ -259,7 +214,7 @@ class Scene:
     @property
     def materials(self) -> List[Material]:
         """The material of each surface, without textures, coats, metals and glass."""
-        return [_material(material) for material in self._data.materials]
+        return [material_of(material) for material in self._data.materials]
 
     @property
     def lamps(self) -> List[str]:
@@ -268,7 +223,7 @@ class Scene:
 
     @property
     def cameras(self) -> List[Camera]:
-        return [_camera(camera) for camera in self._data.cameras]
+        return [camera_of(camera, self._data.motions) for camera in self._data.cameras]
 
     @property
     def bands(self) -> List[str]:
@@ -343,6 +298,29 @@ def read(
     return scene
 
 
+def _text(document: Table, folder: Path, inside_folder: bool) -> "_lightwell.SceneText":
+    return _lightwell.SceneText(toml_text(document), os.fspath(folder), inside_folder)
+
+
+def _cameras(cameras: Any) -> List[Camera]:
+    views = [cameras] if isinstance(cameras, Camera) else list(cameras)
+    if not all(isinstance(view, Camera) for view in views):
+        raise InputError("cameras must be a list of lightwell.Camera")
+    return views
+
+
+def _at_vertices(name: str, values: Any, vertices: int, count: int) -> np.ndarray:
+    """`count` numbers at each vertex; none for None."""
+    if values is None:
+        return np.zeros((0, count))
+    array = array_of(name, values)
+    if array.shape != (vertices, count):
+        raise InputError(f"{name} has the shape {array.shape}; ({vertices}, {count}), a row for each vertex, is needed")
+    if not np.isfinite(array).all():
+        raise InputError(f"{name} has a number that is not finite")
+    return np.ascontiguousarray(array, dtype=np.float64)
+
+
 def _owners(surface: Any, faces: int, given: int) -> Tuple[np.ndarray, int]:
     """The surface of each face, and the number of surfaces; `given`: most values of any argument."""
     if surface is None:
@@ -361,7 +339,7 @@ def _owners(surface: Any, faces: int, given: int) -> Tuple[np.ndarray, int]:
 
 
 def _length(values: Any) -> int:
-    if values is None or isinstance(values, (str, Material)) or np.ndim(values) == 0:
+    if values is None or isinstance(values, (str, Material, Mapping)) or np.ndim(values) == 0:
         return -1
     return len(values)
 
@@ -373,37 +351,3 @@ def _names(surfaces: int, names: Optional[Sequence[str]]) -> List[str]:
     if len(given) != surfaces:
         raise InputError(f"names has {len(given)} entries for {surfaces} surfaces; give one each")
     return given
-
-
-def _per_surface(name: str, surfaces: int, values: Any) -> List[Values]:
-    array = np.asarray(values, dtype=object if isinstance(values, list) else None)
-    if array.ndim == 0:
-        return [real_number(name, values)] * surfaces
-    if len(array) != surfaces:
-        raise InputError(
-            f"{name} has {len(array)} entries for {surfaces} surfaces; give one for all, or one for each, "
-            "of one value or three (r, g, b)"
-        )
-    return [value if np.ndim(value) == 0 else tuple(value) for value in array]
-
-
-def _materials(surfaces: int, materials: Any, reflectance: Any, emission: Any) -> List[Material]:
-    if materials is None:
-        made = [Material(name=f"material {number}") for number in range(surfaces)]
-    elif isinstance(materials, Material):
-        made = [materials] * surfaces
-    else:
-        made = list(materials)
-        if not all(isinstance(material, Material) for material in made):
-            raise InputError("materials must be a lightwell.Material, or a list of them")
-        if len(made) != surfaces:
-            raise InputError(
-                f"materials has {len(made)} entries for {surfaces} surfaces; give one for all, or one each"
-            )
-    if reflectance is not None:
-        each = _per_surface("reflectance", surfaces, reflectance)
-        made = [replace(material, reflectance=value) for material, value in zip(made, each)]
-    if emission is not None:
-        each = _per_surface("emission", surfaces, emission)
-        made = [replace(material, emission=value) for material, value in zip(made, each)]
-    return made

@@ -18,8 +18,9 @@ from ._arrays import (
     share_text,
     whole_number,
 )
+from ._camera import Camera
 from ._errors import InputError
-from ._scene import Camera, Progress, Scene, fixed
+from ._scene import Progress, Scene, fixed
 
 Path = Union[str, "os.PathLike[str]"]
 
@@ -295,7 +296,7 @@ class Solution:
         }
         set_options(options, asked, shares=["noise"])
         if isinstance(camera, Camera):
-            view = camera._compiled()
+            view = camera._compiled(self._data.scene)
         elif camera is None or isinstance(camera, str):
             view = _lightwell.camera_named(self._data, camera or "")
         else:

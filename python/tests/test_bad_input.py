@@ -76,10 +76,10 @@ class BadInput(unittest.TestCase):
             ({"materials": [lw.Material()] * 2}, "2 entries for 1"),
             ({"materials": lw.Material(reflectance=(0.1, 0.2))}, "has 2 values"),
             ({"materials": lw.Material(reflectance=0.8, specular=0.8)}, "material"),
-            ({"cameras": [lw.Camera((0, 0, 0), (0, 0, 0))]}, "looks"),
+            ({"cameras": [lw.Camera((0, 0, 0), (0, 0, 0))]}, "own position"),
             ({"cameras": [lw.Camera((0, 0, 0), (1, 0, 0), width=0)]}, "width is 0"),
-            ({"cameras": [lw.Camera((0, 0), (1, 0, 0))]}, "2 coordinates"),
-            ({"cameras": [lw.Camera((0, 0, 0), (1, 0, 0), projection="flat")]}, "no projection 'flat'"),
+            ({"cameras": [lw.Camera((0, 0), (1, 0, 0))]}, "position has 2 numbers"),
+            ({"cameras": [lw.Camera((0, 0, 0), (1, 0, 0), projection="flat")]}, "is 'flat'; choose"),
             ({"cameras": [lw.Camera((0, 0, 0), (1, 0, 0), fov=180)]}, "camera"),
         ):
             with self.subTest(options):

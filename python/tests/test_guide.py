@@ -16,7 +16,8 @@ class Guide(unittest.TestCase):
         folder, before = scratch(self), os.getcwd()
         self.addCleanup(os.chdir, before)
         os.chdir(folder)
-        shutil.copytree(os.path.join(SOURCE, "examples", "room"), os.path.join("examples", "room"))
+        for example in ("room", "office"):
+            shutil.copytree(os.path.join(SOURCE, "examples", example), os.path.join("examples", example))
         names = {}
         for number, block in enumerate(blocks):
             with self.subTest(block=number):

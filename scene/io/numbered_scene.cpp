@@ -1,5 +1,8 @@
 #include "scene/io/numbered_scene.h"
 
+#include <numeric>
+#include <utility>
+
 #include "scene/io/clean_names.h"
 #include "scene/io/mesh_file.h"
 #include "scene/io/read_scene.h"
@@ -19,6 +22,16 @@ void name_rows(NumberedScene& numbered) {
 
 }  // namespace
 
+NumberedScene numbered_by_facets(Scene scene) {
+  NumberedScene numbered;
+  numbered.row_of_facet.resize(scene_facets(scene).size());
+  std::iota(numbered.row_of_facet.begin(), numbered.row_of_facet.end(), 0);
+  numbered.rows.resize(numbered.row_of_facet.size());
+  numbered.scene = std::move(scene);
+  name_rows(numbered);
+  return numbered;
+}
+
 NumberedScene read_numbered_scene(const std::filesystem::path& path, References references) {
   const FilesRead read =
       references == References::inside_folder ? FilesRead::inside_folder_of(path) : FilesRead();
@@ -36,9 +49,9 @@ NumberedScene read_numbered_scene(const std::filesystem::path& path, References 
   } else if (extension == ".ply" || extension == ".stl") {
     numbered.scene = read_geometry_file(path, 1.0, MeshMaterials::ignored, &polygons);
   } else {
-    numbered.scene = read_scene(path);
-    polygons.count = static_cast<int>(scene_facets(numbered.scene).size());
-    for (int f = 0; f < polygons.count; ++f) polygons.of_facet.push_back(f);
+    numbered = numbered_by_facets(read_scene(path));
+    numbered.scene.files = read.files();
+    return numbered;
   }
   numbered.scene.files = read.files();
   clean_names(numbered.scene);

@@ -30,6 +30,9 @@ struct NumberedScene {
 NumberedScene read_numbered_scene(const std::filesystem::path& path,
                                   References references = References::anywhere);
 
+/// The scene with a row for each facet and round shape.
+NumberedScene numbered_by_facets(Scene scene);
+
 /// read_numbered_scene() for a .vs3 file.
 NumberedScene read_numbered_vs3(const std::filesystem::path& path);
 

@@ -24,10 +24,14 @@ void check_arrays(const Scene& scene, const PolygonArrays& polygons) {
   for (std::size_t p = 0; fits && p < count; ++p) {
     fits = polygons.first[p] <= polygons.first[p + 1];
   }
+  const std::size_t points = polygons.vertices.size();
+  fits = fits && (polygons.uv.empty() || polygons.uv.size() == points) &&
+         (polygons.normals.empty() || polygons.normals.size() == points);
   if (!fits) {
     throw InputError(
         fmt::format("the arrays of {} polygons do not fit each other: the first corners must begin "
-                    "at 0, not decrease, and end at the {} corners",
+                    "at 0, not decrease, and end at the {} corners, and every vertex needs texture "
+                    "coordinates and a normal, or none has them",
                     count, polygons.corners.size()));
   }
   for (std::size_t v = 0; v < polygons.vertices.size(); ++v) {
@@ -64,10 +68,16 @@ Built build_meshes(std::size_t surfaces, const PolygonArrays& polygons) {
   for (std::size_t p = 0; p < polygons.surface.size(); ++p) {
     const auto s = static_cast<std::size_t>(polygons.surface[p]);
     Loop loop;
+    UvLoop uv;
+    NormalLoop normals;
     for (std::size_t c = polygons.first[p]; c < polygons.first[p + 1]; ++c) {
-      loop.push_back(polygons.vertices[static_cast<std::size_t>(polygons.corners[c])]);
+      const auto v = static_cast<std::size_t>(polygons.corners[c]);
+      loop.push_back(polygons.vertices[v]);
+      if (!polygons.uv.empty()) uv.push_back(polygons.uv[v]);
+      if (!polygons.normals.empty()) normals.push_back(polygons.normals[v]);
     }
-    add_repaired(built.meshes[s], std::move(loop), built.repairs);
+    add_repaired(built.meshes[s], std::move(loop), built.repairs, std::move(uv),
+                 std::move(normals));
     built.polygon[s].resize(built.meshes[s].mesh().facets.size(), static_cast<int>(p));
   }
   return built;

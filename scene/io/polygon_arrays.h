@@ -15,6 +15,10 @@ struct PolygonArrays {
   /// Polygon p has the corners first[p] .. first[p + 1] - 1: one entry more than polygons.
   std::vector<std::size_t> first{};
   std::vector<int> surface{};  ///< of each polygon, an index into Scene::surfaces
+  /// Texture coordinates of each vertex, (0, 0) the picture's top left corner; empty: none.
+  std::vector<Eigen::Vector2d> uv{};
+  /// Normals of each vertex, of any length, for smooth shading; empty: none.
+  std::vector<Eigen::Vector3d> normals{};
 };
 
 /// Gives the surfaces of `scene`, which have names and materials, the polygons of the arrays. A row

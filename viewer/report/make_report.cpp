@@ -205,7 +205,7 @@ ReportPlan plan_report(const Scene& scene, ReportRequest request) {
         fmt::format("{}: the scene names no unit of light, so no illuminance can be reported",
                     scene.file.string()));
   }
-  ReportPlan plan{.design = read_lighting_design(scene)};
+  ReportPlan plan{.design = request.design ? *request.design : read_lighting_design(scene)};
   if (!request.areas.empty()) read_design_tables(request.areas, scene, plan.design);
   plan.tables = {
       request.activities.empty() ? usual_activities() : read_activities(request.activities),

@@ -23,6 +23,8 @@ struct ReportRequest {
   std::vector<NamedNumber> watts{};      ///< electric power of each luminaire of the name, W, > 0
   /// Maintenance factor of electric light, (0,1]; empty: that of the design, or 1.
   std::optional<double> maintenance_factor{};
+  /// Design of a scene that was not read from a file; empty: that of the scene's file.
+  std::optional<LightingDesign> design{};
   std::filesystem::path areas{};       ///< file with tables of the design; empty: the scene's
   std::string activity{};              ///< of all working planes without an area; empty: none
   std::filesystem::path activities{};  ///< table of activities; empty: usual_activities()

@@ -7,8 +7,11 @@
 #include <set>
 
 #include "scene/errors.h"
+#include "scene/io/clean_names.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
+#include "scene/io/round_facets.h"
+#include "scene/io/scene_text.h"
 #include "scene/io/text_file.h"
 #include "scene/io/toml/toml_camera.h"
 #include "scene/io/toml/toml_design.h"
@@ -21,6 +24,7 @@
 #include "scene/io/toml/toml_value.h"
 #include "scene/io/toml/toml_windows.h"
 #include "scene/limits.h"
+#include "scene/place_at_rest.h"
 
 namespace lightwell {
 namespace {
@@ -60,16 +64,50 @@ std::vector<int> materials_of_windows(const TomlTable& document, const Scene& sc
   return used;
 }
 
-}  // namespace
+void read_surfaces(const TomlTable& document, Scene& scene) {
+  const auto surfaces = document.find("surfaces");
+  if (!surfaces) document.fail("the scene has no surfaces; add at least one [[surfaces]] table");
+  if (!surfaces->is_array()) surfaces->fail("must be an array of tables; write [[surfaces]]");
+  std::size_t number = 0;
+  TomlSurfaces read(scene);
+  for (const auto& surface : surfaces->elements("surface")) read.add(surface, ++number);
+  if (number == 0) surfaces->fail("is empty; add at least one [[surfaces]] table");
+  if (scene.surfaces.empty()) {
+    surfaces->fail("have no area, so that no light can fall on them: " + scene.losses.front());
+  }
+}
 
-Scene read_toml(const std::filesystem::path& path) {
-  const TextFile file(path);
-  const toml::table root = parse_toml(file);
-  const TomlValue all(file.path(), root, "");
+void read_lamps(const TomlTable& document, const TomlBands& bands, Scene& scene) {
+  const auto lamps = document.find("lamps");
+  if (!lamps) return;
+  if (!lamps->is_array()) lamps->fail("must be an array of tables; write [[lamps]]");
+  std::size_t number = 0;
+  TomlProjectors projectors(bands);
+  for (const auto& lamp : lamps->elements("lamp")) {
+    read_toml_lamp(lamp, ++number, bands, projectors, scene);
+  }
+}
+
+// Returns for each camera whether the document gives its shutter.
+std::vector<char> read_cameras(const TomlTable& document, Scene& scene) {
+  std::vector<char> have_shutter;
+  const auto cameras = document.find("cameras");
+  if (!cameras) return have_shutter;
+  if (!cameras->is_array()) cameras->fail("must be an array of tables; write [[cameras]]");
+  std::set<std::string> names;
+  for (const auto& camera : cameras->elements("camera")) {
+    scene.cameras.push_back(read_toml_camera(camera, scene.cameras.size() + 1, scene, names));
+    have_shutter.push_back(camera.member("shutter") ? 1 : 0);
+  }
+  return have_shutter;
+}
+
+// Reads a whole scene; `add_surfaces` stands in place of [[surfaces]] unless empty.
+Scene read_document(const TomlValue& all, const AddSurfaces& add_surfaces) {
   const TomlTable document =
       all.table({"title", "unit", "bands", "materials", "motions", "surfaces", "lamps", "sky",
                  "cameras", "grids", "areas", "maintenance", "energy", "report", "windows"});
-  Scene scene{.file = path};
+  Scene scene{.file = all.file().has_filename() ? all.file() : std::filesystem::path()};
   if (const auto title = document.find("title")) scene.title = title->string();
   if (const auto unit = document.find("unit")) {
     scene.unit_name = unit->one_of({"mm", "cm", "m", "in", "ft"});
@@ -84,15 +122,10 @@ Scene read_toml(const std::filesystem::path& path) {
   }
 
   if (const auto sky = document.find("sky")) scene.sky = read_toml_sky(*sky, bands);
-  const auto surfaces = document.find("surfaces");
-  if (!surfaces) document.fail("the scene has no surfaces; add at least one [[surfaces]] table");
-  if (!surfaces->is_array()) surfaces->fail("must be an array of tables; write [[surfaces]]");
-  std::size_t number = 0;
-  TomlSurfaces read(scene);
-  for (const auto& surface : surfaces->elements("surface")) read.add(surface, ++number);
-  if (number == 0) surfaces->fail("is empty; add at least one [[surfaces]] table");
-  if (scene.surfaces.empty()) {
-    surfaces->fail("have no area, so that no light can fall on them: " + scene.losses.front());
+  if (add_surfaces) {
+    add_surfaces(scene);
+  } else {
+    read_surfaces(document, scene);
   }
   spread_power(materials, materials_of_windows(document, scene), scene);
   drop_unused_uv(scene);
@@ -100,25 +133,8 @@ Scene read_toml(const std::filesystem::path& path) {
   remark_pictures_without_uv(scene, remarks);
   remarks.report_to(scene);
 
-  if (const auto lamps = document.find("lamps")) {
-    if (!lamps->is_array()) lamps->fail("must be an array of tables; write [[lamps]]");
-    number = 0;
-    TomlProjectors projectors(bands);
-    for (const auto& lamp : lamps->elements("lamp")) {
-      read_toml_lamp(lamp, ++number, bands, projectors, scene);
-    }
-  }
-  std::vector<char> have_shutter;
-  if (const auto cameras = document.find("cameras")) {
-    if (!cameras->is_array()) cameras->fail("must be an array of tables; write [[cameras]]");
-    number = 0;
-    std::set<std::string> names;
-    for (const auto& camera : cameras->elements("camera")) {
-      scene.cameras.push_back(read_toml_camera(camera, ++number, scene, names));
-      have_shutter.push_back(camera.member("shutter") ? 1 : 0);
-    }
-  }
-  settle_toml_motions(document, have_shutter, scene);
+  read_lamps(document, bands, scene);
+  settle_toml_motions(document, read_cameras(document, scene), scene);
   // Grids and headings do not affect the light; reading them here reports their errors early.
   LightingDesign design;
   read_toml_design(document.value(), scene, design);
@@ -126,10 +142,7 @@ Scene read_toml(const std::filesystem::path& path) {
   return scene;
 }
 
-LightingDesign read_toml_lighting(const Scene& scene) {
-  const TextFile file(scene.file);
-  const toml::table root = parse_toml(file);
-  const TomlValue all(file.path(), root, "");
+LightingDesign read_lighting(const TomlValue& all, const Scene& scene) {
   LightingDesign design;
   read_toml_design(all, scene, design);
   if (const auto lamps = all.member("lamps")) {
@@ -137,6 +150,65 @@ LightingDesign read_toml_lighting(const Scene& scene) {
     for (const auto& lamp : lamps->elements("lamp")) read_toml_lamp_design(lamp, files, design);
   }
   return design;
+}
+
+// A name in the folder, which has no file name of its own.
+std::filesystem::path place_of(const SceneText& text) {
+  return text.folder / "";
+}
+
+}  // namespace
+
+Scene read_toml(const std::filesystem::path& path) {
+  const TextFile file(path);
+  const toml::table root = parse_toml(file);
+  return read_document(TomlValue(file.path(), root, ""), {});
+}
+
+Scene read_scene_text(const SceneText& text, const AddSurfaces& add_surfaces) {
+  const std::filesystem::path place = place_of(text);
+  const FilesRead read = text.references == References::inside_folder
+                             ? FilesRead::inside_folder_of(place)
+                             : FilesRead();
+  const toml::table root = parse_toml_text(text.text);
+  Scene scene = read_document(TomlValue(place, root, ""), add_surfaces);
+  scene.files = read.files();
+  clean_names(scene);
+  replace_by_facets(scene);
+  return scene;
+}
+
+LightingDesign read_lighting_text(const SceneText& text, const Scene& scene) {
+  const std::filesystem::path place = place_of(text);
+  const toml::table root = parse_toml_text(text.text);
+  return read_lighting(TomlValue(place, root, ""), scene);
+}
+
+Camera read_camera_text(const std::string& text, const Scene& scene) {
+  const std::filesystem::path place;
+  const toml::table root = parse_toml_text(text);
+  const TomlValue value(place, root, "");
+  const Scene metres{.motions = scene.motions};
+  std::set<std::string> names;
+  Camera camera = read_toml_camera(value, 1, metres, names);
+  if (scene.motions.empty()) return camera;
+  const double instant = scene.motions.front().rest_time;
+  if (!value.member("shutter")) {
+    camera.shutter_open = camera.shutter_close = instant;
+  } else if (camera.shutter_middle() != instant) {
+    value.fail(
+        fmt::format("camera '{}' has a shutter whose middle is at {:g} s, and light is solved for "
+                    "{:g} s; give it a shutter about that time",
+                    camera.name, camera.shutter_middle(), instant));
+  }
+  place_at_rest(scene, camera);
+  return camera;
+}
+
+LightingDesign read_toml_lighting(const Scene& scene) {
+  const TextFile file(scene.file);
+  const toml::table root = parse_toml(file);
+  return read_lighting(TomlValue(file.path(), root, ""), scene);
 }
 
 void read_design_tables(const std::filesystem::path& path, const Scene& scene,

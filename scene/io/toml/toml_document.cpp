@@ -35,4 +35,13 @@ toml::table parse_toml(const TextFile& file) {
   }
 }
 
+toml::table parse_toml_text(const std::string& text) {
+  try {
+    return toml::parse(text);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}: {}", error.source().begin.line,
+                                 error.source().begin.column, error.description()));
+  }
+}
+
 }  // namespace lightwell

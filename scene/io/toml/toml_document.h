@@ -2,6 +2,8 @@
 
 #include <toml++/toml.h>
 
+#include <string>
+
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -9,5 +11,8 @@ namespace lightwell {
 /// Parses a TOML file. Throws InputError "file:line:column: fault", also for keys of so many parts
 /// that the parser would exhaust the stack.
 toml::table parse_toml(const TextFile& file);
+
+/// The same for a text that a program made. Throws InputError "line:column: fault".
+toml::table parse_toml_text(const std::string& text);
 
 }  // namespace lightwell

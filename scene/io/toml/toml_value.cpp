@@ -24,6 +24,7 @@ const char* type_name(const toml::node& node) {
 
 std::string located(const std::filesystem::path& file, const toml::source_position& position,
                     std::string_view message) {
+  if (!file.has_filename()) return std::string(message);
   return fmt::format("{}:{}:{}: {}", file.string(), position.line, position.column, message);
 }
 

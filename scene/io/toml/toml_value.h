@@ -17,7 +17,8 @@ class TomlTable;
 
 /// A value of a TOML file with its place and its description ("reflectance of material 'white'").
 /// Every accessor throws InputError "file:line:column: what ..." unless the value has the requested
-/// type. Refers to the document, which must outlive the TomlValue.
+/// type. Refers to the document, which must outlive the TomlValue. A path without a file name,
+/// "folder/", is that of a document in memory: messages then have no place, and begin with `what`.
 class TomlValue {
  public:
   TomlValue(const std::filesystem::path& file, const toml::node& node, std::string what);

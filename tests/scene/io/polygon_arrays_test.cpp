@@ -51,6 +51,27 @@ std::string refusal(const PolygonArrays& polygons) {
   return "";
 }
 
+TEST(SceneOfPolygons, KeepsTextureCoordinatesAndNormalsOfVertices) {
+  PolygonArrays arrays = square_and_triangle();
+  // u grows along x, v against y; normals lean outwards from the middle of the square.
+  for (const Eigen::Vector3d& p : arrays.vertices) {
+    arrays.uv.emplace_back(0.5 * p.x(), 1.0 - p.y() / 3.0);
+    arrays.normals.emplace_back(0.2 * (p.x() - 1.0), 0.2 * (p.y() - 1.5), 1.0);
+  }
+  const NumberedScene numbered = scene_of_polygons(floor_and_wall(), arrays);
+  const auto& mesh = std::get<PolygonMesh>(numbered.scene.surfaces[0].shape);
+  ASSERT_EQ(mesh.uv_maps.size(), 1u);
+  for (std::size_t v = 0; v < 4; ++v) {
+    const Eigen::Vector2d uv =
+        mesh.uv_maps[0].gradient * arrays.vertices[v] + mesh.uv_maps[0].offset;
+    // Three products and sums of numbers up to 3 in double precision.
+    EXPECT_NEAR((uv - arrays.uv[v]).norm(), 0.0, 1e-14);
+  }
+  EXPECT_FALSE(mesh.normal_maps.empty());
+  arrays.uv.pop_back();
+  EXPECT_NE(refusal(arrays).find("every vertex needs texture"), std::string::npos);
+}
+
 TEST(SceneOfPolygons, NumbersFacetsByFaces) {
   const NumberedScene numbered = scene_of_polygons(floor_and_wall(), square_and_triangle());
   ASSERT_EQ(numbered.rows.size(), 3u);

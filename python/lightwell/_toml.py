@@ -1,0 +1,66 @@
+"""Tables of the scene format, given as dictionaries, in the text that the library reads."""
+
+import json
+import os
+from typing import Any, Mapping
+
+import numpy as np
+
+from ._errors import InputError
+
+
+def toml_text(tables: Mapping[str, Any]) -> str:
+    """A document of TOML. Arrays of NumPy count as lists; keys whose value is None are left out."""
+    return "".join(f"{_key(key)} = {_value(key, value)}\n" for key, value in tables.items() if value is not None)
+
+
+def toml_string(text: str) -> str:
+    """A string of TOML, which has JSON's escapes but for pairs of surrogates, and escapes DEL too."""
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007F")
+
+
+def mapping_of(name: str, value: Any) -> Mapping[str, Any]:
+    """A dictionary with text as keys."""
+    if isinstance(value, Mapping):
+        return value
+    raise InputError(f"{name} is {value!r}; a dictionary with the keys of the scene format is needed")
+
+
+def mappings_of(name: str, values: Any) -> list:
+    """A list of dictionaries; a dictionary alone counts as a list of one."""
+    if isinstance(values, Mapping):
+        return [values]
+    if isinstance(values, str) or not hasattr(values, "__iter__"):
+        raise InputError(f"{name} is {values!r}; a list of dictionaries is needed")
+    return [mapping_of(f"{name}[{number}]", value) for number, value in enumerate(values)]
+
+
+def _key(key: Any) -> str:
+    if not isinstance(key, str):
+        raise InputError(f"the key {key!r} is no text; keys are those of the scene format")
+    return toml_string(key)
+
+
+def _value(name: str, value: Any) -> str:
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if isinstance(value, str):
+        return toml_string(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        if not -(2**63) <= value < 2**63:
+            raise InputError(f"{name} has the number {value}, which is beyond 64 bits")
+        return str(value)
+    if isinstance(value, float):
+        return repr(value)
+    if isinstance(value, Mapping):
+        pairs = (f"{_key(key)} = {_value(key, each)}" for key, each in value.items() if each is not None)
+        return "{ " + ", ".join(pairs) + " }"
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_value(name, each) for each in value) + "]"
+    raise InputError(
+        f"{name} has a value of type {type(value).__name__}; numbers, text, lists, arrays and dictionaries are known"
+    )
