@@ -49,7 +49,6 @@ class Model:
 
     def box(self, ifc_class, name, low, high, origin=(0, 0, 0), turn=None):
         """An element whose shape is a box, in coordinates of its placement, metres."""
-        element = root.create_entity(self.file, ifc_class=ifc_class, name=name)
         low, high = np.array(low, float), np.array(high, float)
         profile = self.file.createIfcRectangleProfileDef(
             "AREA",
@@ -59,13 +58,31 @@ class Model:
             ),
             *((high - low)[:2] * self.scale).tolist(),
         )
+        return self._extruded(ifc_class, name, profile, low[2], high[2], origin, turn)
+
+    def prism(self, ifc_class, name, outline, low, high, holes=()):
+        """An element that stands on a polygon, with holes, between two heights, metres."""
+
+        def line(corners):
+            closed = [*corners, corners[0]]
+            points = [self.file.createIfcCartesianPoint([float(v) * self.scale for v in xy]) for xy in closed]
+            return self.file.createIfcPolyline(points)
+
+        if holes:
+            profile = self.file.createIfcArbitraryProfileDefWithVoids("AREA", None, line(outline), [line(h) for h in holes])
+        else:
+            profile = self.file.createIfcArbitraryClosedProfileDef("AREA", None, line(outline))
+        return self._extruded(ifc_class, name, profile, low, high, (0, 0, 0), None)
+
+    def _extruded(self, ifc_class, name, profile, low, high, origin, turn):
+        element = root.create_entity(self.file, ifc_class=ifc_class, name=name)
         solid = self.file.createIfcExtrudedAreaSolid(
             profile,
             self.file.createIfcAxis2Placement3D(
-                self.file.createIfcCartesianPoint((0.0, 0.0, float(low[2]) * self.scale))
+                self.file.createIfcCartesianPoint((0.0, 0.0, float(low) * self.scale))
             ),
             self.file.createIfcDirection((0.0, 0.0, 1.0)),
-            float(high[2] - low[2]) * self.scale,
+            float(high - low) * self.scale,
         )
         shape = self.file.createIfcShapeRepresentation(self.body, "Body", "SweptSolid", [solid])
         geometry.assign_representation(self.file, product=element, representation=shape)
@@ -83,14 +100,45 @@ class Model:
             else:
                 spatial.assign_container(self.file, products=[element], relating_structure=self.storey)
 
-    def optical(self, elements, name, reflectance):
-        """Gives elements a material, from IFC4 on with this visible reflectance."""
+    def light_source(self, name, origin, source, turn=None):
+        """A light fixture without a body, whose shape is a light source."""
+        fixture_class = "IfcFlowTerminal" if self.file.schema == "IFC2X3" else "IfcLightFixture"
+        element = root.create_entity(self.file, ifc_class=fixture_class, name=name)
+        shape = self.file.createIfcShapeRepresentation(self.body, "Lighting", "LightSource", [source])
+        element.Representation = self.file.createIfcProductDefinitionShape(None, None, [shape])
+        self.place(element, origin, turn)
+        return element
+
+    def goniometric(self, data, flux=1000.0, at=(0, 0, 0)):
+        """A goniometric light source at a place of its fixture, metres."""
+        file = self.file
+        place = file.createIfcAxis2Placement3D(file.createIfcCartesianPoint([float(v) * self.scale for v in at]))
+        white = file.createIfcColourRgb(None, 1.0, 1.0, 1.0)
+        return file.createIfcLightSourceGoniometric(
+            None, white, None, None, place, None, 4000.0, flux, "LIGHTEMITTINGDIODE", data
+        )
+
+    def distribution(self, planes, kind="TYPE_C"):
+        """Intensities of planes: {angle: (angles, intensities)}, degrees, as the file has radians."""
+        data = [
+            self.file.createIfcLightDistributionData(float(np.radians(plane)), np.radians(angles).tolist(), list(values))
+            for plane, (angles, values) in planes.items()
+        ]
+        return self.file.createIfcLightIntensityDistribution(kind, data)
+
+    def properties(self, element, name, values):
+        """Gives an element a property set."""
+        made = pset.add_pset(self.file, product=element, name=name)
+        pset.edit_pset(self.file, pset=made, properties=values)
+
+    def optical(self, elements, name, reflectance, **more):
+        """Gives elements a material, from IFC4 on with this visible reflectance and other properties."""
         made = material.add_material(self.file, name=name)
         material.assign_material(self.file, products=elements, material=made)
         if self.file.schema == "IFC2X3":
             return
         values = pset.add_pset(self.file, product=made, name="Pset_MaterialOptical")
-        pset.edit_pset(self.file, pset=values, properties={"VisibleReflectanceFront": reflectance})
+        pset.edit_pset(self.file, pset=values, properties={"VisibleReflectanceFront": reflectance, **more})
 
     def coloured(self, element, name, colour, transparency=0.0):
         """Gives an element a style of this colour."""

@@ -4,6 +4,7 @@ import contextlib
 import importlib.util
 import io
 import os
+import shutil
 import unittest
 
 import numpy as np
@@ -137,13 +138,151 @@ class FromIfc(unittest.TestCase):
         figures = lw.solve(scene, refine="off", gather_rays=16).report(rays=16)
         (grid,) = figures["surfaces"]
         self.assertRegex(grid["name"], "^office")
-        # A working plane of 5 m x 4 m without half a metre along its walls.
-        self.assertAlmostEqual(grid["area_m2"], 4 * 3, delta=1e-6)
+        # A working plane of 5 m x 4 m, with points from half a metre on from its walls.
+        self.assertAlmostEqual(grid["area_m2"], 5 * 4, delta=1e-6)
+        self.assertEqual(grid["margin_m"], 0.5)
         dark = self.from_ifc(model, fixtures=None)
         self.assertEqual(dark.lamps, [])
         self.assertEqual(sum("gives no light" in note for note in dark.notes), 2)
         table = self.write("other.csv", f"fixture,file\nSpot,{PANEL}\n*,{PANEL}\n")
         self.assertTrue(any("Spot: no light fixture" in note for note in self.from_ifc(model, fixtures=table).notes))
+
+    def report_of(self, scene):
+        return lw.solve(scene, refine="off", gather_rays=16).report(rays=16)["surfaces"]
+
+    def text_of_scene(self):
+        with open(self.path("model.toml"), encoding="utf-8") as file:
+            return file.read()
+
+    def test_grids_follow_the_footprint_of_an_l_with_a_hole(self):
+        model = self.room.Model()
+        outline = [(0, 0), (6, 0), (6, 2), (2, 2), (2, 5), (0, 5)]
+        shaft = [(3, 0.8), (3, 1.2), (3.4, 1.2), (3.4, 0.8)]
+        model.prism("IfcSlab", "floor", outline, -0.2, 0)
+        model.prism("IfcSlab", "ceiling", outline, 3, 3.2)
+        model.prism("IfcSpace", "corner", outline, 0, 3, holes=[shaft])
+        model.prism("IfcSpace", "hall", [(10, 0), (20, 0), (20, 8), (10, 8)], 0, 3)
+        scene = self.from_ifc(model)
+        self.assertTrue(any("hall" in note and "no slab" in note for note in scene.notes), scene.notes)
+        lamp = "[[lamps]]\nposition = [1, 1, 2]\nlumens = 1000\n"  # without which there is nothing to solve
+        self.write("lit.toml", self.text_of_scene() + lamp)
+        (grid,) = self.report_of(lw.read(self.path("lit.toml")))
+        # 6 x 2 and 2 x 3 less 0.4 x 0.4, margin included.
+        self.assertAlmostEqual(grid["area_m2"], 18 - 0.16, delta=1e-6)
+        self.assertEqual(grid["margin_m"], 0.5)
+        text = self.text_of_scene()
+        self.assertIn("outline = ", text)
+        self.assertIn("holes = ", text)
+
+    def test_a_space_of_two_parts_has_two_grids(self):
+        model = self.room.room()
+        (office,) = model.file.by_type("IfcSpace")
+        model.file.remove(office)
+        halves = model.prism("IfcSpace", "office", [(0, 0), (2, 0), (2, 4), (0, 4)], 0, 3)
+        other = model.prism("IfcSpace", "other", [(3, 0), (5, 0), (5, 4), (3, 4)], 0, 3)
+        solids = halves.Representation.Representations[0]
+        solids.Items = [*solids.Items, *other.Representation.Representations[0].Items]
+        model.file.remove(other)
+        names = [grid["name"] for grid in self.report_of(self.from_ifc(model))]
+        self.assertEqual(len(names), 2)
+        self.assertEqual(names[1], names[0] + " part 2")
+
+    def test_glass_passes_what_its_properties_say(self):
+        model = self.room.room()
+        pane = model.box("IfcWindow", "pane", (1, 1, 1), (2, 1.01, 2))
+        model.properties(pane, "Pset_DoorWindowGlazingType", {"VisibleLightTransmittance": 0.6})
+        plate = model.box("IfcPlate", "plate", (3, 1, 1), (4, 1.01, 2))
+        model.optical([plate], "solar glass", 0.2, VisibleTransmittance=0.5)
+        scene = self.from_ifc(model)
+        found = {name: material for name, material in zip(scene.names, scene.materials)}
+        (of_pane,) = [material for name, material in found.items() if "pane" in name]
+        (of_plate,) = [material for name, material in found.items() if "plate" in name]
+        for material, passed, reflected in ((of_pane, 0.6, 0.08), (of_plate, 0.5, 0.2)):
+            # Two sheets that reflect r and pass t: T = t^2 / (1 - r^2), R = r (1 + T).
+            r = reflected / (1 + passed)
+            self.assertAlmostEqual(material.reflectance[0], r, delta=1e-6)  # six decimals in the file
+            text = f"transparent = {round((passed * (1 - r * r)) ** 0.5, 6)!r}"
+            self.assertIn(text, self.text_of_scene())
+        table = self.write("glass.csv", "material,reflectance,transmittance\nsolar*,0.1,0.3\n*,0.5,\n")
+        scene = self.from_ifc(model, materials=table)
+        (of_plate,) = [material for name, material in zip(scene.names, scene.materials) if "plate" in name]
+        self.assertAlmostEqual(of_plate.reflectance[0], 0.1 / 1.3, delta=1e-6)
+
+    def test_doors_and_curtain_walls_are_surfaces(self):
+        import ifcopenshell.api.aggregate as aggregate
+        import ifcopenshell.api.root as root
+
+        model = self.room.room()
+        self.room.cut(model, "south", (1, -0.3, 0), (2, 0.1, 2))
+        door = model.box("IfcDoor", "door", (1, -0.12, 0), (2, -0.08, 2))
+        model.coloured(door, "oak", 0.6)
+        wall = root.create_entity(model.file, ifc_class="IfcCurtainWall", name="curtain")
+        parts = [
+            model.box("IfcPlate", "panel", (4.9, 1, 0), (4.91, 2, 3)),
+            model.box("IfcMember", "mullion", (4.88, 2, 0), (4.93, 2.05, 3)),
+        ]
+        aggregate.assign_object(model.file, products=parts, relating_object=wall)
+        model.coloured(parts[0], "glass", 1.0, transparency=0.81)
+        scene = self.from_ifc(model)
+        for name in ("door", "panel", "mullion"):
+            self.assertTrue(any(name in each for each in scene.names), name)
+        self.assertEqual(scene.losses, [])
+        self.assertIn("transparent = 0.9", self.text_of_scene())
+
+    def test_fixtures_have_the_light_of_their_own_sources(self):
+        model = self.room.Model()
+        model.box("IfcSlab", "floor", (0, 0, -0.2), (5, 4, 0))
+        # Lambert's cosine in cd/klm gives 1000 / pi of its lumens straight down, to 90 degrees.
+        angles = np.arange(0.0, 90.1, 2.5)
+        cosine = 1000 / np.pi * np.cos(np.radians(angles))
+        half = model.distribution({0: (angles, cosine), 90: (angles, cosine), 180: (angles, cosine), 270: (angles, cosine)})
+        model.light_source("downlight", (1, 2, 3), model.goniometric(half, flux=800.0, at=(0.5, 0, 0)))
+        per_lumen = model.distribution({0: (angles, cosine / 1000)})
+        # Its x axis points upwards and its z axis along -x, so it shines along +x.
+        model.light_source("wall", (0, 2, 1.5), model.goniometric(per_lumen, flux=500.0), turn=[[0, 0, -1], [0, 1, 0], [1, 0, 0]])
+        scene = self.from_ifc(model, fixtures=None)
+        self.assertEqual(len(scene.lamps), 2, scene.notes)
+        black = self.write("black.csv", "material,reflectance\n*,0\n")
+        scene = self.from_ifc(model, fixtures=None, materials=black)
+        solution = lw.solve(scene, refine="off", gather_rays=16)
+        points = [(1.5, 2, 0.5), (2.0, 2.0, 1.5)]
+        below, before = solution.lux_at(points, [(0, 0, 1), (-1, 0, 0)], rays=64)
+        # E = flux / pi cos cos / d^2, with the cosines at the lamp and at the point.
+        wall = 500 / np.pi * (1.5 / np.hypot(1.5, 1.0)) * (1.0 / np.hypot(1.5, 1.0)) / (1.5**2 + 1.0)
+        # Intensities are linear between 2.5 degrees: up to (2.5 pi / 180)^2 / 8 of the cosine, 2.4e-4, too low.
+        np.testing.assert_allclose(below, 800 / np.pi / 2.5**2 + wall, rtol=4e-4)
+        down = np.array([2.0, 2.0, 1.5]) - np.array([1.5, 2, 3])
+        cosines = (-down[2] / np.linalg.norm(down)) * (down[0] / np.linalg.norm(down))
+        np.testing.assert_allclose(before, 500 / np.pi / 2.0**2 + 800 / np.pi * cosines / (down @ down), rtol=4e-4)
+
+    def test_sources_that_give_no_light_say_why(self):
+        model = self.room.Model()
+        model.box("IfcSlab", "floor", (0, 0, -0.2), (5, 4, 0))
+        file, white = model.file, model.file.createIfcColourRgb(None, 1.0, 1.0, 1.0)
+        ambient = file.createIfcLightSourceAmbient(None, white, None, 1.0)
+        flat = model.distribution({0: ([0, 90], [0.3, 0.0])}, kind="TYPE_B")
+        beside = file.createIfcDocumentReference("panel.ies")
+        for name, source in (
+            ("ambient", ambient),
+            ("b", model.goniometric(flat)),
+            ("dark", model.goniometric(model.distribution({0: ([0, 90], [0.3, 0.0])}), flux=0.0)),
+            ("turned", model.goniometric(model.distribution({10: ([0, 90], [0.3, 0.0])}))),
+            ("missing", model.goniometric(beside)),
+        ):
+            model.light_source(name, (1, 1, 2), source)
+        notes = "\n".join(self.from_ifc(model, fixtures=None).notes)
+        for sentence in (
+            "ambient .* gives no light: its IfcLightSourceAmbient has no photometry",
+            "b .* gives no light: the intensities of its light source are of TYPE_B",
+            "dark .* gives no light: its light source has no luminous flux",
+            "turned .* gives no light: the planes of its light source do not begin at C0",
+            "missing .* the file of its light source, 'panel.ies', is not beside the model",
+        ):
+            self.assertRegex(notes, sentence)
+        shutil.copy(PANEL, self.path("panel.ies"))
+        scene = self.from_ifc(model, fixtures=None)
+        self.assertEqual(len(scene.lamps), 1)
+        self.assertIn('file = "panel.ies"', self.text_of_scene())
 
     def test_wrong_input_is_refused_with_a_sentence(self):
         self.room.room().file.write(self.path("room.ifc"))
