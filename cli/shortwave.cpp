@@ -18,6 +18,7 @@
 #include "daylight/year_files.h"
 #include "raytrace/readings/exposure_points.h"
 #include "scene/errors.h"
+#include "scene/sun_position.h"
 
 namespace lightwell {
 namespace {
@@ -78,24 +79,34 @@ ShortwaveResult read_inputs(const ShortwaveArguments& arguments, const Scene& sc
 
 Eigen::ArrayXd albedos_of(const ShortwaveArguments& arguments, const ViewFactorRows& rows) {
   if (!arguments.surfaces.empty()) return read_albedos(arguments.surfaces, rows);
+  if (arguments.has_udales_albedos) {
+    return read_udales_albedos(arguments.udales, arguments.case_number(), rows.count());
+  }
   return Eigen::ArrayXd::Constant(rows.count(), arguments.albedo.value_or(0.0));
 }
 
 std::vector<SunAndSky> instants_of(const ShortwaveArguments& arguments, const ShortwaveResult& of,
                                    const Sky& compass) {
+  const auto under_sky = [&](const SunAndSky& light, const HourOfYear& date) {
+    if (!arguments.has_perez_sky()) return light;
+    const int year = year_of_dates(of.weather.is_leap_year);
+    return under_perez_sky(light, compass.up, day_of_year(year, date.month, date.day));
+  };
   if (!of.is_of_hours()) {
     SunAndSky light{.direct = arguments.direct.value_or(0.0),
                     .diffuse = arguments.diffuse.value_or(0.0)};
     if (arguments.sun) {
       light.sun = sky_direction(compass, arguments.sun->second, arguments.sun->first);
     }
-    return {light};
+    return {arguments.date ? under_sky(light, *arguments.date) : light};
   }
   std::vector<SunAndSky> instants;
   for (const SunHour& hour : of.hours) {
-    instants.push_back({.sun = sky_direction(compass, hour.azimuth_degrees, hour.altitude_degrees),
-                        .direct = hour.direct_normal,
-                        .diffuse = hour.diffuse_horizontal});
+    instants.push_back(
+        under_sky({.sun = sky_direction(compass, hour.azimuth_degrees, hour.altitude_degrees),
+                   .direct = hour.direct_normal,
+                   .diffuse = hour.diffuse_horizontal},
+                  hour_of_year(hour.number, of.weather.is_leap_year)));
   }
   return instants;
 }
@@ -162,8 +173,9 @@ void compute_shortwave(const ShortwaveArguments& arguments, const FacetGeometry&
       compass_of(geometry.numbered.scene, arguments.north_degrees, arguments.zenith());
   of.up = compass.up;
   const ElementCaster caster(of.found.mesh);
-  const ShortwaveModel model(of.found, caster, exposure_points(caster, of.probes), compass.up,
-                             console.progress());
+  ShortwaveModel model(of.found, caster, exposure_points(caster, of.probes), compass.up,
+                       console.progress());
+  if (arguments.has_perez_sky()) model.see_dome(console.progress());
   of.sky_view = model.sky_view();
   of.point_sky_view = model.points().sky;
   console.finish_phase();
@@ -179,7 +191,7 @@ void compute_shortwave(const ShortwaveArguments& arguments, const FacetGeometry&
   report.add_phase("sun_and_exchange", watch.lap());
 }
 
-Json facts_of(const ShortwaveResult& of) {
+Json facts_of(const ShortwaveArguments& arguments, const ShortwaveResult& of) {
   const auto& area = of.found.factors.area;
   const Eigen::Map<const Eigen::ArrayXd> A(area.data(), static_cast<Eigen::Index>(area.size()));
   const double all = A.sum();
@@ -199,6 +211,7 @@ Json facts_of(const ShortwaveResult& of) {
   facts[fmt::format("arriving{}", suffix)] = sum.arriving / unit;
   facts[fmt::format("absorbed{}", suffix)] = sum.absorbed / unit;
   facts[fmt::format("escaped{}", suffix)] = sum.escaped / unit;
+  facts["sky"] = arguments.sky;
   if (of.is_of_hours()) facts["hours"] = of.hours.size();
   if (!of.probes.empty()) facts["points"] = of.probes.size();
   facts["error_estimate"] = of.found.error ? Json(*of.found.error) : Json();
@@ -230,7 +243,7 @@ int shortwave(const ShortwaveArguments& arguments, Console& console) {
   for (const std::string& note : geometry.notes) console.say("note: " + note);
   for (const std::string& note : of.weather.notes) console.say("note: " + note);
   compute_shortwave(arguments, geometry, {console, report}, of);
-  Json facts = facts_of(of);
+  Json facts = facts_of(arguments, of);
   write_shortwave_rows(arguments.output, of);
   if (!of.probes.empty()) {
     write_shortwave_points(arguments.points_output, of, geometry.numbered.scene.metres_per_unit);

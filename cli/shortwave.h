@@ -27,17 +27,21 @@ struct ShortwaveArguments {
   std::string points, points_output;
   std::string weather, hourly;
   std::optional<DaySpan> days{};
+  std::string sky = "even";
+  std::optional<HourOfYear> date{};     ///< of the instant, for Perez' sky
   std::optional<std::string> number{};  ///< of uDALES' case
   std::optional<double> albedo{};
   std::optional<std::pair<double, double>> sun{};  ///< altitude, azimuth, degrees
   std::optional<double> direct{}, diffuse{};       ///< W/m^2
   std::optional<int> rays{};
+  bool has_udales_albedos = false;
   double north_degrees = 0.0;
   double target_error = 1e-3;
 
   void add_to(CLI::App& command);
   /// Throws CLI::ValidationError for options that do not go together.
   void check() const;
+  bool has_perez_sky() const { return sky == "perez"; }
   /// The option --up, or z for models of uDALES; empty: by the scene.
   std::string zenith() const { return up.empty() && !udales.empty() ? "z" : up; }
   std::string case_number() const { return number.value_or("001"); }

@@ -32,24 +32,33 @@ std::pair<double, double> parse_sun(const std::string& text) {
                            text));
 }
 
+// Month and day of "06-21"; empty if there is no such day.
+std::optional<HourOfYear> day_of(std::string_view text, bool is_leap_year) {
+  const auto date = dashed_pair(text);
+  if (!date) return std::nullopt;
+  const HourOfYear found{.month = date->first, .day = date->second};
+  return number_of(found, is_leap_year) < 0 ? std::nullopt : std::optional(found);
+}
+
 // Reads "06-21" and "06-01..08-31". The 29th of February is a day of leap years.
 DaySpan parse_days(const std::string& text) {
   constexpr std::string_view dots = "..";
   const auto middle = text.find(dots);
-  const auto day = [](std::string_view part) -> std::optional<HourOfYear> {
-    const auto date = dashed_pair(part);
-    if (!date) return std::nullopt;
-    const HourOfYear found{.month = date->first, .day = date->second};
-    return number_of(found, true) < 0 ? std::nullopt : std::optional(found);
-  };
   const std::string_view all = text;
-  const auto first = day(all.substr(0, middle));
-  const auto last = middle == std::string::npos ? first : day(all.substr(middle + dots.size()));
+  const auto first = day_of(all.substr(0, middle), true);
+  const auto last =
+      middle == std::string::npos ? first : day_of(all.substr(middle + dots.size()), true);
   if (first && last) return {.first = *first, .last = *last};
   throw CLI::ValidationError(
       "--days", fmt::format("'{}' is no span of days; write month and day, such as 06-21, or two "
                             "of them, such as 06-01..08-31",
                             text));
+}
+
+HourOfYear parse_date(const std::string& text) {
+  if (const auto date = day_of(text, false)) return *date;
+  throw CLI::ValidationError(
+      "--date", fmt::format("'{}' is no date; write month and day, such as 06-21", text));
 }
 
 // Accepts numbers from 0 to `most`.
@@ -75,9 +84,20 @@ void add_sun_and_sky(CLI::App& command, ShortwaveArguments& arguments) {
       ->check(from_zero_to(brightest, "an irradiance"));
   command
       .add_option("--diffuse", arguments.diffuse,
-                  "irradiance of open level ground by an even sky (default 0)")
+                  "irradiance of open level ground by the sky (default 0)")
       ->type_name("W/m2")
       ->check(from_zero_to(brightest, "an irradiance"));
+  command
+      .add_option("--sky", arguments.sky,
+                  "radiance of the sky: even (default), or perez, the all-weather sky of sun and "
+                  "sky, brighter about the sun and at the horizon")
+      ->type_name("KIND")
+      ->check(one_of("sky", {"even", "perez"}));
+  command
+      .add_option_function<std::string>(
+          "--date", [&arguments](const std::string& text) { arguments.date = parse_date(text); },
+          "date of the instant for --sky perez, such as 06-21")
+      ->type_name("MM-DD");
   command
       .add_option("--up", arguments.up,
                   "axis that points to the zenith, y or z (default: that of the scene's sky or "
@@ -130,6 +150,9 @@ void add_udales(CLI::App& command, ShortwaveArguments& arguments) {
       .add_option("--udales", arguments.udales,
                   "also svf.inp, netsw.inp, vfsparse.inp and Sdir.txt of uDALES in this folder")
       ->type_name("FOLDER");
+  command.add_flag("--udales-albedos", arguments.has_udales_albedos,
+                   "albedos of the facets by facets.inp and factypes.inp of the case in that "
+                   "folder, in place of --albedo");
   command.add_option("--case", arguments.number, "number of uDALES' case (default 001)")
       ->type_name("NNN")
       ->check(CLI::Validator(
@@ -183,7 +206,11 @@ void ShortwaveArguments::add_to(CLI::App& command) {
 void ShortwaveArguments::check() const {
   const bool has_sun = direct.value_or(0.0) > 0.0;
   require(!has_sun || sun, "--direct", "the sun needs a place; give --sun ALTITUDE,AZIMUTH");
-  require(albedo || !surfaces.empty() ||
+  require(!has_udales_albedos || !udales.empty(), "--udales-albedos",
+          "the case lies in --udales FOLDER; give the folder as well");
+  require(!has_udales_albedos || (!albedo && surfaces.empty()), "--udales-albedos",
+          "albedos come from one place; leave out --albedo and --surfaces");
+  require(albedo || !surfaces.empty() || has_udales_albedos ||
               (weather.empty() && !has_sun && !(diffuse.value_or(0.0) > 0.0)),
           "--albedo", "light is reflected by albedos; give --albedo A, or --surfaces FILE.csv");
   require(weather.empty() || (!sun && !direct && !diffuse), "--weather",
@@ -195,6 +222,12 @@ void ShortwaveArguments::check() const {
   require(!weather.empty() || !days, "--days", "days are those of --weather FILE; give it as well");
   require(!weather.empty() || hourly.empty(), "--hourly",
           "hours are those of --weather FILE; give it as well");
+  require(!has_perez_sky() || !weather.empty() || (sun && date), "--sky",
+          "Perez' sky follows from the sun and the date; give --sun ALTITUDE,AZIMUTH and --date "
+          "MM-DD, or --weather FILE");
+  require(!date || (has_perez_sky() && weather.empty()), "--date",
+          "the date is that of an instant under --sky perez; leave it out, or give --sky perez and "
+          "no --weather");
   require(!udales.empty() || !number, "--case",
           "the number names the files of --udales FOLDER; give the folder as well");
   require(points.empty() == points_output.empty(), points.empty() ? "--points-output" : "--points",

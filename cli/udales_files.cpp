@@ -2,7 +2,16 @@
 
 #include <fmt/format.h>
 
+#include <functional>
+#include <map>
+#include <optional>
+#include <string_view>
+#include <utility>
+
+#include "radiosity/radiation/shortwave.h"
 #include "scene/atomic_file.h"
+#include "scene/errors.h"
+#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace {
@@ -26,7 +35,66 @@ std::int64_t write_sparse(AtomicStream& file, const ViewFactors& factors) {
   return count;
 }
 
+// Visits the words of each line of numbers.
+void for_each_row(const TextFile& file,
+                  const std::function<void(int line, std::vector<std::string_view> words)>& visit) {
+  file.for_each_line([&](int line, std::string_view text) {
+    text = trimmed(text);
+    if (text.empty() || text.front() == '#') return;
+    std::vector<std::string_view> words;
+    while (!text.empty()) {
+      words.push_back(next_word(text));
+      text = trimmed(text);
+    }
+    visit(line, std::move(words));
+  });
+}
+
+double number_in(const TextFile& file, int line, const std::vector<std::string_view>& words,
+                 std::size_t column) {
+  const auto value = column < words.size() ? parse_finite(words[column]) : std::nullopt;
+  if (!value) file.fail(line, fmt::format("needs a number in column {}", column + 1));
+  return *value;
+}
+
+// Albedos by the number of the type of facets.
+std::map<int, double> read_albedos_of_types(const TextFile& file) {
+  constexpr std::size_t albedo_column = 4;
+  std::map<int, double> albedos;
+  for_each_row(file, [&](int line, const std::vector<std::string_view>& words) {
+    const double albedo = number_in(file, line, words, albedo_column);
+    if (!(albedo >= 0.0 && albedo <= highest_albedo)) {
+      file.fail(line,
+                fmt::format("the albedo is {:g}; it lies from 0 to {:g}", albedo, highest_albedo));
+    }
+    albedos[static_cast<int>(number_in(file, line, words, 0))] = albedo;
+  });
+  return albedos;
+}
+
 }  // namespace
+
+Eigen::ArrayXd read_udales_albedos(const std::filesystem::path& folder, const std::string& number,
+                                   int count) {
+  const TextFile facets(folder / ("facets.inp." + number)),
+      types(folder / ("factypes.inp." + number));
+  const std::map<int, double> albedos = read_albedos_of_types(types);
+  std::vector<double> of_facets;
+  for_each_row(facets, [&](int line, const std::vector<std::string_view>& words) {
+    const int type = static_cast<int>(number_in(facets, line, words, 0));
+    const auto found = albedos.find(type);
+    if (found == albedos.end()) {
+      facets.fail(line, fmt::format("the facet has the type {}, which {} does not have", type,
+                                    types.path().string()));
+    }
+    of_facets.push_back(found->second);
+  });
+  if (std::ssize(of_facets) != count) {
+    throw InputError(fmt::format("{} has {} facets, and the model {}; give the model of the case",
+                                 facets.path().string(), of_facets.size(), count));
+  }
+  return Eigen::Map<const Eigen::ArrayXd>(of_facets.data(), count);
+}
 
 std::vector<std::filesystem::path> udales_files(const std::filesystem::path& folder,
                                                 const std::string& number) {

@@ -23,6 +23,12 @@ struct UdalesRadiation {
 std::vector<std::filesystem::path> udales_files(const std::filesystem::path& folder,
                                                 const std::string& number);
 
+/// Albedo of each of `count` facets of the case in `folder`: facets.inp has the type of each facet
+/// in its first column, factypes.inp numbers of types in the first and albedos in the fifth. Lines
+/// that begin with '#' are headings. Throws InputError that names file, line and remedy.
+Eigen::ArrayXd read_udales_albedos(const std::filesystem::path& folder, const std::string& number,
+                                   int count);
+
 /// Writes the text files that uDALES 2 reads: svf.inp, netsw.inp and vfsparse.inp, with the case's
 /// number as extension, and Sdir.txt of its preprocessing. View factors below 5e-7 are left out,
 /// which the six digits of the file would show as 0. Returns the number of view factors, which the

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "daylight/sky_patches.h"
 #include "mesh/elements/element_caster.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/sky.h"
+#include "scene/sky_patches.h"
 #include "scene/surface_point.h"
 
 namespace lightwell {

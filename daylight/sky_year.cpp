@@ -6,70 +6,29 @@
 #include <cmath>
 #include <numbers>
 
-#include "scene/degree.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "scene/perez_sky.h"
+#include "scene/sky_patch_means.h"
 
 namespace lightwell {
 namespace {
 
 using std::numbers::pi;
 
-// Points of each patch of the dome by the midpoint rule, and the irradiance that each patch gives
-// open level ground per radiance, sr: the same in all hours.
+// The patches of the dome, and means over them: the same in all hours.
 struct DomeSamples {
-  explicit DomeSamples(const SkyPatches& sky)
-      : patches(sky),
-        steps(steps_of(sky)),
-        count(steps * steps),
-        towards(3, Eigen::Index{count} * sky.dome_count()),
-        on_ground(sky.irradiances(sky.up()).head(sky.dome_count())) {
-    Eigen::Index at = 0;
-    for (int p = 0; p < sky.dome_count(); ++p) {
-      if (steps == 1) {
-        towards.col(at++) = sky.middle(p);
-        continue;
-      }
-      for (int i = 0; i < steps; ++i) {
-        for (int j = 0; j < steps; ++j) {
-          towards.col(at++) = sky.direction(p, (i + 0.5) / steps, (j + 0.5) / steps);
-        }
-      }
-    }
-  }
-  // Steps across a patch that are 5 degrees at most. About the sun, luminance falls by e within
-  // some 1/3 radian (Perez et al. 1993, d = -3), so that the midpoint rule is off by
-  // (3 h)^2 / 24 = 0.3 % there.
-  static int steps_of(const SkyPatches& sky) {
-    constexpr double widest = 5.0 * degree;
-    const double across = std::sqrt(sky.solid_angle(0));
-    return std::max(1, static_cast<int>(std::ceil(across / widest)));
-  }
+  explicit DomeSamples(const SkyPatches& sky) : patches(sky), means(sky) {}
 
   const SkyPatches& patches;
-  int steps, count;
-  Eigen::Matrix3Xd towards;
-  Eigen::ArrayXd on_ground;
+  SkyPatchMeans means;
 };
-
-// Luminance of a sky's dome, up to a factor, as the mean over a patch.
-Eigen::ArrayXd means_of_patches(const DomeSamples& dome, const Sky& sky) {
-  Eigen::ArrayXd mean = Eigen::ArrayXd::Zero(dome.patches.dome_count());
-  Eigen::Index at = 0;
-  for (int p = 0; p < dome.patches.dome_count(); ++p) {
-    for (int i = 0; i < dome.count; ++i) {
-      mean[p] += double{sky_radiance(sky, dome.towards.col(at++))[0]};
-    }
-  }
-  return mean / dome.count;
-}
 
 // Scales patches to `dome_lux` on open ground, and adds the ground, lit by `horizontal_lux`.
 Eigen::ArrayXf scaled(const DomeSamples& samples, const Eigen::ArrayXd& dome, double dome_lux,
                       double horizontal_lux, double ground_reflectance) {
   const SkyPatches& patches = samples.patches;
-  const double lux = (dome * samples.on_ground).sum();
+  const double lux = (dome * samples.means.on_ground()).sum();
   Eigen::ArrayXf luminance(patches.column_count());
   luminance.head(dome.size()) = (dome * (lux > 0.0 ? dome_lux / lux : 0.0)).cast<float>();
   luminance[patches.ground_column()] = static_cast<float>(ground_reflectance * horizontal_lux / pi);
@@ -85,8 +44,8 @@ Eigen::ArrayXf luminances_of(const DomeSamples& dome, const SkyHour& hour,
   Sky sky = white_sky(dome.patches);
   sky.gradation = hour.gradation;
   sky.bright = hour.sun;
-  return scaled(dome, means_of_patches(dome, sky), hour.dome_lux,
-                hour.horizontal_lux(dome.patches.up()), ground_reflectance);
+  return scaled(dome, dome.means.of(sky), hour.dome_lux, hour.horizontal_lux(dome.patches.up()),
+                ground_reflectance);
 }
 
 }  // namespace
@@ -194,7 +153,7 @@ Eigen::ArrayXf overcast_luminances(const SkyPatches& patches, double ground_refl
   Sky sky = white_sky(patches);
   sky.kind = SkyKind::overcast;
   const DomeSamples dome(patches);
-  return scaled(dome, means_of_patches(dome, sky), 1.0, 1.0, ground_reflectance);
+  return scaled(dome, dome.means.of(sky), 1.0, 1.0, ground_reflectance);
 }
 
 }  // namespace lightwell

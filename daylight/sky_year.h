@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "daylight/sky_patches.h"
 #include "scene/bands.h"
 #include "scene/io/weather/sun_hours.h"
 #include "scene/sky.h"
+#include "scene/sky_patches.h"
 #include "scene/sun_position.h"
 
 namespace lightwell {

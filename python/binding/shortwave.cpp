@@ -68,11 +68,16 @@ struct ShortwaveQuestion {
   PointsIn suns{};                          ///< unit
   ListIn<double> direct{}, diffuse{}, albedo{};
   PointsIn points{}, normals{};
+  ListIn<std::int32_t> days{};  ///< of the year, from 1, under Perez' sky; none: an even sky
   int rays = rays_of_one_sun;
 };
 
 Eigen::ArrayXd array_from(const ListIn<double>& values) {
   return Eigen::Map<const Eigen::ArrayXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+}
+
+Eigen::Vector3d up_of(const ShortwaveQuestion& asked) {
+  return {asked.up[0], asked.up[1], asked.up[2]};
 }
 
 std::vector<SunAndSky> instants_from(const ShortwaveQuestion& asked) {
@@ -81,6 +86,8 @@ std::vector<SunAndSky> instants_from(const ShortwaveQuestion& asked) {
   for (std::size_t h = 0; h < instants.size(); ++h) {
     instants[h] = {
         .sun = suns[h], .direct = asked.direct.data()[h], .diffuse = asked.diffuse.data()[h]};
+    if (asked.days.size() == 0) continue;
+    instants[h] = under_perez_sky(instants[h], up_of(asked), asked.days.data()[h]);
   }
   return instants;
 }
@@ -101,11 +108,13 @@ std::shared_ptr<ShortwaveArrays> shortwave(const FoundFormFactors& found,
   const std::vector<SunAndSky> instants = instants_from(asked);
   const std::vector<Probe> probes = probes_from(asked);
   const Eigen::ArrayXd albedo = array_from(asked.albedo);
-  const Eigen::Vector3d up(asked.up[0], asked.up[1], asked.up[2]);
+  const Eigen::Vector3d up = up_of(asked);
+  const bool is_even = asked.days.size() == 0;
   const int rays = asked.rays;
   return result_of_long(progress, [&](const Progress& run) {
     const ElementCaster caster(found.factors.mesh);
-    const ShortwaveModel model(found.factors, caster, exposure_points(caster, probes), up, run);
+    ShortwaveModel model(found.factors, caster, exposure_points(caster, probes), up, run);
+    if (!is_even) model.see_dome(run);
     auto arrays =
         std::make_shared<ShortwaveArrays>(static_cast<Eigen::Index>(instants.size()), model);
     model.run(
@@ -183,6 +192,7 @@ void add_shortwave(nb::module_& module) {
       .def_rw("direct", &ShortwaveQuestion::direct)
       .def_rw("diffuse", &ShortwaveQuestion::diffuse)
       .def_rw("albedo", &ShortwaveQuestion::albedo)
+      .def_rw("days", &ShortwaveQuestion::days)
       .def_rw("points", &ShortwaveQuestion::points)
       .def_rw("normals", &ShortwaveQuestion::normals)
       .def_rw("rays", &ShortwaveQuestion::rays);

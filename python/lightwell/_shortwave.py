@@ -5,7 +5,15 @@ from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy as np
 
 from . import _lightwell
-from ._arrays import array_of, checked_progress, directions_of, points_of, unit_vector, whole_number
+from ._arrays import (
+    array_of,
+    checked_progress,
+    directions_of,
+    integers_of,
+    points_of,
+    unit_vector,
+    whole_number,
+)
 from ._errors import InputError
 from ._form_factors import FormFactors
 from ._radiation import PerSurface, _rows
@@ -79,6 +87,8 @@ def shortwave(
     direct: Any = 0.0,
     diffuse: Any = 0.0,
     up: Sequence[float] = (0.0, 0.0, 1.0),
+    sky: str = "even",
+    day: Any = None,
     points: Any = None,
     normals: Any = None,
     rays: Optional[int] = None,
@@ -90,8 +100,11 @@ def shortwave(
     albedo: 0 to 0.99: one value, (n,) values, or values by the name of the surface.
     sun: (3,), towards the sun, of any length; above the horizon. (h, 3): of h instants.
     direct: irradiance across the sun's rays, W/m^2: one value, or (h,).
-    diffuse: irradiance of open level ground by an even sky, W/m^2: one value, or (h,). No light comes
-        from below the horizon.
+    diffuse: irradiance of open level ground by the sky, W/m^2: one value, or (h,). No light comes from
+        below the horizon.
+    sky: "even", or "perez", the all-weather sky that follows from sun, direct and diffuse (Perez, Seals &
+        Michalsky 1993): brighter about the sun and at the horizon.
+    day: number of the day in the year, 1 to 366, for "perez": one, or (h,), as `Weather.day_of_year`.
     up: (3,), to the zenith, of any length.
     points: (p, 3), metres: also light at these points, in the air or on facets.
     normals: (p, 3) or (3,), of any length: the directions that the points face.
@@ -109,6 +122,7 @@ def shortwave(
     asked = _lightwell.ShortwaveQuestion()
     asked.up = unit_vector("up", up)
     is_series, asked.suns, asked.direct, asked.diffuse = _instants(sun, direct, diffuse, asked.up)
+    asked.days = _days(sky, day, np.size(sun) > 0, len(asked.suns))
     asked.albedo = np.ascontiguousarray(_rows("albedo", albedo, len(factors.areas), factors, np.nan))
     if (points is None) != (normals is None):
         raise InputError("points need the directions that they face; give points and normals")
@@ -119,6 +133,22 @@ def shortwave(
     asked.rays = _checked_rays(usual if rays is None else rays)
     found = _lightwell.shortwave(factors._found, asked, checked_progress(progress))
     return Shortwave(found, is_series, points is not None)
+
+
+def _days(sky: str, day: Any, has_sun: bool, count: int) -> np.ndarray:
+    """Days of the year of all instants under Perez' sky; none for an even sky."""
+    if sky not in ("even", "perez"):
+        raise InputError(f"there is no sky '{sky}'; choose from: even, perez")
+    if sky == "even":
+        if day is not None:
+            raise InputError("day is that of an instant under sky='perez'; leave it out, or give that sky")
+        return np.zeros(0, np.int32)
+    if day is None or not has_sun:
+        raise InputError("sky='perez' follows from the sun and the date; give sun and day")
+    days = integers_of("day", np.atleast_1d(array_of("day", day)))
+    if len(days) not in (1, count) or (days < 1).any() or (days > 366).any():
+        raise InputError(f"day is {day!r}; one number from 1 to 366, or one for each of {count} instants, is needed")
+    return np.ascontiguousarray(np.broadcast_to(days, (count,)))
 
 
 def _checked_rays(rays: Any) -> int:

@@ -37,6 +37,11 @@ class Weather:
         """(h,) float64: degrees above the horizon, degrees from north by east; irradiance across the
         sun's rays, and of open level ground by the sky, W/m^2."""
 
+    @property
+    def day_of_year(self) -> np.ndarray:
+        """(h,) int32: number of the day of each hour, from 1."""
+        return fixed(self.number // 24 + 1)
+
     def sun(
         self, up: Sequence[float] = (0.0, 0.0, 1.0), north: Sequence[float] = (0.0, 1.0, 0.0)
     ) -> np.ndarray:

@@ -71,9 +71,26 @@ class Shortwave(unittest.TestCase):
             np.testing.assert_array_equal(many.net[h], one.net)
             np.testing.assert_array_equal(many.points.total[h], one.points.total)
             self.assertEqual(many.arriving[h], one.arriving)
+        # Under Perez' sky too: the sum over instants is that of single ones, to the last bit.
+        perez = {"sky": "perez", "day": [80, 172, 355]}
+        many = lw.shortwave(self.factors, albedo=0.3, sun=suns, direct=direct, diffuse=diffuse, **perez, **where)
+        nets = []
+        for h in range(3):
+            light = {"sun": suns[h], "direct": direct[h], "diffuse": diffuse[h], "sky": "perez", "day": perez["day"][h]}
+            nets.append(lw.shortwave(self.factors, albedo=0.3, rays=64, **light, **where).net)
+        np.testing.assert_array_equal(many.net.sum(axis=0), np.sum(nets, axis=0))
         # One value holds for all instants.
         same = lw.shortwave(self.factors, albedo=0.3, diffuse=[1.0, 2.0])
         np.testing.assert_allclose(same.net[1], 2 * same.net[0], rtol=1e-9)
+
+    def test_a_wall_under_a_clear_sky_is_bright_towards_the_sun(self):
+        light = {"albedo": 0.3, "direct": 800, "diffuse": 100}
+        east, west = ([1, 0, 1], [-1, 0, 1])
+        even = lw.shortwave(self.factors, sun=east, **light)
+        before, behind = (lw.shortwave(self.factors, sun=sun, **light, sky="perez", day=80) for sun in (east, west))
+        np.testing.assert_array_equal(even.sky_view_factor, before.sky_view_factor)
+        self.assertGreater(before.diffuse[1], even.diffuse[1])
+        self.assertLess(behind.diffuse[1], before.diffuse[1])
 
     def test_progress_stops_the_work(self):
         phases = []
@@ -97,19 +114,24 @@ class Shortwave(unittest.TestCase):
             file.write("o ground\nf 1 2 3 4\no wall\nf 1 4 6 5\n")
         with open(points, "w", encoding="utf-8") as file:
             file.write("0.5,0.5,0,0,0,1\n")
-        run_program(
-            "shortwave", model, "--albedo", "0.3", "--sun", "45,90", "--direct", "800", "--diffuse", "100", "--up", "z",
-            "--points", points, "--points-output", at, "-o", rows,
-        )
-        found = lw.shortwave(
-            lw.form_factors(lw.read(model)), albedo=0.3, sun=[1, 0, 1], direct=800, diffuse=100,
-            points=[[0.5, 0.5, 0]], normals=[0, 0, 1],
-        )
-        table = np.genfromtxt(rows, delimiter=",", skip_header=1)[:, 5:]
-        # Nine digits.
-        ours = np.column_stack([found.sky_view_factor, found.direct, found.diffuse, found.reflected, found.net])
-        np.testing.assert_allclose(table, ours, rtol=1e-8)
-        np.testing.assert_allclose(np.genfromtxt(at, delimiter=",", skip_header=1)[6:], np.ravel(found.points), rtol=1e-8)
+        for arguments, options in (
+            ([], {}),
+            (["--sky", "perez", "--date", "03-21"], {"sky": "perez", "day": 80}),
+        ):
+            run_program(
+                "shortwave", model, "--albedo", "0.3", "--sun", "45,90", "--direct", "800", "--diffuse", "100", "--up", "z",
+                "--points", points, "--points-output", at, "-o", rows, *arguments,
+            )
+            found = lw.shortwave(
+                lw.form_factors(lw.read(model)), albedo=0.3, sun=[1, 0, 1], direct=800, diffuse=100,
+                points=[[0.5, 0.5, 0]], normals=[0, 0, 1], **options,
+            )
+            table = np.genfromtxt(rows, delimiter=",", skip_header=1)[:, 5:]
+            # Nine digits.
+            ours = np.column_stack([found.sky_view_factor, found.direct, found.diffuse, found.reflected, found.net])
+            np.testing.assert_allclose(table, ours, rtol=1e-8)
+            read = np.genfromtxt(at, delimiter=",", skip_header=1)[6:]
+            np.testing.assert_allclose(read, np.ravel(found.points), rtol=1e-8)
 
     def test_wrong_points_and_instants_are_refused(self):
         for change, sentence in (
@@ -121,6 +143,11 @@ class Shortwave(unittest.TestCase):
             ({"diffuse": []}, "has 0 instants"),
             ({"sun": [[0, 0, 1], [0, 0, -1]], "direct": 1.0}, "below the horizon at instant 1"),
             ({"rays": 100}, "power of two"),
+            ({"sky": "blue"}, "no sky 'blue'"),
+            ({"sky": "perez", "diffuse": 1.0}, "give sun and day"),
+            ({"sky": "perez", "sun": [0, 0, 1], "day": 0}, "day is 0"),
+            ({"sky": "perez", "sun": [0, 0, 1], "day": 1.5}, "integers are needed"),
+            ({"day": 80}, "sky='perez'; leave it out"),
             ({"rays": 2048}, "rays is 2048"),
         ):
             with self.subTest(change), self.assertRaisesRegex(lw.InputError, sentence):

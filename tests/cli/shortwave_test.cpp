@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <filesystem>
 #include <numbers>
 #include <sstream>
 #include <string>
@@ -91,6 +92,28 @@ TEST_F(Shortwave, TheSunShinesFromItsAzimuthAndFilesOfUdalesHoldTheTable) {
 }
 
 // The facet faces +z, and the model is no longer along y than along z: y would be up.
+TEST_F(Shortwave, FacetsHaveTheAlbedosOfTheirTypesInACaseOfUdales) {
+  std::filesystem::create_directory(folder / "case");
+  folder.write("case/facets.inp.001", "# type, normal\n 1 0 0 1\n  -2 1 0 0\n 1 -1 0 0\n");
+  const std::string types = "# one\n# two\n# id lGR z0 z0h al em\n1 0 0.05 0.0004 0.5 0.85\n";
+  folder.write("case/factypes.inp.001", types + "-2 0 0.05 0.0004 0.2 0.9\n");
+  const std::vector<std::string> wanted{"--udales", "case", "--udales-albedos"};
+  const Ended ended = shortwave(wanted);
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  const auto rows = table(4);
+  EXPECT_EQ(rows[0][0], 0.5);
+  EXPECT_EQ(rows[1][0], 0.2);
+  EXPECT_EQ(rows[2][0], 0.5);
+  folder.write("case/factypes.inp.001", types);
+  EXPECT_TRUE(says(shortwave(wanted).err, "facets.inp.001:3: the facet has the type -2"));
+  folder.write("case/facets.inp.001", "# type\n1\n1\n");
+  EXPECT_TRUE(says(shortwave(wanted).err, "has 2 facets, and the model 3"));
+  folder.write("case/factypes.inp.001", "1 0 0.05 0.0004 1.5\n");
+  EXPECT_TRUE(says(shortwave(wanted).err, "factypes.inp.001:1: the albedo is 1.5"));
+  folder.write("case/factypes.inp.001", "1 0 0.05 0.0004\n");
+  EXPECT_TRUE(says(shortwave(wanted).err, "needs a number in column 5"));
+}
+
 TEST_F(Shortwave, TheZenithIsThatOfTheOption) {
   folder.write("street.obj",
                "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 9\no a\nf 1 2 3 4\no b\nf 1 2 5\n");
@@ -175,6 +198,43 @@ TEST_F(Shortwave, HoursOfAWeatherFileAddUp) {
   EXPECT_EQ(table(5), rows);
 }
 
+// Open ground has the weather's light whatever the sky. Of an instant, the wall that faces the sun
+// is brighter than under an even sky, and the other one darker.
+TEST_F(Shortwave, HoursUnderPerezSkyLightOpenGroundAsTheWeatherHasIt) {
+  folder.write("june.wea", june_weather());
+  folder.write("p.csv", "x,y,z,nx,ny,nz\n5,500,20,0,0,1\n");
+  const std::vector<std::string> wanted{"--albedo", "0.3",   "--weather",       "june.wea",
+                                        "--points", "p.csv", "--points-output", "q.csv"};
+  const Ended ended = shortwave(wanted + std::vector<std::string>{"--sky", "perez", "--json"});
+  ASSERT_EQ(ended.code, 0) << ended.err;
+  EXPECT_EQ(nlohmann::json::parse(ended.out)["sky"], "perez");
+  const auto rows = table(5);
+  std::istringstream lines(content_of(folder / "q.csv"));
+  std::string line;
+  std::getline(lines, line);
+  std::getline(lines, line);
+  std::istringstream parts(line);
+  std::vector<double> cells;
+  for (std::string cell; std::getline(parts, cell, ',');) cells.push_back(std::stod(cell));
+  ASSERT_EQ(cells.size(), 11u);
+  // Sums of 577 floats in each of 16 hours of 100 W/m2, in kWh/m2.
+  EXPECT_NEAR(cells[8], 1.6, 1.6 * 2 * 577 * 0x1p-24);
+  ASSERT_EQ(shortwave(wanted).code, 0);
+  EXPECT_NE(table(5), rows);
+  const auto instant = [&](const std::string& sky, const std::vector<std::string>& more) {
+    EXPECT_EQ(shortwave(std::vector<std::string>{"--albedo", "0.3", "--sun", "40,90", "--direct",
+                                                 "700", "--diffuse", "100", "--sky", sky} +
+                        more)
+                  .code,
+              0);
+    return table(5);
+  };
+  const auto even = instant("even", {}), clear = instant("perez", {"--date", "06-21"});
+  EXPECT_EQ(even[0][0], clear[0][0]);  // the sky view factor
+  EXPECT_GT(clear[1][2], even[1][2]);  // the western wall faces the sun
+  EXPECT_LT(clear[2][2], even[2][2]);
+}
+
 TEST_F(Shortwave, PointsOfAnInstantHaveSunSkyAndReflections) {
   folder.write("p.csv", "0,500,10,1,0,0\n");
   const Ended ended =
@@ -231,6 +291,17 @@ TEST_F(Shortwave, WrongOptionsAndTablesAreRefused) {
       {{"--weather", "june.wea", "--albedo", "0", "--udales", "case"}, 2, "have one instant"},
       {{"--weather", "june.wea", "--albedo", "0", "--days", "12-24"}, 3, "no hour of the days"},
       {{"--rays", "48"}, 2, "48"},
+      {{"--udales-albedos"}, 2, "the case lies in --udales FOLDER"},
+      {{"--udales", "case", "--udales-albedos", "--albedo", "0.2"}, 2, "come from one place"},
+      {{"--sky", "blue"}, 2, "blue"},
+      {{"--sky", "perez", "--diffuse", "9", "--albedo", "0"},
+       2,
+       "follows from the sun and the date"},
+      {{"--date", "06-21"}, 2, "that of an instant under --sky perez"},
+      {{"--weather", "june.wea", "--albedo", "0", "--sky", "perez", "--date", "06-21"},
+       2,
+       "no --weather"},
+      {{"--sky", "perez", "--date", "02-30", "--sun", "9,9"}, 2, "'02-30' is no date"},
       {{"--surfaces", "white.csv"}, 3, "white.csv:2: the albedo is 1; it lies from 0 to 0.99"},
       {{"--surfaces", "empty.csv"}, 3, "empty.csv:2: has no albedo"}};
   for (const auto& [options, code, sentence] : cases) {

@@ -7,47 +7,20 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "radiosity/radiation/shortwave_model.h"
 #include "radiosity/radiation/sky_exposure.h"
 #include "scene/errors.h"
-#include "scene/io/default_material.h"
-#include "scene/io/polygon_arrays.h"
+#include "tests/radiosity/radiation/street.h"
 
 namespace lightwell::shortwave_test {
 namespace {
 
-const Eigen::Vector3d zenith = Eigen::Vector3d::UnitZ();
-constexpr double width = 10.0, height = 15.0;  // m, of the street
-
-// Quadrilaterals, a surface each.
-FacetViewFactors factors_between(const std::vector<std::array<Eigen::Vector3d, 4>>& quads) {
-  Scene scene;
-  scene.materials = {default_material(scene.bands)};
-  PolygonArrays arrays{.first = {0}};
-  for (const auto& quad : quads) {
-    arrays.surface.push_back(static_cast<int>(scene.surfaces.size()));
-    scene.surfaces.push_back({.name = "quad"});
-    for (const Eigen::Vector3d& corner : quad) {
-      arrays.corners.push_back(static_cast<int>(arrays.vertices.size()));
-      arrays.vertices.push_back(corner);
-    }
-    arrays.first.push_back(arrays.corners.size());
-  }
-  const NumberedScene numbered = scene_of_polygons(scene, arrays);
-  return facet_view_factors(numbered, check_facets(numbered.scene), {});
-}
-
-// A road, and walls at x = 0 and x = width, rows 0 to 2. Through each end goes less than (width +
-// height) / length of the light of a row: 2.5e-5.
-FacetViewFactors street(double length = 1e6) {
-  const double w = width, h = height, L = length;
-  return factors_between({{{{0, 0, 0}, {w, 0, 0}, {w, L, 0}, {0, L, 0}}},
-                          {{{0, 0, 0}, {0, L, 0}, {0, L, h}, {0, 0, h}}},
-                          {{{w, L, 0}, {w, 0, 0}, {w, 0, h}, {w, L, h}}}});
-}
+using street::endless_street, street::factors_between, street::height, street::width,
+    street::zenith;
 
 Eigen::Vector3d sun_over_second_wall(double altitude_degrees) {
   const double a = altitude_degrees * std::numbers::pi / 180.0;
@@ -61,7 +34,7 @@ const double wall_sky =
     0.5 * (height / width + 1.0 - std::hypot(height / width, 1.0)) * width / height;
 
 TEST(SkyViewFactors, OfAStreetAreThoseOfItsClosedForm) {
-  const Eigen::ArrayXd sky = sky_view_factors(street(), zenith);
+  const Eigen::ArrayXd sky = sky_view_factors(endless_street(), zenith);
   // Two ends, and factors that are floats.
   EXPECT_NEAR(sky[0], road_sky, 5.1e-5);
   EXPECT_NEAR(sky[1], wall_sky, 5.1e-5);
@@ -92,7 +65,7 @@ TEST(SkyViewFactors, LeaveOutTheGroundAndBacks) {
 // The shadow of the second wall is height / tan(altitude) long. Its edge is straight along the
 // street, so one of 16384 strips along the street is lit in part, to rays in single precision.
 TEST(SunFactors, OfAStreetFollowTheShadowOfItsWall) {
-  const FacetViewFactors found = street(100.0);
+  const FacetViewFactors found = endless_street(100.0);
   const double strip = 2.0 / 16384.0;
   const Eigen::ArrayXd high = sun_factors(found, sun_over_second_wall(60.0));
   const double root = std::sqrt(3.0);
@@ -106,7 +79,7 @@ TEST(SunFactors, OfAStreetFollowTheShadowOfItsWall) {
 
 // Three equations for the irradiances, with the closed forms of an endless street.
 TEST(ShortwaveExchange, OfAStreetIsThatOfItsThreeEquations) {
-  const FacetViewFactors found = street();
+  const FacetViewFactors found = endless_street();
   const Eigen::Array3d first(300.0, 500.0, 40.0), albedo(0.1, 0.6, 0.4);
   const ShortwaveExchange result = shortwave_exchange(found.factors, first, albedo);
   const double F_rw = 0.5 * (1.0 - road_sky), F_wr = F_rw * width / height;
@@ -140,7 +113,7 @@ TEST(ShortwaveExchange, AddsUpManyReflections) {
 // the horizon: (cos a + cos b) / 2. A point of a wall at the height z sees it above the other's top
 // and up to its own plane: (1 - sin c) / 2, c of the other's top.
 TEST(PointViews, OfAStreetAreThoseOfItsClosedForm) {
-  const FacetViewFactors found = street();
+  const FacetViewFactors found = endless_street();
   const ElementCaster caster(found.mesh);
   const double y = 5e5, x = 2.5, z = 6.0;
   const std::vector<SurfacePoint> points{
@@ -175,7 +148,7 @@ TEST(PointViews, OfAStreetAreThoseOfItsClosedForm) {
 // Light of an instant does not depend on those beside it; the light at points in the middle of the
 // road is near that of the rows they lie on, and adds up with the model's rows.
 TEST(ShortwaveModel, ComputesEachInstantAsIfItWereAlone) {
-  const FacetViewFactors found = street();
+  const FacetViewFactors found = endless_street();
   const ElementCaster caster(found.mesh);
   const std::vector<SurfacePoint> points{
       {.position = {0.5 * width, 5e5, 0.0}, .normal = zenith, .facet = 0}};
@@ -209,8 +182,58 @@ TEST(ShortwaveModel, ComputesEachInstantAsIfItWereAlone) {
   EXPECT_EQ(seen, 40);
 }
 
+// Hours of a day under Perez' sky: their sum is that of single solves, and light that arrives is
+// absorbed or leaves.
+TEST(ShortwaveModel, SumsHoursUnderPerezSkyAsSingleSolvesDo) {
+  const FacetViewFactors found = endless_street();
+  const ElementCaster caster(found.mesh);
+  const std::vector<SurfacePoint> points{
+      {.position = {0.5 * width, 5e5, 0.0}, .normal = zenith, .facet = 0}};
+  ShortwaveModel model(found, caster, points, zenith);
+  model.see_dome();
+  const Eigen::Array3d albedo(0.1, 0.6, 0.4);
+  std::vector<SunAndSky> hours;
+  for (int h = 0; h < 40; ++h) {
+    const SunAndSky even{
+        .sun = sun_over_second_wall(5.0 + 2.0 * h), .direct = 20.0 * h, .diffuse = 80.0 + h};
+    hours.push_back(under_perez_sky(even, zenith, 172));
+    EXPECT_TRUE(hours.back().gradation.has_value());
+  }
+  Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(3), alone = sum;
+  const auto add_to = [&](Eigen::ArrayXd& net) {
+    return [&](int, const ShortwaveInstant& light) {
+      net += light.exchange.net;
+      EXPECT_NEAR(light.exchange.absorbed + light.exchange.escaped, light.exchange.arriving,
+                  1e-6 * light.exchange.arriving);
+      EXPECT_GT(light.point_diffuse[0], 0.0);
+    };
+  };
+  model.run(hours, albedo, rays_of_many_suns, add_to(sum));
+  for (std::size_t h = 0; h < hours.size(); ++h) {
+    model.run(std::span(hours).subspan(h, 1), albedo, rays_of_many_suns, add_to(alone));
+  }
+  EXPECT_LT((sum / alone - 1.0).abs().maxCoeff(), 1e-6);
+}
+
+TEST(ShortwaveModel, NeedsTheDomeForSkiesThatAreNotEven) {
+  const FacetViewFactors found = endless_street();
+  const ElementCaster caster(found.mesh);
+  const ShortwaveModel model(found, caster, {}, zenith);
+  const SunAndSky overcast{.diffuse = 100.0, .gradation = standard_sky(1)};
+  const auto ignore = [](int, const ShortwaveInstant&) {};
+  EXPECT_THROW(model.run({&overcast, 1}, Eigen::Array3d::Zero(), rays_of_many_suns, ignore),
+               std::logic_error);
+}
+
+// Dark domes, and suns below the horizon, have no state in Perez' model.
+TEST(UnderPerezSky, LeavesDarkSkiesEven) {
+  const SunAndSky dark{.direct = 500.0}, night{.sun = -zenith, .diffuse = 10.0};
+  EXPECT_FALSE(under_perez_sky(dark, zenith, 1).gradation.has_value());
+  EXPECT_FALSE(under_perez_sky(night, zenith, 1).gradation.has_value());
+}
+
 TEST(ShortwaveModel, StopsWhereProgressSaysSo) {
-  const FacetViewFactors found = street();
+  const FacetViewFactors found = endless_street();
   const ElementCaster caster(found.mesh);
   const ShortwaveModel model(found, caster, {}, zenith);
   const Progress stop_at_half = [](std::string_view, double share) { return share < 0.5; };

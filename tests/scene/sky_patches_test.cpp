@@ -1,4 +1,4 @@
-#include "daylight/sky_patches.h"
+#include "scene/sky_patches.h"
 
 #include <gtest/gtest.h>
 
