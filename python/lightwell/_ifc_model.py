@@ -1,14 +1,12 @@
 """What is read from a model in IFC, and the files that hold it."""
 
-import contextlib
 import os
 from dataclasses import dataclass, field
-from typing import Any, Dict, Iterator, List, NamedTuple, Sequence, TextIO
+from typing import Any, Dict, List, NamedTuple, Sequence, TextIO
 
 import numpy as np
 
-from ._errors import Error
-from ._toml import toml_string
+from ._toml import toml_string, whole_file
 
 
 @dataclass
@@ -79,12 +77,12 @@ def write_model(model: Model, output: str, source: str) -> None:
     stem = os.path.splitext(os.path.basename(output))[0]
     base = os.path.splitext(output)[0]
     for name, text in model.photometry.items():
-        with _whole_file(f"{base}-{name}") as file:
+        with whole_file(f"{base}-{name}") as file:
             file.write(text)
-    with _whole_file(base + ".mtl") as file:
+    with whole_file(base + ".mtl") as file:
         for name, optics in model.materials.items():
             file.write(f"newmtl {name}\nKd {' '.join(map(repr, optics.reflectance))}\n")
-    with _whole_file(base + ".obj") as file:
+    with whole_file(base + ".obj") as file:
         file.write(f"mtllib {stem}.mtl\n")
         _write_mesh(model, file)
     parts = [f"# Made from {source}, an IFC model.", 'unit = "m"']
@@ -94,23 +92,8 @@ def write_model(model: Model, output: str, source: str) -> None:
             lines.append(f"transparent = {optics.transparent!r}")
         parts.append("\n".join(lines))
     parts.append(f"[[surfaces]]\nname = \"model\"\nmesh = {toml_string(stem + '.obj')}")
-    with _whole_file(output) as file:
+    with whole_file(output) as file:
         file.write("\n\n".join(parts + model.lamps + model.grids) + "\n")
-
-
-@contextlib.contextmanager
-def _whole_file(path: str) -> Iterator[TextIO]:
-    """A text file that takes the place of `path` once it is whole."""
-    part = path + ".part"
-    try:
-        with open(part, "w", encoding="utf-8", newline="\n") as file:
-            yield file
-        os.replace(part, path)
-    except OSError as error:
-        raise Error(f"{path}: cannot be written: {error}") from None
-    finally:
-        with contextlib.suppress(OSError):
-            os.remove(part)
 
 
 def _write_mesh(model: Model, file: TextIO) -> None:

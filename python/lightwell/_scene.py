@@ -10,7 +10,7 @@ from ._arrays import array_of, checked_progress, faces_of, integers_of, points_o
 from ._camera import Camera, camera_of
 from ._errors import InputError
 from ._material import Material, material_of, materials_of
-from ._toml import mapping_of, mappings_of, toml_text
+from ._toml import mapping_of, mappings_of, toml_text, whole_file
 
 Path = Union[str, "os.PathLike[str]"]
 Progress = Callable[[str, float], Optional[bool]]
@@ -35,6 +35,7 @@ class Scene:
             )
         self._data = data
         self._first_notes: List[str] = []
+        self._tables: Optional[Tuple[str, str]] = None  # text and folder
         self._triangles: Optional[Tuple[np.ndarray, np.ndarray, np.ndarray]] = None
 
     @classmethod
@@ -137,7 +138,26 @@ class Scene:
         if document.get("unit", "m") != "m" and any(isinstance(view, Camera) for view in listed):
             raise InputError("a lightwell.Camera has metres, and these tables another unit; give its table instead")
         document["cameras"] = [view._table() if isinstance(view, Camera) else view for view in listed]
-        return cls(_lightwell.from_tables(_text(document, folder, bool(inside_folder))))
+        text = _text(document, folder, bool(inside_folder))
+        scene = cls(_lightwell.from_tables(text))
+        scene._tables = text.text, os.path.abspath(os.fspath(folder))
+        return scene
+
+    def save(self, path: Path) -> None:
+        """Writes the tables of a scene of `from_tables` as a scene file (.toml), which the command line reads.
+
+        Files that the tables name are relative to their `folder`, which the file has to lie in.
+        """
+        target = os.path.abspath(os.fspath(path))
+        if os.path.splitext(target)[1] != ".toml":
+            raise InputError(f"'{os.fspath(path)}' must end in .toml")
+        if self._tables is None:
+            raise InputError("only a scene of from_tables can be saved, since it has all tables of a file")
+        text, folder = self._tables
+        if os.path.dirname(target) != folder:
+            raise InputError(f"the tables name files relative to '{folder}'; save the scene there")
+        with whole_file(target) as file:
+            file.write(text)
 
     @classmethod
     def from_trimesh(cls, mesh: Any, **options: Any) -> "Scene":

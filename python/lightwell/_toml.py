@@ -1,12 +1,13 @@
-"""Tables of the scene format, given as dictionaries, in the text that the library reads."""
+"""Tables of the scene format, given as dictionaries, in the text that the library reads; text files."""
 
+import contextlib
 import json
 import os
-from typing import Any, Mapping
+from typing import Any, Iterator, Mapping, TextIO
 
 import numpy as np
 
-from ._errors import InputError
+from ._errors import Error, InputError
 
 
 def toml_text(tables: Mapping[str, Any]) -> str:
@@ -64,3 +65,18 @@ def _value(name: str, value: Any) -> str:
     raise InputError(
         f"{name} has a value of type {type(value).__name__}; numbers, text, lists, arrays and dictionaries are known"
     )
+
+
+@contextlib.contextmanager
+def whole_file(path: str) -> Iterator[TextIO]:
+    """A text file that takes the place of `path` once it is whole."""
+    part = path + ".part"
+    try:
+        with open(part, "w", encoding="utf-8", newline="\n") as file:
+            yield file
+        os.replace(part, path)
+    except OSError as error:
+        raise Error(f"{path}: cannot be written: {error}") from None
+    finally:
+        with contextlib.suppress(OSError):
+            os.remove(part)

@@ -18,7 +18,7 @@ def main(arguments: Optional[List[str]] = None) -> int:
     parser.add_argument("model", metavar="MODEL.ifc", help="IFC2X3 or IFC4")
     parser.add_argument("-o", "--output", metavar="SCENE.toml", required=True, help="the scene file")
     parser.add_argument("--fixtures", metavar="FILE.csv", help="columns fixture, file: photometric files")
-    parser.add_argument("--materials", metavar="FILE.csv", help="columns material, reflectance")
+    parser.add_argument("--materials", metavar="FILE.csv", help="columns material, reflectance, transmittance")
     parser.add_argument(
         "--height", metavar="METRES", type=float, default=0.8, help="of the plane of each space (default 0.8)"
     )

@@ -1,6 +1,7 @@
 """Scenes from tables of the scene format, without a file."""
 
 import os
+import shutil
 import sys
 import unittest
 
@@ -43,6 +44,32 @@ class WholeRooms(unittest.TestCase):
                 self.assertEqual(ours.lamps, theirs.lamps)
                 self.assertEqual(ours.notes, theirs.notes)
                 self.assertEqual(ours.file, "")
+
+    def test_a_saved_scene_is_the_scene_again(self):
+        folder = scratch(self)
+        shutil.copy(os.path.join(SOURCE, PANEL), os.path.join(folder, "panel.ies"))
+        floor = {"name": 'a "floor"\x7f', "material": "grey", "polygon": VERTICES[FACES[4]]}
+        tables = {
+            "materials": {"grey": lw.Material(reflectance=0.5)},
+            "surfaces": [floor],
+            "lamps": [{**LAMP, "file": "panel.ies"}],
+            "cameras": lw.Camera((1, 1, 1), (2, 1, 0)),
+        }
+        scene = lw.Scene.from_tables(tables, folder=folder)
+        path = os.path.join(folder, "room.toml")
+        scene.save(path)
+        again = lw.read(path)
+        self.assertEqual(again._data.hash, scene._data.hash)
+        self.assertEqual(again.cameras, scene.cameras)
+        self.assertEqual(again.names, scene.names)
+        for made, name, sentence in (
+            (scene, os.path.join(folder, "room.obj"), "must end in .toml"),
+            (scene, os.path.join(scratch(self), "room.toml"), "save the scene there"),
+            (again, path, "only a scene of from_tables"),
+            (room(), path, "only a scene of from_tables"),
+        ):
+            with self.subTest(sentence), self.assertRaisesRegex(lw.InputError, sentence):
+                made.save(name)
 
     def test_lamps_sky_and_grids_beside_arrays(self):
         grey = {"name": "grey", "reflectance": 0.5}

@@ -90,6 +90,13 @@ TEST_F(Motions, CamerasMoveToo) {
       scene_text(half_turn, camera("shutter = [0, 1]\nmotion = \"spin\"\nup = [0, 1, 0]")));
   EXPECT_LT((scene.cameras[0].position - Vector3d(0, 0, 11)).norm(), 1e-12);
   EXPECT_LT((scene.cameras[0].up - Vector3d(-1, 0, 0)).norm(), 1e-12);
+  // Back to the file, and to the rest again.
+  const Camera back = placed_as_in_file(scene, scene.cameras[0]);
+  EXPECT_LT((back.position - Vector3d(0, 0, 9)).norm(), 1e-12);
+  EXPECT_LT((back.up - Vector3d(0, 1, 0)).norm(), 1e-12);
+  Camera again = back;
+  place_at_rest(scene, again);
+  EXPECT_LT((again.position - scene.cameras[0].position).norm(), 1e-12);
 }
 
 TEST_F(Motions, WhatCannotBeIsRefused) {
