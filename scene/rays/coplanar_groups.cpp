@@ -5,6 +5,8 @@
 #include <cmath>
 #include <map>
 
+#include "scene/rays/convex_hull.h"
+#include "scene/rays/float_rounding.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -14,6 +16,7 @@ struct CoplanarGroups::Plane {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  // towards the front
   Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // first corner
   double distance = 0.0;                             // from the middle of the geometry, m, >= 0
+  double area = 0.0;                                 // m^2
   Eigen::AlignedBox3d box{};
   std::vector<int> vertices{};                 // indices, polygon after polygon
   std::vector<int> ends{};                     // ends of the polygons in `vertices`
@@ -26,46 +29,8 @@ namespace {
 
 constexpr double margin = 4.0;  // tolerances by which coinciding planes may differ
 
-double cross(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  return a.x() * b.y() - a.y() * b.x();
-}
-
 Eigen::Vector2d flattened(const Eigen::Vector3d& p, int axis) {
   return {p[(axis + 1) % 3], p[(axis + 2) % 3]};
-}
-
-// Andrew's monotone chain.
-std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points) {
-  std::sort(points.begin(), points.end(), [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  std::vector<Eigen::Vector2d> hull;
-  for (int side = 0; side < 2; ++side) {
-    const std::size_t start = hull.size();
-    for (const Eigen::Vector2d& p : points) {
-      while (hull.size() >= start + 2 &&
-             cross(hull.back() - hull[hull.size() - 2], p - hull.back()) <= 0.0) {
-        hull.pop_back();
-      }
-      hull.push_back(p);
-    }
-    hull.pop_back();
-    std::reverse(points.begin(), points.end());
-  }
-  return hull;
-}
-
-// True if a line along an edge of `a` separates `b`, up to an overlap of `tolerance`.
-bool is_apart(const std::vector<Eigen::Vector2d>& a, const std::vector<Eigen::Vector2d>& b,
-              double tolerance) {
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    const Eigen::Vector2d edge = (a[(i + 1) % a.size()] - a[i]).normalized();
-    const bool all_outside = std::all_of(b.begin(), b.end(), [&](const Eigen::Vector2d& p) {
-      return cross(edge, p - a[i]) <= tolerance;
-    });
-    if (all_outside) return true;
-  }
-  return false;
 }
 
 struct DirectedEdge {
@@ -129,6 +94,17 @@ void for_each_polygon(const CastGeometry& geometry, Visit visit) {
   for (const auto& quad : geometry.quads) visit(geometry.group[primitive++], quad);
 }
 
+// Area of a triangle or a convex quadrilateral, m^2.
+double area_of(const CastGeometry& geometry, std::span<const int> polygon) {
+  const Eigen::Vector3d& corner = geometry.vertices[polygon[0]];
+  Eigen::Vector3d twice = Eigen::Vector3d::Zero();
+  for (std::size_t i = 2; i < polygon.size(); ++i) {
+    twice +=
+        (geometry.vertices[polygon[i - 1]] - corner).cross(geometry.vertices[polygon[i]] - corner);
+  }
+  return 0.5 * twice.norm();
+}
+
 template <class Visit>
 void for_each_edge(const CastGeometry& geometry, std::span<const int> polygon, Visit visit) {
   for (std::size_t i = 0; i < polygon.size(); ++i) {
@@ -139,11 +115,8 @@ void for_each_edge(const CastGeometry& geometry, std::span<const int> polygon, V
 
 }  // namespace
 
-// Rounding the vertices to float turns a facet by less than the angle of this cosine, 4.5e-5,
-// unless the facet is a sliver.
 bool CoplanarGroups::lie_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  constexpr double cosine = 1.0 - 1e-9;
-  return std::abs(a.dot(b)) > cosine;
+  return std::abs(a.dot(b)) > parallel_cosine;
 }
 
 // Planes of all groups but round shapes, by distance from the middle of the geometry.
@@ -158,6 +131,7 @@ std::vector<CoplanarGroups::Plane> CoplanarGroups::planes_of(const CastGeometry&
     all.extend(plane.box);
     plane.vertices.insert(plane.vertices.end(), polygon.begin(), polygon.end());
     plane.ends.push_back(static_cast<int>(plane.vertices.size()));
+    plane.area += area_of(geometry, polygon);
     if (!plane.normal.isZero()) return;
     const Eigen::Vector3d& corner = geometry.vertices[polygon[0]];
     const Eigen::Vector3d n =
@@ -193,6 +167,7 @@ CoplanarGroups::CoplanarGroups(const CastGeometry& geometry, double tolerance) {
     group.facing = plane.normal.dot(askew) < 0.0 ? -1 : 1;
     group.normal = group.facing * plane.normal;
     group.corner = plane.corner;
+    group.area = plane.area;
   }
   std::vector<Pair> pairs;
   for (std::size_t begin = 0, end = 0; begin < planes.size(); begin = end) {
@@ -300,9 +275,20 @@ int CoplanarGroups::order(int a, int b) const {
       return g.body * (is_solid ? 2 : 1);
     };
     const int difference = level(first) - level(second);
-    return difference > 0 ? 1 : difference < 0 ? -1 : 0;
+    if (difference != 0) return difference > 0 ? 1 : -1;
   }
-  return first.facing == second.facing ? 0 : -first.facing;
+  return first.facing == second.facing ? smaller_first(first, second) : -first.facing;
+}
+
+// order() of groups that face the same way. A sheet of the area of a body's face, such as the light
+// of a luminaire's housing, lies before the face.
+int CoplanarGroups::smaller_first(const Group& first, const Group& second) {
+  constexpr double same = 1e-6;  // share of the area; float coordinates round to about 1e-7
+  const bool are_same = std::abs(first.area - second.area) <= same * (first.area + second.area);
+  if (!are_same) return first.area < second.area ? first.facing : -first.facing;
+  const bool is_sheet = first.body == 0;
+  if (is_sheet == (second.body == 0)) return 0;
+  return is_sheet ? first.facing : -first.facing;
 }
 
 // Sweeps along x over planes at one distance from the middle.

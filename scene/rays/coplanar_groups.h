@@ -17,8 +17,10 @@ namespace lightwell {
 /// body, which consists of the faces that share its edges, and lies on that body's side. If both
 /// bodies are on one side, one holds the other: the block, whose faces lie behind its bottom, is
 /// inside of the room, whose walls rise before its floor. If a body is not known (a sheet),
-/// surfaces that face each other are taken to touch with their fronts. The order of surfaces that
-/// face the same way is then not known.
+/// surfaces that face each other are taken to touch with their fronts. Of surfaces that face the
+/// same way and whose bodies do not differ, or are not known, the smaller lies before the larger,
+/// as a picture lies on a wall; of one area, a sheet before the face of a body. The order of two
+/// other surfaces of one area is not known.
 class CoplanarGroups {
  public:
   /// Planes closer than `tolerance`, metres, are one. Distances are measured from the middle of the
@@ -77,13 +79,15 @@ class CoplanarGroups {
     Boxes overlaps{};                                  // with other groups of the plane
     Boxes above{}, below{};  // those of the overlaps whose order is known, along the normal
     int facing = 0;          // front: 1 along the normal, -1 against the normal
-    int body = 0;  // side of the body: 1 along the normal, -1 against the normal, 0 not known
+    int body = 0;       // side of the body: 1 along the normal, -1 against the normal, 0 not known
+    double area = 0.0;  // m^2
   };
   struct Plane;
   struct Pair {  // groups that lie on each other, and the box that holds all they share
     std::array<int, 2> group{};
     Eigen::AlignedBox3d box{};
   };
+  static int smaller_first(const Group& first, const Group& second);
   static bool lie_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
   static std::vector<Plane> planes_of(const CastGeometry& geometry);
   void add_overlaps(const CastGeometry& geometry, std::span<Plane> planes, double tolerance,

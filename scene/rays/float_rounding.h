@@ -10,4 +10,17 @@ inline double float_rounding(double diagonal) {
   return 0.5 * diagonal * double{std::numeric_limits<float>::epsilon()};
 }
 
+/// Rounding of a ray's origin, of vertices and of their intersection together, metres.
+inline double ray_rounding(double diagonal) {
+  constexpr double roundings = 4.0;
+  return roundings * float_rounding(diagonal);
+}
+
+/// Largest height over a plane, in ray_rounding(), of a point that rays take as in the plane.
+inline constexpr double coplanar_roundings = 4.0;
+
+/// Cosine of the angle, 4.5e-5, by which rounding the vertices to float turns a facet at most,
+/// unless the facet is a sliver: facets at smaller angles are parallel.
+inline constexpr double parallel_cosine = 1.0 - 1e-9;
+
 }  // namespace lightwell

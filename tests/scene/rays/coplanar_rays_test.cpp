@@ -59,8 +59,29 @@ Met cast(const RayCaster& caster, const Vector3d& origin, const Vector3d& direct
 const Vector3d slanted{0.1, 0.2, 1.0};
 const double hairs[] = {0.0, 1e-12, -1e-12, 1e-9, -1e-9, 1e-8, -1e-8};
 
-TEST(CoplanarRays, SurfacesThatFaceOneWayDoNotShadeEachOther) {
+// A rug in the plane of its floor.
+TEST(CoplanarRays, TheSmallerOfTwoSurfacesThatFaceOneWayHidesTheLarger) {
   const RayCaster caster = room_with_sheet_on_floor(true);
+  for (const double z : hairs) {
+    const Met from_rug = cast(caster, {0.1, 0.2, z}, slanted, sheet_group);
+    EXPECT_EQ(from_rug.primitive, ceiling_group) << "at z " << z;
+    EXPECT_FALSE(from_rug.is_blocked) << "at z " << z;
+    EXPECT_TRUE(cast(caster, {0.1, 0.2, z}, slanted, floor_group).is_blocked) << "at z " << z;
+  }
+  // All rays from above meet the rug, wherever rounding puts the two planes.
+  for (int i = 0; i < 100; ++i) {
+    const Vector3d on_rug(0.009 * i - 0.45, 0.44 - 0.0087 * i, 0.0);
+    EXPECT_EQ(cast(caster, on_rug + 0.4 * slanted, -slanted, ceiling_group).primitive, sheet_group);
+  }
+}
+
+TEST(CoplanarRays, SurfacesOfOneAreaThatFaceOneWayDoNotShadeEachOther) {
+  CastGeometry geometry;
+  add_square(geometry, 1.0, 0.0, true, floor_group);
+  add_square(geometry, 1.0, 0.0, true, sheet_group);
+  for (std::size_t i = 4; i < 8; ++i) geometry.vertices[i].x() += 0.5;
+  add_square(geometry, 10.0, 1.0, false, ceiling_group);
+  const RayCaster caster(geometry);
   for (const double z : hairs) {
     for (const int group : {floor_group, sheet_group}) {
       const Met met = cast(caster, {0.1, 0.2, z}, slanted, group);
