@@ -11,6 +11,7 @@
 #include "mesh/contacts/line_selection.h"
 #include "mesh/geometry/box_tree.h"
 #include "scene/parallel.h"
+#include "scene/rays/float_rounding.h"
 #include "scene/round_shape.h"
 
 namespace lightwell {
@@ -258,22 +259,27 @@ std::vector<FlatLine> ContactGraph::contact_lines(int index) const {
   return lines;
 }
 
-// Adds the lines where gaps begin that are narrow against an element. Only facets that are wide
-// enough to cover a gap are compared, of which there are few however finely a scene is divided.
+// Adds the lines where gaps begin that are narrow against an element. Facets are wide enough to
+// cover such a gap, of which there are few however finely a scene is divided, or lie so near to
+// another that rays take both for one plane, but not so near that they touch.
 void ContactGraph::add_gap_lines() {
   constexpr double narrow = 0.1, least_width = 0.2, least_length = 1.0;  // in elements
   const double element = size_.element_size();
-  const GapLimits limits{.narrowest = 2.0 * welded_.tolerance(),
-                         .widest = narrow * element,
+  Eigen::AlignedBox3d all;
+  for (const FacetPlane& plane : planes_) all.extend(plane.box);
+  if (all.isEmpty()) return;
+  const double touching = coplanar_roundings * ray_rounding(all.diagonal().norm());
+  const GapLimits limits{.narrowest = welded_.tolerance(),
+                         .widest = std::max(narrow * element, touching),
                          .least_width = least_width * element,
-                         .least_length = least_length * element};
-  if (!(limits.widest > limits.narrowest)) return;
+                         .least_length = least_length * element,
+                         .touching = touching};
   std::vector<int> wide;
-  std::vector<BoxTree::Box> boxes;
+  std::vector<BoxTree::Box> boxes;  // of what the facets cover
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     if (!(widest_covered(planes_[i], limits) > limits.narrowest)) continue;
     wide.push_back(static_cast<int>(i));
-    const Vector3d d = Vector3d::Constant(0.5 * limits.widest);
+    const Vector3d d = Vector3d::Constant(widest_covered(planes_[i], limits));
     boxes.emplace_back(planes_[i].box.min() - d, planes_[i].box.max() + d);
   }
   const BoxTree tree(boxes);
@@ -282,7 +288,7 @@ void ContactGraph::add_gap_lines() {
     std::vector<int> near;
     for (int k = begin; k < end; ++k) {
       const auto i = static_cast<std::size_t>(k);
-      tree.find_overlaps(boxes[i], near);
+      tree.find_overlaps(planes_[static_cast<std::size_t>(wide[i])].box, near);
       for (const int other : near) {
         if (other == k) continue;
         const FacetPlane& over = planes_[static_cast<std::size_t>(wide[other])];

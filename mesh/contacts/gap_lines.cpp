@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "mesh/geometry/cross.h"
+#include "scene/rays/float_rounding.h"
 
 namespace lightwell {
 namespace {
@@ -73,8 +74,8 @@ double widest_covered(const FacetPlane& facet, const GapLimits& limits) {
   const double boundary = facet.boundary_length(), area = facet.area();
   if (2.0 * area >= limits.least_width * boundary) return limits.widest;
   constexpr double of_a_strip = 1.0 / 3.0;
-  if (!(0.5 * boundary >= limits.least_length)) return 0.0;
-  return std::min(limits.widest, of_a_strip * 2.0 * area / boundary);
+  if (!(0.5 * boundary >= limits.least_length)) return limits.touching;
+  return std::clamp(of_a_strip * 2.0 * area / boundary, limits.touching, limits.widest);
 }
 
 std::vector<ContactSegment> gap_lines(const FacetPlane& on, const FacetPlane& over,
@@ -82,7 +83,9 @@ std::vector<ContactSegment> gap_lines(const FacetPlane& on, const FacetPlane& ov
   constexpr double facing = 0.5;  // cosine of 60 degrees
   GapLimits limits = of_all;
   limits.widest = widest_covered(over, of_all);
-  if (std::abs(on.normal.dot(over.normal)) < facing) return {};
+  // A facet that covers no gap hides a parallel one alone.
+  const double least_cosine = limits.widest > limits.touching ? facing : parallel_cosine;
+  if (std::abs(on.normal.dot(over.normal)) < least_cosine) return {};
   const double side = on.height(over.box.center()) < 0.0 ? -1.0 : 1.0;
   std::vector<ContactSegment> segments;
   over.for_each_edge([&](int i, int j) {

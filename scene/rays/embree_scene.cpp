@@ -52,8 +52,7 @@ EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
   for (const auto& v : geometry.vertices) box.extend(v);
   for (const RoundShape& shape : geometry.round_shapes) box.extend(bounds(shape));
   if (!box.isEmpty()) center = box.center();
-  constexpr double roundings = 4.0;  // of the origin, the vertices and the intersection
-  if (!box.isEmpty()) rounding = roundings * float_rounding(box.diagonal().norm());
+  if (!box.isEmpty()) rounding = ray_rounding(box.diagonal().norm());
 
   planes = std::make_unique<CoplanarGroups>(geometry, rounding);
 

@@ -6,13 +6,12 @@
 #include <cmath>
 
 #include "scene/rays/embree_scene.h"
+#include "scene/rays/float_rounding.h"
 
 namespace lightwell {
 
 struct RayCaster::Impl : EmbreeScene {
   using EmbreeScene::EmbreeScene;
-
-  static constexpr double coplanar = 4.0;  // times `rounding`: largest height of a coplanar point
 
   // A ray that starts on a group begins past the plane of the group by the bound of rounding, so
   // that the ray rarely meets that plane and needs a second query. If another surface may lie on
@@ -71,12 +70,12 @@ struct RayCaster::Impl : EmbreeScene {
   // Largest displacement of the target by rounding, along a ray.
   double target_depth(const Ray& ray) const {
     const double along = std::abs(planes->normal(ray.target_group).dot(ray.direction));
-    return coplanar * rounding / along;
+    return coplanar_roundings * rounding / along;
   }
 
   // True if the plane of a hit coincides with that of group `with` where the ray meets the hit.
   bool is_coplanar(const RTCHit& hit, double off_plane, int with) const {
-    return std::abs(off_plane) <= coplanar * rounding &&
+    return std::abs(off_plane) <= coplanar_roundings * rounding &&
            planes->are_parallel(with, group[primitive(hit)]);
   }
 

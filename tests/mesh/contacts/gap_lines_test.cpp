@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
 
 #include "mesh/build_patches.h"
+#include "mesh/elements/element_caster.h"
 #include "tests/mesh/mesh_scenes.h"
 
 namespace lightwell::gap_lines_test {
@@ -93,6 +95,33 @@ TEST(GapLines, FloorIsCutUnderADoor) {
   };
   for (const auto& half : {Half{.x = 0.1, .y = 0.02}, Half{.x = 0.45, .y = 0.004}}) {
     EXPECT_EQ(count(0.009, half), count(0.5, half)) << half.x;
+  }
+}
+
+// Rays take planes up to 2.7e-6 m apart as one here, 16 roundings of a float in a diagonal of 2.8
+// m; points are welded up to 2.8e-7 m. What lies between must hide the floor below itself, and no
+// more of the floor: an element that straddled the outline would be black beside the plate.
+TEST(GapLines, FloorIsHiddenUnderWhatNearlyTouchesIt) {
+  constexpr Half plate{}, foot{.x = 0.05, .y = 0.04};  // narrower than a fifth of an element
+  for (const Half& half : {plate, foot}) {
+    for (const double height : {0.0, 1e-7, 2e-7, 4e-7, 1e-6, 2e-6}) {
+      for (const bool faces_floor : {true, false}) {
+        Scene scene = floor_and_plate(height, 0.7, 1.0, half);
+        auto& loop = std::get<PolygonMesh>(scene.surfaces[1].shape);
+        if (!faces_floor) std::ranges::reverse(loop.vertices);
+        const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
+        const ElementCaster caster(mesh);
+        double hidden = 0.0;
+        for (int e = 0; e < mesh.element_count(); ++e) {
+          if (mesh.facet[e] != 0 || mesh.is_back[mesh.patch[e]] != 0) continue;
+          if (caster.is_hidden(e, false)) hidden += mesh.element_area[e];
+        }
+        // Welding moves corners by 2.8e-7 m at most.
+        const double perimeter = 4.0 * (half.x + half.y);
+        EXPECT_NEAR(hidden, 4.0 * half.x * half.y, 2.8e-7 * perimeter)
+            << height << " m, half width " << half.x << (faces_floor ? "" : ", faces up");
+      }
+    }
   }
 }
 
