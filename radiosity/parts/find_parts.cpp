@@ -33,11 +33,58 @@ struct PatchArrivals {
   bool takes_part = false;     // false for mirrors and clear glass
 };
 
+// The boxes of surfaces, by the corners of their elements.
+std::vector<Eigen::AlignedBox3d> surface_boxes(const Scene& scene, const PatchMesh& mesh) {
+  std::vector<Eigen::AlignedBox3d> boxes(scene.surfaces.size());
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      boxes[mesh.surface[mesh.patch[e]]].extend(mesh.position(mesh.corners[e][c]));
+    }
+  }
+  return boxes;
+}
+
+// True if a box holds `scenery` far inside, but for one side: domes may end on the ground.
+bool is_around(const Eigen::AlignedBox3d& box, const Eigen::AlignedBox3d& scenery) {
+  const double away = scenery.diagonal().norm();
+  const Eigen::Array3d below = scenery.min() - box.min(), above = box.max() - scenery.max();
+  return (below >= away).count() + (above >= away).count() >= 5;
+}
+
+// 1 for each patch of a dome that stands for the sky, or another surface far around all that is
+// less than a tenth as large.
+std::vector<char> backdrop_patches(const Scene& scene, const PatchMesh& mesh) {
+  constexpr double far = 10.0;
+  const std::vector<Eigen::AlignedBox3d> boxes = surface_boxes(scene, mesh);
+  std::vector<int> by_size;
+  for (std::size_t s = 0; s < boxes.size(); ++s) {
+    if (!boxes[s].isEmpty()) by_size.push_back(static_cast<int>(s));
+  }
+  const auto size = [&](int s) { return boxes[s].diagonal().norm(); };
+  std::ranges::stable_sort(by_size, {}, size);
+  std::vector<char> is_backdrop(boxes.size(), 0);
+  Eigen::AlignedBox3d scenery;
+  std::size_t smaller = 0;
+  for (const int s : by_size) {
+    for (; far * size(by_size[smaller]) <= size(s); ++smaller) {
+      scenery.extend(boxes[by_size[smaller]]);
+    }
+    const bool is_far = !scenery.isEmpty() && far * scenery.diagonal().norm() <= size(s);
+    is_backdrop[s] = is_far && is_around(boxes[s], scenery) ? 1 : 0;
+  }
+  std::vector<char> of_patch;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    of_patch.push_back(is_backdrop[mesh.surface[p]]);
+  }
+  return of_patch;
+}
+
 class PartRays {
  public:
-  PartRays(const ElementCaster& caster, const LightPaths& paths)
+  PartRays(const Scene& scene, const ElementCaster& caster, const LightPaths& paths)
       : caster_(caster),
         paths_(paths),
+        is_backdrop_(backdrop_patches(scene, caster.mesh())),
         rays_(rays_per_patch_for_parts(caster.mesh().patch_count())),
         sobol_(rays_) {}
 
@@ -67,14 +114,20 @@ class PartRays {
     };
     for (std::size_t r = 0; r < rays.size(); ++r) {
       const ElementHit& hit = hits[r];
-      if (hit.facet < 0) result.escaped += double{one};
-      if (hit.facet < 0) continue;
+      if (leaves(hit)) {
+        result.escaped += double{one};
+        continue;
+      }
       const bool is_specular = paths_.has_specular() && paths_.is_specular(hit.facet);
       if (hit.element >= 0 && (!is_specular || paths_.is_diffuse(hit.facet))) {
         arrive(hit.element, one, hit.t);
       } else if (is_specular) {
         const auto end = [&](const ElementHit& at, const Spectrum& throughput) {
-          if (at.element >= 0) arrive(at.element, one * throughput.mean(), hit.t);
+          if (leaves(at)) {
+            result.escaped += double{one * throughput.mean()};
+          } else if (at.element >= 0) {
+            arrive(at.element, one * throughput.mean(), hit.t);
+          }
         };
         const PathLosses losses =
             paths_.follow(rays[r], hit, random_key(key, RandomPurpose::part_rays, r), end);
@@ -86,15 +139,21 @@ class PartRays {
   }
 
  private:
+  // Light that ends on a backdrop is outside.
+  bool leaves(const ElementHit& hit) const {
+    return hit.facet < 0 || (hit.element >= 0 && is_backdrop_[caster_.mesh().patch[hit.element]]);
+  }
+
   const ElementCaster& caster_;
   const LightPaths& paths_;
+  std::vector<char> is_backdrop_;
   int rays_;
   SobolPoints sobol_;
 };
 
-std::vector<PatchArrivals> cast_part_rays(const ElementCaster& caster, const LightPaths& paths,
-                                          const Progress& progress) {
-  const PartRays rays(caster, paths);
+std::vector<PatchArrivals> cast_part_rays(const Scene& scene, const ElementCaster& caster,
+                                          const LightPaths& paths, const Progress& progress) {
+  const PartRays rays(scene, caster, paths);
   const int patches = caster.mesh().patch_count();
   std::vector<PatchArrivals> arrivals(static_cast<std::size_t>(patches));
   constexpr int slice = 4096, grain = 16;  // patches between two reports of progress
@@ -295,7 +354,7 @@ int rays_per_patch_for_parts(int patches) {
 SceneParts find_parts(const Scene& scene, const ElementCaster& caster, const LightPaths& paths,
                       const Progress& progress) {
   const PatchMesh& mesh = caster.mesh();
-  const std::vector<PatchArrivals> arrivals = cast_part_rays(caster, paths, progress);
+  const std::vector<PatchArrivals> arrivals = cast_part_rays(scene, caster, paths, progress);
   int nodes = 0;
   const std::vector<int> node = nodes_of(arrivals, nodes);
   SceneParts parts{.of_patch = std::vector<int>(node.size(), -1)};

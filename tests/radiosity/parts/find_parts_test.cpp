@@ -153,6 +153,22 @@ TEST(FindParts, TheGroundOutsideAWindowIsAPart) {
   EXPECT_NE(by_name.at("ground"), by_name.at("office"));
 }
 
+// The room has less than 1/1024 of the area of a dome of 60 m, and beside the dome it is a hollow.
+TEST(FindParts, ADomeForTheSkyIsOutside) {
+  for (const double radius : {40.0, 300.0, 2000.0}) {
+    Scene scene = rooms_with_doors(
+        {{"office", {0, 0, 0}, {5, 6, 3}}},
+        {{.x = 5.0, .thickness = 0.2, .y = 1.0, .width = 1.0, .z = 0.9, .height = 1.0}});
+    const int sky = add_two_sided(scene);
+    scene.surfaces.push_back({.name = "dome", .material = sky, .shape = Sphere{{0, 0, 0}, radius}});
+    const Found found = found_in(scene);
+    const auto by_name = parts_by_name(scene, found);
+    EXPECT_EQ(by_name.at("office").size(), 1u) << radius;
+    EXPECT_EQ(by_name.at("dome").size(), 1u) << radius;
+    EXPECT_NE(by_name.at("dome"), by_name.at("office")) << radius;
+  }
+}
+
 TEST(FindParts, ACabinetIsAPartAndACrackIsNone) {
   Scene scene;
   const int m = add_material(scene, diffuse(scene.bands, 0.5f)), board = add_two_sided(scene);
