@@ -15,6 +15,7 @@
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/gap_errors.h"
 #include "radiosity/openings/portals.h"
+#include "radiosity/patch_light.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solution/relight.h"
@@ -195,6 +196,8 @@ class GatherAttempts {
       take(std::move(efforts));
     }
     take_mesh(may_repeat());
+    spread_pools({scene_, *caster_, sources_.by_channel}, unscaled_radiosity(solved_.solution),
+                 pilot_->beside_direct(), options_.free_rays, pilot_->direct);
     if (may_save_rays_) save_rays();
     give_back_free_pages();  // splitting elements leaves many
     if (pilot_->tree) spent_["refine"] += watch_.lap();

@@ -82,6 +82,70 @@ class PatchNeighbourhoods {
   std::vector<Coordinates> coordinates_;
 };
 
+// The power of each patch, W per band, all channels added.
+class PatchPowers {
+ public:
+  PatchPowers(const PatchMesh& mesh, const BandArray& of_patches, const BandArray& at_vertices)
+      : wanted_(mesh.patch_count(), mesh.reflectance.cols()) {
+    const auto bands = static_cast<int>(mesh.reflectance.cols());
+    const BandArray balanced = channel_sum(of_patches, bands);
+    for (int p = 0; p < mesh.patch_count(); ++p) {
+      wanted_.row(p) = mesh.area[p] * balanced.row(p).cast<double>();
+    }
+    found_ = patch_integral(mesh, channel_sum(at_vertices, bands));
+    least_ = notable_share(mesh) * wanted_.sum();
+  }
+
+  // True if the patch's power is off by a notable share of all power.
+  bool is_peak(int p) const { return error(p) > least_; }
+
+  // True if the power is off by more than factor() restores.
+  bool is_pool(int p) const {
+    const double wanted = wanted_.row(p).sum(), found = found_.row(p).sum();
+    return wanted > most * found || found > most * wanted;
+  }
+
+  // Watts by which the power is off.
+  double error(int p) const { return std::abs(wanted_.row(p).sum() - found_.row(p).sum()); }
+
+  // Factor of each band that gives some patches the power that their equations balanced.
+  Eigen::ArrayXf factor(std::span<const int> patches) const {
+    Eigen::ArrayXd wanted = Eigen::ArrayXd::Zero(wanted_.cols()), found = wanted;
+    for (const int p : patches) {
+      wanted += wanted_.row(p).transpose();
+      found += found_.row(p).transpose();
+    }
+    const Eigen::ArrayXd ratio = (found > 0.0).select(wanted / found.max(1e-300), 1.0);
+    return ratio.max(1.0 / most).min(most).cast<float>();
+  }
+
+ private:
+  static constexpr double most = 1.25;  // a larger factor means that elements are too large for it
+
+  Eigen::ArrayXXd wanted_, found_{};  // patches x bands
+  double least_ = 0.0;
+};
+
+// Irradiance of patches that have no light from behind or of their own, W/m^2, as their equations
+// balanced it, and 1 where it is known: both patches x columns.
+struct PatchIrradiance {
+  PatchIrradiance(const PatchMesh& mesh, const BandArray& radiosity)
+      : irradiance(BandArray::Zero(radiosity.rows(), radiosity.cols())), is_known(irradiance) {
+    const Eigen::Index bands = mesh.reflectance.cols();
+    for (int p = 0; p < mesh.patch_count(); ++p) {
+      if (mesh.patch_behind(p) >= 0 || (mesh.emission.row(p) > 0.0f).any()) continue;
+      for (Eigen::Index k = 0; k < radiosity.cols(); ++k) {
+        const float rho = mesh.reflectance(p, k % bands);
+        if (!(rho > 0.0f)) continue;
+        irradiance(p, k) = radiosity(p, k) / rho;
+        is_known(p, k) = 1.0f;
+      }
+    }
+  }
+
+  BandArray irradiance, is_known;
+};
+
 }  // namespace
 
 BandArray unscaled_radiosity(const RadiositySolution& solution) {
@@ -146,46 +210,72 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 
 void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
                 const BandArray& patch_radiosity, BandArray& radiosity) {
+  const BandArray unowned = without_owned_emission(mesh, direct_light, patch_radiosity);
+  const PatchPowers powers(mesh, unowned, radiosity);
   const Eigen::Index bands = mesh.reflectance.cols();
-  const BandArray balanced = channel_sum(
-      without_owned_emission(mesh, direct_light, patch_radiosity), static_cast<int>(bands));
-  const BandArray read = channel_sum(radiosity, static_cast<int>(bands));
-  Eigen::ArrayXXd wanted(mesh.patch_count(), bands);  // W
-  for (int p = 0; p < mesh.patch_count(); ++p) {
-    wanted.row(p) = mesh.area[p] * balanced.row(p).cast<double>();
-  }
-  const Eigen::ArrayXXd found = patch_integral(mesh, read);
-  constexpr double most = 1.25;  // a larger factor means that elements are too large to trust it
-  const auto ratio = [most](const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) -> Eigen::ArrayXd {
-    return (b > 0.0).select(a / b.max(1e-300), 1.0).max(1.0 / most).min(most);
-  };
-  const double least = notable_share(mesh) * wanted.sum();
-  const auto is_peak = [&](int p) {
-    return std::abs(wanted.row(p).sum() - found.row(p).sum()) > least;
-  };
   BandArray factor(mesh.patch_count(), bands);
   std::vector<int> others;
   for (int p = 0; p < mesh.patch_count(); ++p) {
-    if (is_peak(p)) {
-      factor.row(p) =
-          ratio(wanted.row(p).transpose(), found.row(p).transpose()).cast<float>().transpose();
+    if (powers.is_peak(p)) {
+      factor.row(p) = powers.factor(std::span(&p, 1)).transpose();
     } else {
       others.push_back(p);
     }
   }
   const PatchNeighbourhoods neighbourhoods(mesh);
   neighbourhoods.visit(others, [&](std::span<const int> patches) {
-    Eigen::ArrayXd all_wanted = Eigen::ArrayXd::Zero(bands), all_found = all_wanted;
-    for (const int p : patches) {
-      all_wanted += wanted.row(p).transpose();
-      all_found += found.row(p).transpose();
-    }
-    const Eigen::ArrayXf of_all = ratio(all_wanted, all_found).cast<float>();
+    const Eigen::ArrayXf of_all = powers.factor(patches);
     for (const int p : patches) factor.row(p) = of_all.transpose();
   });
   const BandArray at_vertices = to_vertices(mesh, factor);
   for (Eigen::Index k = 0; k < radiosity.cols(); k += bands) {
     radiosity.middleCols(k, bands) *= at_vertices;
+  }
+}
+
+namespace {
+
+// Patches whose light of lamps is a pool narrower than elements. Rays of lamps give the patches'
+// powers: an error of less than a hundred rays may be their noise, as where a lamp far away stands
+// for the sun and few of its rays meet the scene.
+std::vector<int> find_pools(const LitScene& lit, const PatchPowers& powers,
+                            const PatchIrradiance& balanced, int free_rays) {
+  const PatchMesh& mesh = lit.mesh();
+  double flux = 0.0;
+  for (const Lamp& lamp : lit.scene.lamps) flux += double{lamp_flux(lamp).sum()};
+  const double noise = 100.0 * flux / free_rays;
+  std::vector<int> pools;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const bool is_known = (balanced.is_known.row(p) > 0.0f).any();
+    const bool is_certain = powers.error(p) > noise * double{mesh.reflectance.row(p).maxCoeff()};
+    if (is_known && is_certain && powers.is_peak(p) && powers.is_pool(p)) pools.push_back(p);
+  }
+  return pools;
+}
+
+}  // namespace
+
+void spread_pools(const LitScene& lit, const BandArray& patch_radiosity, const BandArray& others,
+                  int free_rays, BandArray& direct) {
+  if (lit.scene.lamps.empty()) return;
+  const PatchMesh& mesh = lit.mesh();
+  const BandArray unowned = without_owned_emission(mesh, lit.direct_light, patch_radiosity);
+  const PatchPowers powers(mesh, unowned,
+                           gatherable_radiosity(mesh, lit.direct_light, direct + others, direct));
+  const PatchIrradiance balanced(mesh, unowned);
+  const std::vector<int> pools = find_pools(lit, powers, balanced, free_rays);
+  if (pools.empty()) return;
+  const BandArray known = to_vertices(mesh, balanced.is_known);
+  const BandArray even = to_vertices(mesh, balanced.irradiance);
+  for (const int p : pools) {
+    for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
+      for (int c = 0; c < mesh.corner_count(e); ++c) {
+        const int v = mesh.corners[e][c];
+        const auto is_known = known.row(v) > 0.0f;
+        const auto mean = even.row(v) / known.row(v).max(1e-30f);
+        direct.row(v) = is_known.select((mean - others.row(v)).max(0.0f), direct.row(v));
+      }
+    }
   }
 }
 

@@ -50,4 +50,20 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
                 const BandArray& patch_radiosity, BandArray& radiosity);
 
+/// Evens out pools of lamps' light that are narrower than elements. A lamp at a distance d from a
+/// surface lights a pool of a width of about 2 d, with an irradiance I / d^2 in its middle: without
+/// bound where a vertex lies there, and lost where none does.
+///
+/// A pool is a patch whose power, as `direct` and `others` make it, is off from that of
+/// `patch_radiosity` by a notable share of all power (see notable_share) and by more than a
+/// quarter: elements that resolve a pool err by some percent. An error within the noise of the
+/// lamps' rays is none. The vertices of pools get the mean irradiance that the patches' equations
+/// balanced, with `others` in it. Nothing changes in scenes without lamps, on sheets, which take
+/// light from two sides, on patches that shine, and in bands without reflection.
+///
+/// `patch_radiosity` (W/m^2, patches x columns) is at full scale, by `free_rays` rays of lamps (see
+/// cast_free_light); `direct` and `others`, W/m^2, are vertices x columns.
+void spread_pools(const LitScene& lit, const BandArray& patch_radiosity, const BandArray& others,
+                  int free_rays, BandArray& direct);
+
 }  // namespace lightwell

@@ -38,6 +38,13 @@ struct PilotGather {
   /// refinement.
   std::vector<int> number{};
   std::vector<int> gather_rays{};  ///< rays of the final gather in each part
+
+  /// Indirect light and caustics, W/m^2, vertices x columns.
+  BandArray beside_direct() const {
+    BandArray sum = indirect;
+    if (caustic.size() > 0) sum += caustic;
+    return sum;
+  }
 };
 
 /// Pilot gathers at the vertices of elements, which each call may refine further.

@@ -39,13 +39,17 @@ VertexGather gather_in(const VertexGatherTask& task, BandArray irradiance,
 }
 
 // The pilot gather's direct light, or a new gather if that one cast fewer shadow rays.
-BandArray final_direct(const LitScene& lit, const GatherOptions& options,
-                       const PilotGather& pilot) {
+BandArray final_direct(const LitScene& lit, const SolveOptions& of_solve, const PilotGather& pilot,
+                       const RadiositySolution& solution) {
+  const GatherOptions options = gather_options(of_solve);
   if (pilot.tree || (pilot.shadows.min_rays >= options.shadows.min_rays &&
                      pilot.shadows.max_rays >= options.shadows.max_rays)) {
     return pilot.direct;
   }
-  return direct_beside(lit, pilot.unread, options);
+  BandArray direct = direct_beside(lit, pilot.unread, options);
+  spread_pools(lit, unscaled_radiosity(solution), pilot.beside_direct(), of_solve.free_rays,
+               direct);
+  return direct;
 }
 
 void split_by_channel(RadiositySolution& solution) {
@@ -68,7 +72,7 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
   KeptGathers none;
   KeptGathers& so_far = kept ? *kept : none;
   carry_over(pilot.number, so_far);
-  solution.direct_irradiance = final_direct(lit, gather, pilot);
+  solution.direct_irradiance = final_direct(lit, options, pilot, solution);
   BandArray irradiance = with_indirect(pilot, pilot.indirect);
   if (pilot.tree) {
     // The final gather averages the noise of the second pilot gather over all directions, so few

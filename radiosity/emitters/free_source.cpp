@@ -94,7 +94,11 @@ double mean_kernel_of_disc(const Lamp& lamp, const Eigen::Vector3d& point,
 
 double kernel(const LampLight& light, const Eigen::Vector3d& point, const Eigen::Vector3d& normal) {
   const Lamp& lamp = light.lamp;
-  if (lamp.opening.is_point()) return point_kernel(lamp, lamp.position, point, normal);
+  if (lamp.opening.is_point()) {
+    // No ray of the lamp begins as near as that.
+    if (!((lamp.position - point).norm() > light.clearance)) return 0.0;
+    return point_kernel(lamp, lamp.position, point, normal);
+  }
   if (lamp.opening.is_round) return mean_kernel_of_disc(lamp, point, normal);
   return mean_kernel(lamp,
                      {.middle = lamp.position,
@@ -238,7 +242,9 @@ ShadowSample shadow_sample(const FreeSource& source, const SurfacePoint& at, dou
                   .direction = to,
                   .t_max = clear_share(light, distance),
                   .origin_group = facet},
-          .weight = point_kernel(light.lamp, on_lamp, point, normal)};
+          .weight = light.lamp.opening.is_point()
+                        ? kernel(light, point, normal)
+                        : point_kernel(light.lamp, on_lamp, point, normal)};
 }
 
 SourceRay source_ray(const FreeSource& source, const Eigen::Array4f& u) {

@@ -2,7 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <numbers>
+
 #include "mesh/build_patches.h"
+#include "radiosity/gather/patch_power.h"
+#include "radiosity/solve.h"
 #include "tests/radiosity/test_scenes.h"
 
 namespace lightwell::patch_light_test {
@@ -58,6 +63,40 @@ TEST(KeepPower, TrustsNoPatchAlone) {
   keep_power(mesh, sheets.direct_light, balanced, radiosity);
   EXPECT_NEAR(radiosity.maxCoeff(), 1.0f + error / 800.0f, 1e-5f);
   EXPECT_NEAR(radiosity.minCoeff(), 1.0f, 1e-5f);
+}
+
+// Mean irradiance of a closed cube of 1 m, reflectance 0.5, with a lamp of 4 pi W under its
+// ceiling, interpolated between vertices.
+double mean_irradiance(double below_ceiling, double x, double y) {
+  Scene scene;
+  std::array<int, 6> grey;
+  grey.fill(test::add_material(scene, test::diffuse(scene.bands, 0.5f)));
+  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, grey, true);
+  scene.lamps.push_back({.name = "bulb",
+                         .position = {x, y, 1.0 - below_ceiling},
+                         .axes = lamp_axes(-Eigen::Vector3d::UnitZ()),
+                         .intensity = constant_spectrum(scene.bands, 1.0f)});
+  SolveOptions options;
+  options.mesh.max_patch_size = 0.25;
+  options.refine.tolerance = 0.02;
+  options.gather.rays = 256;
+  const SolvedScene solved = solve_scene(scene, options);
+  const BandArray E = solved.solution.irradiance();
+  double area = 0.0;
+  for (int p = 0; p < solved.mesh.patch_count(); ++p) area += solved.mesh.area[p];
+  return patch_integral(solved.mesh, E).col(0).sum() / area;
+}
+
+// In a closed room of one reflectance all light is absorbed: A (1 - rho) E = flux, wherever the
+// light falls. The lamp's pool on the ceiling is 200 to 2 times narrower than an element.
+TEST(SpreadPools, KeepsTheFluxOfLampsThatTouchSurfaces) {
+  constexpr double E = 4.0 * std::numbers::pi / (6.0 * 0.5);
+  for (const double below : {1e-4, 1e-3, 1e-2}) {
+    for (const double off : {0.0, 0.07}) {
+      SCOPED_TRACE(testing::Message() << below << " m under the ceiling, " << off);
+      EXPECT_NEAR(mean_irradiance(below, 0.5 + off, 0.5 + off), E, 0.05 * E);
+    }
+  }
 }
 
 }  // namespace
