@@ -79,6 +79,10 @@ class InterpolationError {
   void gather(const std::vector<int>& vertices, std::span<const InterpolatedVertex> interpolated);
   /// VertexGathers::sharpen_sky().
   bool sharpen_sky(const std::vector<double>& left) { return gathers_.sharpen_sky(left); }
+  /// VertexGathers::noisy_sky_variance().
+  Eigen::ArrayXf noisy_sky_variance(const std::vector<int>& vertices) const {
+    return gathers_.noisy_sky_variance(vertices);
+  }
   /// Values gathered at vertices, in their order.
   GatheredIrradiance values(const std::vector<int>& vertices) const {
     return gathers_.values(vertices);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "radiosity/refine/cell_errors.h"
+#include "radiosity/refine/even_out_noise.h"
 #include "radiosity/refine/interpolation_error.h"
 #include "radiosity/refine/marking.h"
 
@@ -216,6 +217,17 @@ void add_shared(const InterpolationError& error, const PatchMesh& base, RefinedS
   result.predictions.insert(result.predictions.begin(), predictions.begin(), predictions.end());
 }
 
+// Lets vertices even out the noise of the sky's light among neighbours. On small elements it would
+// show as dots.
+void even_out_noisy_sky(const InterpolationError& error, RefinedSolution& result) {
+  Eigen::ArrayXf variance = error.noisy_sky_variance(result.refined.vertex);
+  if (!(variance > 0.0f).any()) return;
+  const PatchMesh& mesh = result.refined.mesh;
+  even_out_noise(mesh, {}, static_cast<int>(mesh.reflectance.cols()), result.pilot.direct,
+                 variance);
+  interpolate_vertices(result.unread, result.pilot.direct);
+}
+
 }  // namespace
 
 struct SolutionRefinement::Impl {
@@ -269,6 +281,7 @@ RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
     result.error[e] = refinement.cells().relative_error(cell, is_back_of_two ? 1 : 0);
   }
   add_shared(error, elements.base(), result);
+  even_out_noisy_sky(error, result);
   result.report.gathers = error.gathers();
   result.gather_rays = error.rays();
   return result;

@@ -17,7 +17,9 @@ namespace lightwell {
 /// Refined elements, and the pilot gather at their vertices.
 struct RefinedSolution {
   RefinedMesh refined{};
-  GatheredIrradiance pilot{};  ///< vertices x columns; direct light is as for the final solution
+  /// Vertices x columns; direct light is as for the final solution. Neighbours have evened out the
+  /// noise of the sky's light where more than asked for is left (see VertexEffort).
+  GatheredIrradiance pilot{};
   std::vector<InterpolatedVertex> interpolated{};  ///< without a final gather of indirect light
   std::vector<VertexPrediction> predictions{};     ///< see combine_with_predictions
   /// SharedGathers::unread, whose entries are also in `interpolated`, and SharedGathers::rough.

@@ -190,6 +190,16 @@ bool VertexGathers::sharpen_sky(const std::vector<double>& left) {
   return !vertices.empty();
 }
 
+Eigen::ArrayXf VertexGathers::noisy_sky_variance(const std::vector<int>& vertices) const {
+  Eigen::ArrayXf variance = Eigen::ArrayXf::Zero(static_cast<Eigen::Index>(vertices.size()));
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (effort_.sky_noise_multiple(vertices[i]) == 1) continue;
+    const double noise = visibility_[vertices[i]].drawn_noise;
+    variance[static_cast<Eigen::Index>(i)] = static_cast<float>(noise * noise);
+  }
+  return variance;
+}
+
 // One gather of indirect light, with the same random numbers all over a side of a surface; 0 where
 // no ray reads the light.
 GatheredIrradiance VertexGathers::indirect_at(const std::vector<int>& vertices,

@@ -58,6 +58,9 @@ class VertexGathers {
   /// of the scene in which that noise is notable beside the error that is left, relative to the
   /// part's mean. Returns whether there were such vertices.
   bool sharpen_sky(const std::vector<double>& left);
+  /// Variance of direct light where that of the sky has more noise than is asked for, mean of the
+  /// bands, (W/m^2)^2, in the order of `vertices`; 0 elsewhere.
+  Eigen::ArrayXf noisy_sky_variance(const std::vector<int>& vertices) const;
   /// Gathers indirect light, both times, at the vertices at which none was gathered yet.
   void gather_indirect_at(const std::vector<int>& vertices);
   /// Sets the indirect light of a vertex to the mean of its ends, if the light is unknown. Unknown
