@@ -1,6 +1,5 @@
 #include "radiosity/refine/cell_errors.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace lightwell {
@@ -24,16 +23,6 @@ void CellErrors::make_room() {
   state_.resize(elements_.cell_count(), State::unknown);
 }
 
-// Squared error times area, with half of what noise may hide.
-double CellErrors::square(int cell) const {
-  double sum = 0.0;
-  for (int side = 0; side < elements_.side_count(cell); ++side) {
-    const Square& at = squares_[elements_.side_number(cell, side)];
-    sum += double{at.known} + 0.5 * double{at.hidden};
-  }
-  return sum * elements_.area(cell);
-}
-
 void CellErrors::expect(int cell, const std::array<double, 2>& of_sides) {
   for (int side = 0; side < elements_.side_count(cell); ++side) {
     squares_[elements_.side_number(cell, side)] = {static_cast<float>(of_sides[side]), 0.0f};
@@ -42,14 +31,10 @@ void CellErrors::expect(int cell, const std::array<double, 2>& of_sides) {
 }
 
 void CellErrors::set_measured(int cell, const InterpolationError::Measured& squares) {
-  const bool is_of_start = elements_.level(cell) == 0;
-  if (is_of_start && state_[cell] == State::expected) expected_at_start_ += square(cell);
-  if (is_of_start && state_[cell] == State::stale) found_at_start_ -= square(cell);
   for (int side = 0; side < elements_.side_count(cell); ++side) {
     squares_[elements_.side_number(cell, side)] = {static_cast<float>(squares.error[side]),
                                                    static_cast<float>(squares.hidden[side])};
   }
-  if (is_of_start) found_at_start_ += square(cell);
   state_[cell] = State::measured;
 }
 
@@ -85,9 +70,7 @@ double CellErrors::counted(int cell, int part, double allowed) const {
 }
 
 double CellErrors::share_left(int cell) const {
-  if (state_[cell] != State::expected) return 1.0;
-  if (elements_.level(cell) > 0) return in_the_end_;
-  return expected_at_start_ > 0.0 ? std::min(found_at_start_ / expected_at_start_, 1.0) : 1.0;
+  return is_measured(cell) || elements_.level(cell) == 0 ? 1.0 : in_the_end_;
 }
 
 float CellErrors::relative_error(int cell, int side) const {

@@ -18,10 +18,9 @@ class CellErrors {
   /// smooth light, a half along the edge of a shadow, for which most cells (not all) are split.
   static constexpr double of_a_split = 0.4;
 
-  /// Cells of the start are taken to be as bad as InterpolationError::expected() says until they
-  /// are measured. If refinement `may_go_on` later, children are expected to have of_a_split of
-  /// their parent's squared error. Otherwise they are taken to be as bad as their parent. In both
-  /// cases share_left() expects less.
+  /// If refinement `may_go_on` later, children are expected to have of_a_split of their parent's
+  /// squared error. Otherwise they are taken to be as bad as their parent until they are measured,
+  /// and share_left() alone expects less.
   CellErrors(const RefinedElements& elements, const SceneParts& parts, bool may_go_on);
 
   /// Sets the squared errors that are expected of a cell of the start.
@@ -32,9 +31,7 @@ class CellErrors {
   void expect_of_parents();
   bool is_measured(int cell) const { return state_[cell] == State::measured; }
   /// Asks for another measurement of a cell; its errors stay until then.
-  void measure_again(int cell) {
-    if (is_measured(cell)) state_[cell] = State::stale;
-  }
+  void measure_again(int cell) { state_[cell] = State::expected; }
 
   /// Squared error times area of the sides of a cell in a part, weighted by their importance. The
   /// error that noise may hide in a cell is nothing for the most part, and counts only if it could
@@ -48,9 +45,7 @@ class CellErrors {
     if (elements_.side_count(cell) < 2) return;
     if (const int second = part_of(cell, 1); second != first) visit(second);
   }
-  /// The share of a cell's squared error that is expected to be there when nothing is split any
-  /// more: of cells of the start that are not measured, what measured ones have of what was
-  /// expected of them.
+  /// The share of a cell's squared error that is there when nothing is split any more.
   double share_left(int cell) const;
   /// RMS error of a side when nothing is split any more; includes half of the squared error that
   /// noise may hide, which is between none and all of it.
@@ -61,7 +56,6 @@ class CellErrors {
     float known = 0.0f, hidden = 0.0f;
   };
   void make_room();
-  double square(int cell) const;
   int part_of(int cell, int side) const {
     return parts_.group_of(elements_.base().patch[elements_.element(cell, side)]);
   }
@@ -70,10 +64,8 @@ class CellErrors {
   const SceneParts& parts_;
   double of_children_, in_the_end_;
   std::vector<Square> squares_{};  // per side
-  enum class State : char { unknown, expected, stale, measured };
+  enum class State : char { unknown, expected, measured };
   std::vector<State> state_{};  // per cell
-  // Squared errors times area of the measured cells of the start, m^2: expected, and found.
-  double expected_at_start_ = 0.0, found_at_start_ = 0.0;
 };
 
 }  // namespace lightwell
