@@ -157,6 +157,9 @@ TEST(VirtualLights, GiveWhatAConvergedGatherGives) {
   const TracedScene lit = mixed_room();
   const SolvedScene solved = solve_scene(lit.scene, {.accuracy = Accuracy{.share = 0.01}});
   const auto caustics = trace_caustics(lit.scene, lit.caster, lit.direct_light, 1 << 18, 10);
+  // Few sets bring most of the light behind the sheet: 24 sets gave 9 % less than 96 there, more
+  // than three of the standard errors that they estimate.
+  constexpr int sets = 96;
   // On the floor in the open, behind the sheet, beside the mirror and in a corner.
   for (const Vector3d& p : {Vector3d(1.2, 2.0, 0), Vector3d(2.1, 0.2, 0), Vector3d(0.2, 1.5, 0),
                             Vector3d(2.95, 2.95, 0)}) {
@@ -164,7 +167,7 @@ TEST(VirtualLights, GiveWhatAConvergedGatherGives) {
     ElementHit floor;
     lit.caster.closest_hits({&down, 1}, {&floor, 1});
     const test::SampleMean E =
-        irradiance_over_sets(lit, {p, Vector3d::UnitZ(), floor.facet}, 400, 24, caustics);
+        irradiance_over_sets(lit, {p, Vector3d::UnitZ(), floor.facet}, 400, sets, caustics);
     const ElementCaster caster(solved.mesh);
     ElementHit hit;
     caster.closest_hits({&down, 1}, {&hit, 1});
