@@ -55,19 +55,20 @@ class VertexEffort {
   /// The noise that the sky's light may have at a vertex: more where fewer rays are cast than at a
   /// part's typical vertices, and where errors matter less for what somebody looks at.
   NoiseGoal sky_noise(int vertex) const;
-  /// The multiple of the noise asked for: one of `multiples`.
+  /// Noise of the sky's light at a vertex over the noise asked for: one of `multiples`.
   int sky_noise_multiple(int vertex) const {
     return sky_noise_multiple_[static_cast<std::size_t>(vertex)];
   }
   static constexpr int multiples[] = {1, 2, 4};
-  /// Takes a multiple of 1 at all vertices of the parts in which more noise is notable beside the
-  /// error that is `left`, relative to the part's mean. Returns the vertices with their multiples
-  /// of before; keep_sky_noise() takes one back.
+  /// A vertex whose sky noise has a multiple of 1 now, and its multiple of before.
   struct Sharpened {
     int vertex = 0;
     std::uint8_t multiple = 1;
   };
+  /// Takes a multiple of 1 at all vertices of the parts in which more noise is notable beside the
+  /// error that is `left` in each part, relative to the part's mean. Returns these vertices.
   std::vector<Sharpened> sharpen_sky(const std::vector<double>& left);
+  /// Gives a vertex its multiple of before back.
   void keep_sky_noise(const Sharpened& at) {
     sky_noise_multiple_[static_cast<std::size_t>(at.vertex)] = at.multiple;
   }
