@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <functional>
 #include <map>
 #include <optional>
@@ -57,6 +58,14 @@ double number_in(const TextFile& file, int line, const std::vector<std::string_v
   return *value;
 }
 
+// Number of a type of facets, which uDALES writes whole.
+int type_in(const TextFile& file, int line, const std::vector<std::string_view>& words) {
+  constexpr double largest = 1e6;  // more types than facets of any case
+  const double number = number_in(file, line, words, 0);
+  if (std::abs(number) <= largest && number == std::floor(number)) return static_cast<int>(number);
+  file.fail(line, fmt::format("{:g} is no type of facets; types are whole numbers", number));
+}
+
 // Albedos by the number of the type of facets.
 std::map<int, double> read_albedos_of_types(const TextFile& file) {
   constexpr std::size_t albedo_column = 4;
@@ -67,7 +76,7 @@ std::map<int, double> read_albedos_of_types(const TextFile& file) {
       file.fail(line,
                 fmt::format("the albedo is {:g}; it lies from 0 to {:g}", albedo, highest_albedo));
     }
-    albedos[static_cast<int>(number_in(file, line, words, 0))] = albedo;
+    albedos[type_in(file, line, words)] = albedo;
   });
   return albedos;
 }
@@ -81,7 +90,7 @@ Eigen::ArrayXd read_udales_albedos(const std::filesystem::path& folder, const st
   const std::map<int, double> albedos = read_albedos_of_types(types);
   std::vector<double> of_facets;
   for_each_row(facets, [&](int line, const std::vector<std::string_view>& words) {
-    const int type = static_cast<int>(number_in(facets, line, words, 0));
+    const int type = type_in(facets, line, words);
     const auto found = albedos.find(type);
     if (found == albedos.end()) {
       facets.fail(line, fmt::format("the facet has the type {}, which {} does not have", type,

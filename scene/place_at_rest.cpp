@@ -23,10 +23,9 @@ void place(Camera& camera, const Eigen::Isometry3d& to) {
   camera.up = to.linear() * camera.up;
 }
 
-// Pose of a camera's motion at its rest time.
-Eigen::Isometry3d rest_pose(const Scene& scene, const Camera& camera) {
-  if (camera.motion < 0) return Eigen::Isometry3d::Identity();
-  const RigidMotion& motion = scene.motions[static_cast<std::size_t>(camera.motion)];
+// Pose of a motion of the scene at its rest time.
+Eigen::Isometry3d rest_pose(const Scene& scene, int number) {
+  const RigidMotion& motion = scene.motions[static_cast<std::size_t>(number)];
   return motion.pose(motion.rest_time);
 }
 
@@ -34,27 +33,24 @@ Eigen::Isometry3d rest_pose(const Scene& scene, const Camera& camera) {
 
 void place_at_rest(Scene& scene, double time) {
   for (RigidMotion& motion : scene.motions) motion.rest_time = time;
-  const auto pose = [&](int motion) {
-    return scene.motions[static_cast<std::size_t>(motion)].pose(time);
-  };
   for (Surface& surface : scene.surfaces) {
     if (surface.motion < 0) continue;
     if (auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
-      place(*mesh, pose(surface.motion));
+      place(*mesh, rest_pose(scene, surface.motion));
     } else {
-      set_shape(surface, moved(*round_shape(surface), pose(surface.motion)));
+      set_shape(surface, moved(*round_shape(surface), rest_pose(scene, surface.motion)));
     }
   }
   for (Camera& camera : scene.cameras) place_at_rest(scene, camera);
 }
 
 void place_at_rest(const Scene& scene, Camera& camera) {
-  if (camera.motion >= 0) place(camera, rest_pose(scene, camera));
+  if (camera.motion >= 0) place(camera, rest_pose(scene, camera.motion));
 }
 
 Camera placed_as_in_file(const Scene& scene, const Camera& camera) {
   Camera moved = camera;
-  if (camera.motion >= 0) place(moved, rest_pose(scene, camera).inverse());
+  if (camera.motion >= 0) place(moved, rest_pose(scene, camera.motion).inverse());
   return moved;
 }
 

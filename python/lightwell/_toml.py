@@ -17,6 +17,8 @@ def toml_text(tables: Mapping[str, Any]) -> str:
 
 def toml_string(text: str) -> str:
     """A string of TOML, which has JSON's escapes but for pairs of surrogates, and escapes DEL too."""
+    if any("\ud800" <= character <= "\udfff" for character in text):
+        raise InputError(f"the text {text!r} holds half of a pair of surrogates, which is no character")
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007F")
 
 
@@ -42,7 +44,13 @@ def _key(key: Any) -> str:
     return toml_string(key)
 
 
-def _value(name: str, value: Any) -> str:
+MOST_LEVELS = 100
+"""Levels of lists and dictionaries in each other; tables of a scene have few."""
+
+
+def _value(name: str, value: Any, level: int = 0) -> str:
+    if level > MOST_LEVELS:
+        raise InputError(f"{name} has more than {MOST_LEVELS} levels of lists and dictionaries")
     if isinstance(value, (np.ndarray, np.generic)):
         value = value.tolist()
     if isinstance(value, os.PathLike):
@@ -58,10 +66,10 @@ def _value(name: str, value: Any) -> str:
     if isinstance(value, float):
         return repr(value)
     if isinstance(value, Mapping):
-        pairs = (f"{_key(key)} = {_value(key, each)}" for key, each in value.items() if each is not None)
+        pairs = (f"{_key(key)} = {_value(key, each, level + 1)}" for key, each in value.items() if each is not None)
         return "{ " + ", ".join(pairs) + " }"
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join(_value(name, each) for each in value) + "]"
+        return "[" + ", ".join(_value(name, each, level + 1) for each in value) + "]"
     raise InputError(
         f"{name} has a value of type {type(value).__name__}; numbers, text, lists, arrays and dictionaries are known"
     )

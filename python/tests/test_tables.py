@@ -145,7 +145,12 @@ class WholeRooms(unittest.TestCase):
 class Refused(unittest.TestCase):
     def test_with_a_sentence(self):
         grey = {"name": "grey", "reflectance": 0.5}
+        deep: list = []
+        for _ in range(5000):
+            deep = [deep]
         for options, sentence in (
+            ({"grids": {"surface": "floor", "height": deep}}, "more than 100 levels"),
+            ({"sky": {"kind": "\ud800"}}, "half of a pair of surrogates"),
             ({"lamps": {"postion": (0, 0, 1), "lumens": 1}}, "unknown key 'postion'.*position"),
             ({"lamps": {"file": "none.ies", "position": (1, 1, 1)}}, "none.ies: there is no such file"),
             ({"lamps": "panel.ies"}, "lamps is 'panel.ies'; a list of dictionaries is needed"),

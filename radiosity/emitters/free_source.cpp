@@ -237,14 +237,12 @@ ShadowSample shadow_sample(const FreeSource& source, const SurfacePoint& at, dou
   const Eigen::Vector3d on_lamp = opening_point(light.lamp, u, v);
   const Eigen::Vector3d to = on_lamp - point;
   const double distance = to.norm();
-  if (!(distance > 0.0)) return {};
+  if (!(distance > light.clearance)) return {};  // no ray of the lamp begins as near
   return {.ray = {.origin = point,
                   .direction = to,
                   .t_max = clear_share(light, distance),
                   .origin_group = facet},
-          .weight = light.lamp.opening.is_point()
-                        ? kernel(light, point, normal)
-                        : point_kernel(light.lamp, on_lamp, point, normal)};
+          .weight = point_kernel(light.lamp, on_lamp, point, normal)};
 }
 
 SourceRay source_ray(const FreeSource& source, const Eigen::Array4f& u) {

@@ -52,7 +52,7 @@ class Marking {
   int max_level_;
   double smallest_;  // area, m^2, above which cells may be split
   double of_children_;
-  // Of each part; squared errors of all leaves, and of those that are measured.
+  // Squared errors of each part: allowed, of all leaves, and of the leaves that are measured.
   std::vector<double> allowed_, sum_, measured_;
 };
 

@@ -27,9 +27,9 @@ class Shortwave : public CommandTest {
   Ended shortwave(const std::vector<std::string>& options) {
     return run(std::vector<std::string>{"shortwave", "street.obj", "-o", "k.csv"} + options);
   }
-  // The numbers of k.csv from column `first` on, by row.
-  std::vector<std::vector<double>> table(std::size_t first) {
-    std::istringstream lines(content_of(folder / "k.csv"));
+  // The numbers of a file from column `first` on, by row.
+  std::vector<std::vector<double>> table(std::size_t first, const char* file = "k.csv") {
+    std::istringstream lines(content_of(folder / file));
     std::vector<std::vector<double>> rows;
     std::string line;
     std::getline(lines, line);
@@ -112,6 +112,10 @@ TEST_F(Shortwave, FacetsHaveTheAlbedosOfTheirTypesInACaseOfUdales) {
   EXPECT_TRUE(says(shortwave(wanted).err, "factypes.inp.001:1: the albedo is 1.5"));
   folder.write("case/factypes.inp.001", "1 0 0.05 0.0004\n");
   EXPECT_TRUE(says(shortwave(wanted).err, "needs a number in column 5"));
+  for (const char* number : {"1e300", "1.5"}) {
+    folder.write("case/factypes.inp.001", std::string(number) + " 0 0.05 0.0004 0.5\n");
+    EXPECT_TRUE(says(shortwave(wanted).err, "is no type of facets"));
+  }
 }
 
 TEST_F(Shortwave, TheZenithIsThatOfTheOption) {
@@ -209,13 +213,7 @@ TEST_F(Shortwave, HoursUnderPerezSkyLightOpenGroundAsTheWeatherHasIt) {
   ASSERT_EQ(ended.code, 0) << ended.err;
   EXPECT_EQ(nlohmann::json::parse(ended.out)["sky"], "perez");
   const auto rows = table(5);
-  std::istringstream lines(content_of(folder / "q.csv"));
-  std::string line;
-  std::getline(lines, line);
-  std::getline(lines, line);
-  std::istringstream parts(line);
-  std::vector<double> cells;
-  for (std::string cell; std::getline(parts, cell, ',');) cells.push_back(std::stod(cell));
+  const std::vector<double> cells = table(0, "q.csv").at(0);
   ASSERT_EQ(cells.size(), 11u);
   // Sums of 577 floats in each of 16 hours of 100 W/m2, in kWh/m2.
   EXPECT_NEAR(cells[8], 1.6, 1.6 * 2 * 577 * 0x1p-24);
@@ -241,13 +239,7 @@ TEST_F(Shortwave, PointsOfAnInstantHaveSunSkyAndReflections) {
       shortwave({"--albedo", "0.3", "--sun", "45,90", "--direct", "800", "--diffuse", "100",
                  "--points", "p.csv", "--points-output", "q.csv"});
   ASSERT_EQ(ended.code, 0) << ended.err;
-  std::istringstream lines(content_of(folder / "q.csv"));
-  std::string line;
-  std::getline(lines, line);
-  std::getline(lines, line);
-  std::istringstream parts(line);
-  std::vector<double> cells;
-  for (std::string cell; std::getline(parts, cell, ',');) cells.push_back(std::stod(cell));
+  const std::vector<double> cells = table(0, "q.csv").at(0);
   ASSERT_EQ(cells.size(), 11u);
   // Five metres below the tops the sky ends at atan(5 / 10) above the horizon.
   const double sky = 0.5 * (1.0 - 5.0 / std::hypot(5.0, 10.0));

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <string>
+#include <string_view>
 
 #include "scene/errors.h"
 
@@ -11,22 +13,24 @@ namespace {
 
 // The parser calls itself for each part of a dotted key, and has no limit. Keys of a scene have few
 // parts.
-void refuse_deep_keys(const TextFile& file) {
+void refuse_deep_keys(std::string_view text, const std::string& file) {
   constexpr std::ptrdiff_t most_parts = 100;
-  file.for_each_line([&](int line, std::string_view text) {
-    constexpr std::string_view in_keys =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.\"'[] \t";
+  constexpr std::string_view in_keys =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-.\"'[] \t";
+  for (int line = 1; !text.empty(); ++line) {
     const std::string_view key = text.substr(0, text.find_first_not_of(in_keys));
-    if (std::ranges::count(key, '.') < most_parts) return;
-    throw InputError(fmt::format("{}:{}: the key has more than {} parts", file.path().string(),
-                                 line, most_parts));
-  });
+    if (std::ranges::count(key, '.') >= most_parts) {
+      throw InputError(fmt::format("{}{}: the key has more than {} parts",
+                                   file.empty() ? "" : file + ":", line, most_parts));
+    }
+    text.remove_prefix(std::min(text.find('\n'), text.size() - 1) + 1);
+  }
 }
 
 }  // namespace
 
 toml::table parse_toml(const TextFile& file) {
-  refuse_deep_keys(file);
+  refuse_deep_keys(file.text(), file.path().string());
   try {
     return toml::parse(file.text(), file.path().string());
   } catch (const toml::parse_error& error) {
@@ -36,6 +40,7 @@ toml::table parse_toml(const TextFile& file) {
 }
 
 toml::table parse_toml_text(const std::string& text) {
+  refuse_deep_keys(text, {});
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {

@@ -12,7 +12,8 @@ namespace lightwell {
 /// that the parser would exhaust the stack.
 toml::table parse_toml(const TextFile& file);
 
-/// The same for a text that a program made. Throws InputError "line:column: fault".
+/// The same for a text in memory. Throws InputError "line:column: fault", or "line: fault" for such
+/// a key.
 toml::table parse_toml_text(const std::string& text);
 
 }  // namespace lightwell

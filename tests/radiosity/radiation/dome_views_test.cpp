@@ -61,8 +61,8 @@ Expected expected(const SunAndSky& light, const std::function<double(const Eigen
                 .scale = Spectrum::Ones(1)};
   const auto L = [&](const Eigen::Vector3d& d) { return double{sky_radiance(sky, d)[0]}; };
   const double ground = over_dome([&](const Eigen::Vector3d& d) { return L(d) * d.z(); });
-  // Of independent rays, a patch of the share F that is open to v has the variance v (1 - v) / (N
-  // F); it counts with F pi L.
+  // The variance of N independent rays is v (1 - v) / (N F) for a patch of the share F that is open
+  // to v; the patch counts with F pi L.
   double variance = 0.0;
   Expected of;
   of.irradiance = light.diffuse / ground *

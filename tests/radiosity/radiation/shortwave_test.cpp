@@ -212,7 +212,8 @@ TEST(ShortwaveModel, SumsHoursUnderPerezSkyAsSingleSolvesDo) {
   for (std::size_t h = 0; h < hours.size(); ++h) {
     model.run(std::span(hours).subspan(h, 1), albedo, rays_of_many_suns, add_to(alone));
   }
-  EXPECT_LT((sum / alone - 1.0).abs().maxCoeff(), 1e-6);
+  // Both solve the same equations, with an error of 1e-8 each (see least_change in shortwave.cpp).
+  EXPECT_LT((sum / alone - 1.0).abs().maxCoeff(), 2e-8);
 }
 
 TEST(ShortwaveModel, NeedsTheDomeForSkiesThatAreNotEven) {
