@@ -19,7 +19,7 @@ using std::numbers::pi;
 constexpr int first_dome_rays = 1024, rays_of_a_facet = 4096, dome_rays_of_a_point = 16384;
 constexpr std::size_t dome_batch = 64;
 
-/// A ray, drawn by four numbers in [0, 1).
+// Draws a ray by four numbers in [0, 1).
 using DrawRay = std::function<Ray(const Eigen::Array4f&)>;
 
 // Rays towards each patch of the dome, and those of them that nothing stops.

@@ -12,7 +12,8 @@
 namespace lightwell {
 
 /// Shares of what rows or points send out that reach each patch of the sky, a line for each: with
-/// patches of radiance L, irradiance is pi sum_p L_p views(i, p).
+/// patches of radiance L, irradiance is pi sum_p L_p views(i, p). With 577 patches a line takes
+/// 2.3 kB.
 using DomeViews = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Views of the dome from rows. Lines add up to the rows' sky view factors, `sky_view`.
