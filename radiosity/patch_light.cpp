@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
@@ -82,49 +81,17 @@ class PatchNeighbourhoods {
   std::vector<Coordinates> coordinates_;
 };
 
-// The power of each patch, W per band, all channels added.
-class PatchPowers {
- public:
-  PatchPowers(const PatchMesh& mesh, const BandArray& of_patches, const BandArray& at_vertices)
-      : wanted_(mesh.patch_count(), mesh.reflectance.cols()) {
-    const auto bands = static_cast<int>(mesh.reflectance.cols());
-    const BandArray balanced = channel_sum(of_patches, bands);
-    for (int p = 0; p < mesh.patch_count(); ++p) {
-      wanted_.row(p) = mesh.area[p] * balanced.row(p).cast<double>();
-    }
-    found_ = patch_integral(mesh, channel_sum(at_vertices, bands));
-    least_ = notable_share(mesh) * wanted_.sum();
+// Powers by radiosities of patches and of vertices, W/m^2 of every channel; all channels added.
+PatchPowers powers_of(const PatchMesh& mesh, const BandArray& of_patches,
+                      const BandArray& at_vertices) {
+  const auto bands = static_cast<int>(mesh.reflectance.cols());
+  const BandArray B = channel_sum(of_patches, bands);
+  Eigen::ArrayXXd balanced(mesh.patch_count(), bands);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    balanced.row(p) = mesh.area[p] * B.row(p).cast<double>();
   }
-
-  // True if the patch's power is off by a notable share of all power.
-  bool is_peak(int p) const { return error(p) > least_; }
-
-  // True if the power is off by more than factor() restores.
-  bool is_pool(int p) const {
-    const double wanted = wanted_.row(p).sum(), found = found_.row(p).sum();
-    return wanted > most * found || found > most * wanted;
-  }
-
-  // Watts by which the power is off.
-  double error(int p) const { return std::abs(wanted_.row(p).sum() - found_.row(p).sum()); }
-
-  // Factor of each band that gives some patches the power that their equations balanced.
-  Eigen::ArrayXf factor(std::span<const int> patches) const {
-    Eigen::ArrayXd wanted = Eigen::ArrayXd::Zero(wanted_.cols()), found = wanted;
-    for (const int p : patches) {
-      wanted += wanted_.row(p).transpose();
-      found += found_.row(p).transpose();
-    }
-    const Eigen::ArrayXd ratio = (found > 0.0).select(wanted / found.max(1e-300), 1.0);
-    return ratio.max(1.0 / most).min(most).cast<float>();
-  }
-
- private:
-  static constexpr double most = 1.25;  // a larger factor means that elements are too large for it
-
-  Eigen::ArrayXXd wanted_, found_{};  // patches x bands
-  double least_ = 0.0;
-};
+  return {mesh, std::move(balanced), patch_integral(mesh, channel_sum(at_vertices, bands))};
+}
 
 // Irradiance of patches that have no light from behind or of their own, W/m^2, as their equations
 // balanced it, and 1 where it is known: both patches x columns.
@@ -211,7 +178,7 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
                 const BandArray& patch_radiosity, BandArray& radiosity) {
   const BandArray unowned = without_owned_emission(mesh, direct_light, patch_radiosity);
-  const PatchPowers powers(mesh, unowned, radiosity);
+  const PatchPowers powers = powers_of(mesh, unowned, radiosity);
   const Eigen::Index bands = mesh.reflectance.cols();
   BandArray factor(mesh.patch_count(), bands);
   std::vector<int> others;
@@ -260,21 +227,18 @@ void spread_pools(const LitScene& lit, const BandArray& patch_radiosity, const B
   if (lit.scene.lamps.empty()) return;
   const PatchMesh& mesh = lit.mesh();
   const BandArray unowned = without_owned_emission(mesh, lit.direct_light, patch_radiosity);
-  const PatchPowers powers(mesh, unowned,
-                           gatherable_radiosity(mesh, lit.direct_light, direct + others, direct));
+  const PatchPowers powers = powers_of(
+      mesh, unowned, gatherable_radiosity(mesh, lit.direct_light, direct + others, direct));
   const PatchIrradiance balanced(mesh, unowned);
   const std::vector<int> pools = find_pools(lit, powers, balanced, free_rays);
   if (pools.empty()) return;
   const BandArray known = to_vertices(mesh, balanced.is_known);
   const BandArray even = to_vertices(mesh, balanced.irradiance);
   for (const int p : pools) {
-    for (int e = mesh.first_element[p]; e < mesh.first_element[p + 1]; ++e) {
-      for (int c = 0; c < mesh.corner_count(e); ++c) {
-        const int v = mesh.corners[e][c];
-        const auto is_known = known.row(v) > 0.0f;
-        const auto mean = even.row(v) / known.row(v).max(1e-30f);
-        direct.row(v) = is_known.select((mean - others.row(v)).max(0.0f), direct.row(v));
-      }
+    for (const int v : corners_of_patch(mesh, p)) {
+      const auto is_known = known.row(v) > 0.0f;
+      const auto mean = even.row(v) / known.row(v).max(1e-30f);
+      direct.row(v) = is_known.select((mean - others.row(v)).max(0.0f), direct.row(v));
     }
   }
 }
