@@ -1,7 +1,6 @@
 #include "mesh/geometry/box_tree.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <numeric>
 
@@ -43,8 +42,7 @@ template <class Meets>
 bool BoxTree::collect(const Meets& meets, std::int64_t& visits, std::vector<int>& found) const {
   found.clear();
   if (nodes_.empty()) return true;
-  // The tree halves at every level, so its depth stays below 32 for any int count.
-  std::array<int, 64> stack;
+  std::array<int, deepest> stack;
   int depth = 0;
   stack[depth++] = 0;
   while (depth > 0) {
@@ -75,7 +73,15 @@ void BoxTree::find(const Meets& meets, std::vector<int>& found) const {
 }
 
 void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
-  find([&](const Box& box) { return box.intersects(query); }, found);
+  // Box::intersects() compares all axes before it answers, which takes most of the time here.
+  const Eigen::Vector3d low = query.min(), high = query.max();
+  const auto meets = [&](const Box& box) {
+    for (int c = 0; c < 3; ++c) {
+      if (!(box.min()[c] <= high[c] && low[c] <= box.max()[c])) return false;
+    }
+    return true;
+  };
+  find(meets, found);
 }
 
 void BoxTree::find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,8 +32,15 @@ class BoxTree {
   /// empty, if `visits` did not suffice.
   bool find_along(const Eigen::Vector3d& a, const Eigen::Vector3d& b, double reach,
                   std::int64_t& visits, std::vector<int>& found) const;
+  /// Calls visit(i) for boxes at most sqrt(`reach2`) metres from a point, parts of the tree that
+  /// lie nearer first. `visit` may lower `reach2`, as a search for the nearest does.
+  template <class Visit>
+  void visit_near(const Eigen::Vector3d& from, const double& reach2, Visit&& visit) const;
 
  private:
+  /// The tree halves at every level, so its depth stays below 32 for any int count, and a search
+  /// that keeps one node of each level has room.
+  static constexpr std::size_t deepest = 64;
   struct Node {
     Box box{};
     int begin = 0, end = 0;  ///< a range of order_
@@ -50,5 +58,36 @@ class BoxTree {
   std::vector<int> order_;
   std::vector<Node> nodes_;
 };
+
+template <class Visit>
+void BoxTree::visit_near(const Eigen::Vector3d& from, const double& reach2, Visit&& visit) const {
+  if (nodes_.empty()) return;
+  struct Branch {
+    int node = 0;
+    double distance2 = 0.0;
+  };
+  const auto branch = [&](int node) {
+    return Branch{node, nodes_[static_cast<std::size_t>(node)].box.squaredExteriorDistance(from)};
+  };
+  std::array<Branch, deepest> stack;
+  std::size_t depth = 0;
+  stack[depth++] = branch(0);
+  while (depth > 0) {
+    const Branch next = stack[--depth];
+    if (next.distance2 > reach2) continue;
+    const Node& node = nodes_[static_cast<std::size_t>(next.node)];
+    if (node.right != 0) {
+      const Branch left = branch(next.node + 1), right = branch(node.right);
+      const bool is_left_nearer = left.distance2 <= right.distance2;
+      stack[depth++] = is_left_nearer ? right : left;
+      stack[depth++] = is_left_nearer ? left : right;
+      continue;
+    }
+    for (int i = node.begin; i < node.end; ++i) {
+      const int box = order_[static_cast<std::size_t>(i)];
+      if (boxes_[static_cast<std::size_t>(box)].squaredExteriorDistance(from) <= reach2) visit(box);
+    }
+  }
+}
 
 }  // namespace lightwell

@@ -83,21 +83,18 @@ Vector3d NearestSurface::nearest_of(const Shape& shape, const Vector3d& from) {
 
 std::optional<Vector3d> NearestSurface::find(const Vector3d& from, double within) const {
   if (!tree_) return std::nullopt;
-  const Vector3d reach = Vector3d::Constant(within);
-  thread_local std::vector<int> found;
-  tree_->find_overlaps(BoxTree::Box(from - reach, from + reach), found);
   std::optional<Vector3d> nearest;
   double least = within * within;
-  for (const int i : found) {
-    const Shape& shape = shapes_[static_cast<std::size_t>(i)];
-    if (shape.box.squaredExteriorDistance(from) >= least) continue;
-    const Vector3d at = nearest_of(shape, from);
+  int number = -1;  // of equally near shapes, the first counts in whatever order they are visited
+  tree_->visit_near(from, least, [&](int i) {
+    const Vector3d at = nearest_of(shapes_[static_cast<std::size_t>(i)], from);
     const double distance2 = (at - from).squaredNorm();
-    if (distance2 < least) {
+    if (distance2 < least || (nearest && distance2 == least && i < number)) {
       least = distance2;
+      number = i;
       nearest = at;
     }
-  }
+  });
   return nearest;
 }
 

@@ -86,5 +86,34 @@ TEST(BoxTree, FindsWhatReachesBeforeAllPlanes) {
   }
 }
 
+TEST(BoxTree, VisitsTheBoxesAroundAPoint) {
+  std::vector<BoxTree::Box> boxes;
+  for (int i = 0; i < 500; ++i) boxes.push_back(random_box(i, i % 7 == 0 ? 0.9 : 0.02));
+  const BoxTree tree(boxes);
+  for (int q = 0; q < 100; ++q) {
+    const Vector3d from = 2.0 * random_box(200000 + q, 0.0).min();
+    double fixed = 0.04;
+    std::vector<int> found, expected;
+    tree.visit_near(from, fixed, [&](int i) { found.push_back(i); });
+    std::ranges::sort(found);
+    for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
+      if (boxes[i].squaredExteriorDistance(from) <= fixed) expected.push_back(i);
+    }
+    EXPECT_EQ(found, expected);
+
+    double least = 100.0, nearest = 100.0;
+    int visited = 0;
+    tree.visit_near(from, least, [&](int i) {
+      ++visited;
+      least = std::min(least, boxes[i].squaredExteriorDistance(from));
+    });
+    for (const BoxTree::Box& box : boxes) {
+      nearest = std::min(nearest, box.squaredExteriorDistance(from));
+    }
+    EXPECT_EQ(least, nearest);
+    EXPECT_LT(visited, 500);  // a search that visits all boxes is none
+  }
+}
+
 }  // namespace
 }  // namespace lightwell::box_tree_test
