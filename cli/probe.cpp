@@ -101,7 +101,7 @@ int probe(const ProbeArguments& arguments, Console& console) {
     irradiance = interpolate_irradiance(caster, solved.solution, probes);
     lux_within = interpolation_bound(caster, solved.solution, probes);
   } else {
-    const DirectLight direct_light(scene, solved.mesh);
+    const DirectLight direct_light(scene, caster);
     ProbeBounds bounds{.accuracy = arguments.accuracy};
     irradiance = probe_irradiance(scene, caster, direct_light, solved.solution, probes,
                                   {.rays = arguments.rays, .run = {.progress = console.progress()}},

@@ -16,7 +16,7 @@ MeasuredLight::MeasuredLight(const ReportedScene& of, SolvedScene& solved, Light
       solved_(solved),
       places_(std::move(places)),
       caster_(solved.mesh),
-      tables_(of.scene, solved.mesh) {
+      tables_(of.scene, caster_) {
   const Eigen::Vector3d up = guess_up_axis(scene_.cameras, mesh_bounds(solved.mesh));
   const Scene named = of.names ? of.names->apart(scene_) : scene_;
   // Grids leave out others by their places in the whole list.

@@ -12,7 +12,7 @@ namespace lightwell {
 
 SceneRenderer::SceneRenderer(const Scene& scene, const PatchMesh& mesh,
                              const RadiositySolution& solution)
-    : scene_(scene), solution_(solution), caster_(mesh), direct_light_(scene, mesh) {}
+    : scene_(scene), solution_(solution), caster_(mesh), direct_light_(scene, caster_) {}
 
 std::shared_ptr<const CausticMap> SceneRenderer::caustics(const RenderOptions& options) {
   if (!needs_caustic_photons(solution_, options)) return nullptr;

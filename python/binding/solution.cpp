@@ -102,9 +102,9 @@ ArrayOut probe(const SharedSolution& solution, const PointsIn& points, const Poi
   const SceneData& scene = solution->its_scene("a gather at points");
   return owned_bands(result_of_long(progress, [&](const Progress& run) {
     const SolvedScene& solved = solution->solved;
-    return probe_irradiance(scene.clean, ElementCaster(solved.mesh),
-                            DirectLight(scene.clean, solved.mesh), solved.solution, probes,
-                            {.rays = rays, .run = {.progress = run}});
+    const ElementCaster caster(solved.mesh);
+    return probe_irradiance(scene.clean, caster, DirectLight(scene.clean, caster), solved.solution,
+                            probes, {.rays = rays, .run = {.progress = run}});
   }));
 }
 
@@ -117,9 +117,9 @@ nb::tuple probe_with_bounds(const SharedSolution& solution, const PointsIn& poin
   ProbeBounds bounds{.accuracy = accuracy};
   BandArray E = result_of_long(progress, [&](const Progress& run) {
     const SolvedScene& solved = solution->solved;
-    return probe_irradiance(scene.clean, ElementCaster(solved.mesh),
-                            DirectLight(scene.clean, solved.mesh), solved.solution, probes,
-                            {.rays = rays, .run = {.progress = run}}, &bounds);
+    const ElementCaster caster(solved.mesh);
+    return probe_irradiance(scene.clean, caster, DirectLight(scene.clean, caster), solved.solution,
+                            probes, {.rays = rays, .run = {.progress = run}}, &bounds);
   });
   const ArrayOut lux = lux_of(solution->solved.solution.bands, E);
   const std::size_t count = probes.size();

@@ -36,7 +36,22 @@ SkyEffort sky_effort(const ShadowOptions& options, const NoiseGoal& goal) {
 
 DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
                          const DirectLight* like)
-    : bases_(scene.materials),
+    : DirectLight(scene, mesh, channels, like, like ? like->sky_ : nullptr) {
+  if (!dome() || sky_) return;
+  const auto sky = std::make_shared<SkyLight>(scene, ElementCaster(mesh));
+  sky->find_all();
+  sky_ = sky;
+}
+
+DirectLight::DirectLight(const Scene& scene, const ElementCaster& caster)
+    : DirectLight(scene, caster.mesh(), {}, nullptr, nullptr) {
+  if (dome()) sky_ = std::make_shared<const SkyLight>(scene, caster);
+}
+
+DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
+                         const DirectLight* like, std::shared_ptr<const SkyLight> sky)
+    : sky_(std::move(sky)),
+      bases_(scene.materials),
       bands_(scene.bands.count()),
       samples_(most_probe_shadow_rays),
       panes_(scene) {
@@ -61,7 +76,6 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
   lights_ = std::make_shared<const LightList>(std::move(lights));
   sampler_ = std::make_shared<const LightSampler>(lights_);
   exact_ = like ? like->exact_ : std::make_shared<const ExactShadows>(scene, mesh, emitters());
-  if (dome()) sky_ = like ? like->sky_ : std::make_shared<const SkyLight>(scene, mesh);
 }
 
 DirectLight::DirectLight(const Scene& scene, std::vector<FreeSource> sources)

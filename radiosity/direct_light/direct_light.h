@@ -117,6 +117,11 @@ class DirectLight {
   DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels = {},
               const DirectLight* like = nullptr);
 
+  /// Light at a mesh that outlives it, that of the caster: what a place sees of the sky is found
+  /// when light is first asked for there, which serves pictures and probes. Light is the same, bit
+  /// for bit, as by the mesh alone.
+  DirectLight(const Scene& scene, const ElementCaster& caster);
+
   /// The light of `sources` alone, none of which is the sky's dome, all in channel 0.
   DirectLight(const Scene& scene, std::vector<FreeSource> sources);
 
@@ -193,6 +198,8 @@ class DirectLight {
                       EmitterVisibility* visibility = nullptr) const;
 
  private:
+  DirectLight(const Scene& scene, const PatchMesh& mesh, const EmitterChannels& channels,
+              const DirectLight* like, std::shared_ptr<const SkyLight> sky);
   struct Shadows;
   Shadows shadows(const ElementCaster& caster, const LightQuery& query,
                   const std::vector<LightSample>& samples) const;

@@ -29,11 +29,11 @@ struct SkyLight::Shares {
   Eigen::ArrayXd E_open{};  // unobstructed, of the open cells
 };
 
-SkyLight::SkyLight(const Scene& scene, const PatchMesh& mesh)
+SkyLight::SkyLight(const Scene& scene, const ElementCaster& caster)
     : bands_(scene.bands.count()),
       panes_(scene),
       cells_(*scene.sky, bands_),
-      sites_(cells_, panes_, scene_bounds(scene).diagonal(), mesh),
+      sites_(cells_, panes_, scene_bounds(scene).diagonal(), caster),
       sobol_(most_sky_rays) {
   static std::atomic<std::uint64_t> count{0};
   number_ = ++count;

@@ -52,11 +52,14 @@ struct SkyGlow {
 /// their means (collapsed strata, Cochran 1977).
 class SkyLight {
  public:
-  /// `scene` must have a sky. Casts rays from the mesh's surfaces; the same bits for any number of
-  /// threads.
-  SkyLight(const Scene& scene, const PatchMesh& mesh);
+  /// `scene` must have a sky. Finds what the surfaces see of the sky where points ask for it (see
+  /// SkySites); the mesh of `caster` must outlive the light, or last until find_all().
+  SkyLight(const Scene& scene, const ElementCaster& caster);
   SkyLight(const SkyLight&) = delete;
   SkyLight& operator=(const SkyLight&) = delete;
+
+  /// Finds what all surfaces see of the sky, with all threads.
+  void find_all() { sites_.find_all(); }
 
   /// E per band, W/m^2, at a point. `key` decides the directions of the rays; panes dim the light
   /// that passes through them. With `relief`, E counts times the mean of ReliefSlope::gain() over

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <utility>
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/parallel.h"
@@ -117,51 +118,67 @@ struct SkySites::Collector {
 };
 
 SkySites::SkySites(const SkyCells& cells, const ClearPanes& panes, double scene_diagonal,
-                   const PatchMesh& mesh)
-    : cells_(cells), panes_(panes), cube_(cube_share * std::max(scene_diagonal, 1e-9)) {
-  Collector collector(mesh);
+                   const ElementCaster& caster)
+    : cells_(cells),
+      panes_(panes),
+      caster_(caster),
+      cube_(cube_share * std::max(scene_diagonal, 1e-9)) {
+  Collector collector(caster.mesh());
   while (!collector.collect(cube_)) cube_ *= 1.5;
-  std::vector<const Points*> lists;
-  std::vector<std::uint64_t> keys;
-  for (const auto& [key, list] : collector.points) {
-    site_of_[key] = static_cast<int>(lists.size());
-    lists.push_back(&list);
-    keys.push_back(key);
+  for (auto& [key, points] : collector.points) {
+    place_of_[key] = static_cast<int>(places_.size());
+    places_.emplace_back(key, std::move(points));
   }
-  const ElementCaster caster(mesh);
-  const auto count = static_cast<int>(lists.size());
-  std::vector<CellVisibility> visibilities(lists.size());
-  parallel_for(count, 4, [&](int begin, int end) {
-    for (int s = begin; s < end; ++s) {
-      const auto i = static_cast<std::size_t>(s);
-      visibilities[i] =
-          sample_cells(caster, *lists[i], random_key(keys[i], RandomPurpose::sky_site_rays));
-    }
-  });
-  sites_.resize(lists.size());
-  parallel_for(count, 16, [&](int begin, int end) {
-    for (int s = begin; s < end; ++s) {
-      const auto i = static_cast<std::size_t>(s);
-      const SurfacePoint& point = lists[i]->front();
-      std::vector<const CellVisibility*> beside;
-      for (int side = 0; side < 6; ++side) {
-        Eigen::Vector3d position = point.position;
-        position[side / 2] += side % 2 == 0 ? cube_ : -cube_;
-        const auto found = site_of_.find(site_key(position, point.normal, cube_));
-        if (found != site_of_.end()) {
-          beside.push_back(&visibilities[static_cast<std::size_t>(found->second)]);
-        }
-      }
-      sites_[i] = site_of(weights_of(visibilities[i], beside), axis_of(point.normal));
-    }
-  });
   unknown_.weights.fill(1.0f);
-  unknown_ = site_of(unknown_.weights, Eigen::Vector3d::Zero());
+  unknown_ = site_by(unknown_.weights, Eigen::Vector3d::Zero());
+}
+
+void SkySites::find_all() {
+  const auto count = static_cast<int>(places_.size());
+  const auto for_all = [&](auto&& find) {
+    parallel_for(count, 4, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) find(places_[static_cast<std::size_t>(i)]);
+    });
+  };
+  // Threads would wait for each other if sites asked for the same places beside them.
+  for_all([&](Place& place) { visibility_of(place); });
+  for_all([&](Place& place) { site_of(place); });
+  for (Place& place : places_) {
+    place.points = {};
+    place.visibility.reset();
+  }
+  caster_.reset();
+}
+
+const SkySites::CellVisibility& SkySites::visibility_of(Place& place) const {
+  std::call_once(place.is_sampled, [&] {
+    place.visibility = std::make_unique<const CellVisibility>(
+        sample_cells(*caster_, place.points, random_key(place.key, RandomPurpose::sky_site_rays)));
+  });
+  return *place.visibility;
+}
+
+const SkySites::Site& SkySites::site_of(Place& place) const {
+  std::call_once(place.is_found, [&] {
+    const SurfacePoint& point = place.points.front();
+    std::vector<const CellVisibility*> beside;
+    for (int side = 0; side < 6; ++side) {
+      Eigen::Vector3d position = point.position;
+      position[side / 2] += side % 2 == 0 ? cube_ : -cube_;
+      const auto found = place_of_.find(site_key(position, point.normal, cube_));
+      if (found == place_of_.end()) continue;
+      beside.push_back(&visibility_of(places_[static_cast<std::size_t>(found->second)]));
+    }
+    place.site = std::make_unique<const Site>(
+        site_by(weights_of(visibility_of(place), beside), axis_of(point.normal)));
+  });
+  return *place.site;
 }
 
 const SkySites::Site* SkySites::find(const SurfacePoint& at) const {
-  const auto found = site_of_.find(site_key(at.position, at.normal, cube_));
-  return found == site_of_.end() ? nullptr : &sites_[static_cast<std::size_t>(found->second)];
+  const auto found = place_of_.find(site_key(at.position, at.normal, cube_));
+  if (found == place_of_.end()) return nullptr;
+  return &site_of(places_[static_cast<std::size_t>(found->second)]);
 }
 
 SkySites::Weights SkySites::sample(const ElementCaster& caster, const SurfacePoint& at,
@@ -266,7 +283,7 @@ double thinning_elsewhere(double open, double elsewhere) {
   return open > 0.0 ? std::min(1.0, most_elsewhere * open / std::max(elsewhere, 1e-300)) : 1.0;
 }
 
-SkySites::Site SkySites::site_of(const Weights& weights, const Eigen::Vector3d& axis) const {
+SkySites::Site SkySites::site_by(const Weights& weights, const Eigen::Vector3d& axis) const {
   // Normals of a site lie up to 55 degrees from its axis, so cells at its horizon count, too. Cells
   // more than 145 degrees away are below the horizon of all normals.
   constexpr double least_cosine = 0.2, below_all = -0.82;

@@ -2,6 +2,10 @@
 
 #include <array>
 #include <cstdint>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -21,7 +25,8 @@ double thinning_elsewhere(double open, double elsewhere);
 
 /// Visibility of the sky from *sites*: cubes of space, by the side that the surfaces in them face.
 /// Rays cast beforehand from surfaces of each site find through which cells of the sky rays get
-/// out, so that points near by can send their rays there.
+/// out, so that points near by can send their rays there. The rays of a site are cast when a point
+/// in the site is first asked for: a picture, or a few probes, ask for few sites.
 class SkySites {
  public:
   /// Per cell, the sampling weight of its rays beside its unobstructed irradiance; 0: no ray of the
@@ -34,11 +39,16 @@ class SkySites {
     std::array<float, SkyCells::count> sum{};
   };
 
-  /// Casts rays from the surfaces of `mesh`; the same bits for any number of threads.
+  /// Sites of the surfaces of the caster's mesh, which must outlive them, or last until find_all().
+  /// Surfaces that move are at rest. `cells` and `panes` must outlive the sites.
   SkySites(const SkyCells& cells, const ClearPanes& panes, double scene_diagonal,
-           const PatchMesh& mesh);
+           const ElementCaster& caster);
 
-  /// The site that holds a point; null: no surface lies there.
+  /// Casts the rays of all sites. The mesh is not read afterwards.
+  void find_all();
+
+  /// The site that holds a point; null: no surface lies there. May be called by any number of
+  /// threads, and gives the same bits for any.
   const Site* find(const SurfacePoint& at) const;
   /// The site of points of which nothing is known: all cells count by their power.
   const Site& unknown() const { return unknown_; }
@@ -52,18 +62,30 @@ class SkySites {
   };
   using Points = std::vector<SurfacePoint>;
   struct Collector;
+  /// A cube on one side of surfaces, and what is known of it so far.
+  struct Place {
+    Place(std::uint64_t of, Points at) : key(of), points(std::move(at)) {}
+    std::uint64_t key;
+    Points points;
+    std::once_flag is_sampled{}, is_found{};
+    std::unique_ptr<const CellVisibility> visibility{};
+    std::unique_ptr<const Site> site{};
+  };
 
+  const CellVisibility& visibility_of(Place& place) const;
+  const Site& site_of(Place& place) const;
   CellVisibility sample_cells(const ElementCaster& caster, std::span<const SurfacePoint> points,
                               std::uint64_t key) const;
   static Weights weights_of(const CellVisibility& own,
                             std::span<const CellVisibility* const> beside);
-  Site site_of(const Weights& weights, const Eigen::Vector3d& axis) const;
+  Site site_by(const Weights& weights, const Eigen::Vector3d& axis) const;
 
   const SkyCells& cells_;
   const ClearPanes& panes_;
-  double cube_ = 1.0;  // m, edge of a site
-  std::unordered_map<std::uint64_t, int> site_of_{};
-  std::vector<Site> sites_{};
+  std::optional<ElementCaster> caster_;  // empty: all sites are found
+  double cube_ = 1.0;                    // m, edge of a site
+  std::unordered_map<std::uint64_t, int> place_of_{};
+  mutable std::deque<Place> places_{};
   Site unknown_{};
 };
 

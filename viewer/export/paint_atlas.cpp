@@ -115,7 +115,7 @@ BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& mode
     points.push_back(gather_point(model, solved.mesh, texels[i], i));
   }
   const ElementCaster caster(solved.mesh);
-  const DirectLight direct_light(scene, solved.mesh);
+  const DirectLight direct_light(scene, caster);
   GatherOptions gathering{
       .rays = options.gather_rays, .shadows = options.shadows, .run = options.run};
   BandArray found;

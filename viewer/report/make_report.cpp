@@ -237,7 +237,8 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
                            const Progress& progress) {
   const auto& [scene, names] = of;
   LightingReport made = report_of(plan, scene, solved);
-  const DirectLight lights(scene, solved.mesh);
+  const ElementCaster caster(solved.mesh);
+  const DirectLight lights(scene, caster);
   made.luminaires = luminaires(scene, solved.mesh, lights, plan.design);
   set_watts(made.luminaires, plan.request.watts, scene);
   Measurements what;
@@ -249,7 +250,6 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   what.gathering.run.progress = progress;
   // Requests name surfaces of the file, which merge_planar_regions() may have joined with others:
   // names->apart() separates them again.
-  const ElementCaster caster(solved.mesh);
   const Scene apart = names ? names->apart(scene) : scene;
   const Eigen::Vector3d up = guess_up_axis(scene.cameras, mesh_bounds(solved.mesh));
   std::vector<LuxGrid> grids =

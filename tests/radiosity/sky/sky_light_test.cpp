@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -34,7 +35,7 @@ struct UnderSky {
   Scene scene;
   PatchMesh mesh = build_patches(scene, {.max_patch_size = 1.0});
   ElementCaster caster{mesh};
-  SkyLight light{scene, mesh};
+  SkyLight light{scene, caster};
 
   double at(const Vector3d& point, const Vector3d& normal, int facet, std::uint64_t key = 1) const {
     return static_cast<double>(light.irradiance(caster, {point, normal, facet}, key).irradiance[1]);
@@ -257,6 +258,30 @@ TEST(SkyLight, IsTheSameForAnyNumberOfThreads) {
 
 // Beside the wall of a shed the site may have learnt from within it, where a slit in the roof is
 // all that shows of the sky.
+// Points far apart first, so that sites are found in another order than by find_all().
+TEST(SkyLight, IsTheSameWhereSitesAreFoundOnDemand) {
+  const UnderSky on_demand{room_with_window()};
+  UnderSky at_once{room_with_window()};
+  at_once.light.find_all();
+  constexpr int count = 64;
+  std::array<double, count> found{};
+  parallel_for(count, 1, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      const double x = 0.05 + 2.9 * ((i * 37) % count) / count;
+      found[static_cast<std::size_t>(i)] =
+          on_demand.at({x, 0.4, 0}, Vector3d::UnitZ(), 4, static_cast<std::uint64_t>(i));
+    }
+  });
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) {
+    const double x = 0.05 + 2.9 * ((i * 37) % count) / count;
+    const double all = at_once.at({x, 0.4, 0}, Vector3d::UnitZ(), 4, static_cast<std::uint64_t>(i));
+    EXPECT_EQ(found[static_cast<std::size_t>(i)], all) << i;
+    sum += all;
+  }
+  EXPECT_GT(sum, 0.0);
+}
+
 TEST(SkyLight, BesideAShedTheSkyIsNotWhatShowsWithinIt) {
   Scene scene{.sky = sky_of()};
   const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
