@@ -267,6 +267,7 @@ void CoplanarGroups::find_bodies(const CastGeometry& geometry, double tolerance)
 }
 
 int CoplanarGroups::order(int a, int b) const {
+  if (a == b) return 0;
   const Group &first = groups_[a], &second = groups_[b];
   if (first.body != 0 && second.body != 0) {
     // Away from the plane: a room's wall first, then the contents of the room.
@@ -277,18 +278,20 @@ int CoplanarGroups::order(int a, int b) const {
     const int difference = level(first) - level(second);
     if (difference != 0) return difference > 0 ? 1 : -1;
   }
-  return first.facing == second.facing ? smaller_first(first, second) : -first.facing;
+  if (first.facing != second.facing) return -first.facing;
+  return lies_before(a, b) ? first.facing : -first.facing;
 }
 
-// order() of groups that face the same way. A sheet of the area of a body's face, such as the light
-// of a luminaire's housing, lies before the face.
-int CoplanarGroups::smaller_first(const Group& first, const Group& second) {
+// True if the first of two groups that face the same way lies before the other. A sheet of the area
+// of a body's face, such as the light of a luminaire's housing, lies before the face. What is the
+// same twice must be one surface everywhere, so numbers decide last.
+bool CoplanarGroups::lies_before(int a, int b) const {
+  const Group &first = groups_[a], &second = groups_[b];
   constexpr double same = 1e-6;  // share of the area; float coordinates round to about 1e-7
   const bool are_same = std::abs(first.area - second.area) <= same * (first.area + second.area);
-  if (!are_same) return first.area < second.area ? first.facing : -first.facing;
+  if (!are_same) return first.area < second.area;
   const bool is_sheet = first.body == 0;
-  if (is_sheet == (second.body == 0)) return 0;
-  return is_sheet ? first.facing : -first.facing;
+  return is_sheet == (second.body == 0) ? a < b : is_sheet;
 }
 
 // Sweeps along x over planes at one distance from the middle.

@@ -19,8 +19,8 @@ namespace lightwell {
 /// inside of the room, whose walls rise before its floor. If a body is not known (a sheet),
 /// surfaces that face each other are taken to touch with their fronts. Of surfaces that face the
 /// same way and whose bodies do not differ, or are not known, the smaller lies before the larger,
-/// as a picture lies on a wall; of one area, a sheet before the face of a body. The order of two
-/// other surfaces of one area is not known.
+/// as a picture lies on a wall; of one area, a sheet before the face of a body, and otherwise the
+/// group of the lower number, as where a model holds a surface twice.
 class CoplanarGroups {
  public:
   /// Planes closer than `tolerance`, metres, are one. Distances are measured from the middle of the
@@ -37,7 +37,7 @@ class CoplanarGroups {
   bool are_parallel(int a, int b) const { return lie_parallel(normal(a), normal(b)); }
 
   /// Order of two groups that lie on each other: 1 if `a` lies above `b` along normal(a), -1 if
-  /// below, 0 if not known.
+  /// below, 0 for a group and itself.
   int order(int a, int b) const;
 
   /// True if the group lies on any other.
@@ -77,7 +77,7 @@ class CoplanarGroups {
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // a point of the plane
     Boxes overlaps{};                                  // with other groups of the plane
-    Boxes above{}, below{};  // those of the overlaps whose order is known, along the normal
+    Boxes above{}, below{};  // overlaps of groups that lie above or below, along the normal
     int facing = 0;          // front: 1 along the normal, -1 against the normal
     int body = 0;       // side of the body: 1 along the normal, -1 against the normal, 0 not known
     double area = 0.0;  // m^2
@@ -87,7 +87,7 @@ class CoplanarGroups {
     std::array<int, 2> group{};
     Eigen::AlignedBox3d box{};
   };
-  static int smaller_first(const Group& first, const Group& second);
+  bool lies_before(int a, int b) const;
   static bool lie_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
   static std::vector<Plane> planes_of(const CastGeometry& geometry);
   void add_overlaps(const CastGeometry& geometry, std::span<Plane> planes, double tolerance,

@@ -18,8 +18,7 @@ namespace lightwell {
 /// A *group* joins primitives that cannot see each other because they lie in one plane (a facet),
 /// or are one round shape. A ray never meets the group it starts from, whatever rounding does to
 /// the ray's origin. Where groups lie on each other, the group that is met first hides the others
-/// (see CoplanarGroups for the order). If the order is not known, neither group hides the other
-/// from a ray that starts on one of the two.
+/// (see CoplanarGroups for the order).
 struct CastGeometry {
   std::vector<Eigen::Vector3d> vertices{};
   std::vector<std::array<int, 3>> triangles{};
@@ -76,7 +75,7 @@ class RayCaster {
   void occluded(std::span<const Ray> rays, std::span<std::uint8_t> blocked) const;
 
   /// True if a ray in `direction` meets `group` before `other`, of two groups that lie on each
-  /// other. False if the order is not known.
+  /// other.
   bool meets_first(int group, int other, const Eigen::Vector3d& direction) const;
 
   /// True if another surface that lies on a triangle or quad hides the front or the back of
