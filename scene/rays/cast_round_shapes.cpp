@@ -7,6 +7,8 @@
 #include <utility>
 #include <variant>
 
+#include "scene/rays/float_rounding.h"
+
 namespace lightwell {
 
 namespace {
@@ -83,7 +85,8 @@ namespace {
 void round_bounds(const RTCBoundsFunctionArguments* args) {
   const auto& set = *static_cast<const RoundShapeSet*>(args->geometryUserPtr);
   const Eigen::AlignedBox3d box = bounds(set.shapes[args->primID]);
-  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(set.rounding);
+  const Eigen::Vector3d reach =
+      Eigen::Vector3d::Constant(std::max(set.rounding, ray_rounding(box, set.center)));
   const Eigen::Vector3f lower = (box.min() - set.center - reach).cast<float>();
   const Eigen::Vector3f upper = (box.max() - set.center + reach).cast<float>();
   args->bounds_o->lower_x = lower.x();

@@ -7,13 +7,17 @@
 #include <cmath>
 #include <new>
 #include <stdexcept>
+#include <utility>
 
 #include "scene/parallel.h"
 #include "scene/rays/float_rounding.h"
 #include "scene/round_shape.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
+
+constexpr double near_roundings = 8.0;  // from a group to those that lie on it, along the normal
 
 // Area of triangles and quads, m^2.
 double area(const CastGeometry& source) {
@@ -28,6 +32,19 @@ double area(const CastGeometry& source) {
     add(q[0], q[2], q[3]);
   }
   return sum;
+}
+
+template <class Visit>
+void for_each_primitive_box(const CastGeometry& source, Visit visit) {
+  std::size_t primitive = 0;
+  const auto box_of = [&](std::span<const int> polygon) {
+    Eigen::AlignedBox3d box;
+    for (const int v : polygon) box.extend(source.vertices[v]);
+    return box;
+  };
+  for (const auto& triangle : source.triangles) visit(source.group[primitive++], box_of(triangle));
+  for (const auto& quad : source.quads) visit(source.group[primitive++], box_of(quad));
+  for (const auto& shape : source.round_shapes) visit(source.group[primitive++], bounds(shape));
 }
 
 Eigen::Vector3d middle(const CastGeometry& source, std::span<const int> polygon) {
@@ -48,12 +65,7 @@ EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
   }
   group = geometry.group;
 
-  Eigen::AlignedBox3d box;
-  for (const auto& v : geometry.vertices) box.extend(v);
-  for (const RoundShape& shape : geometry.round_shapes) box.extend(bounds(shape));
-  if (!box.isEmpty()) center = box.center();
-  if (!box.isEmpty()) rounding = ray_rounding(box.diagonal().norm());
-
+  find_roundings(geometry);
   planes = std::make_unique<CoplanarGroups>(geometry, rounding);
 
   // One thread builds, whatever the user's limit. The order inside Embree's leaves must not depend
@@ -89,6 +101,27 @@ EmbreeScene::EmbreeScene(const CastGeometry& geometry) : EmbreeScene() {
 EmbreeScene::~EmbreeScene() {
   if (scene) rtcReleaseScene(scene);
   if (device) rtcReleaseDevice(device);
+}
+
+// A backdrop far away must not coarsen the coordinates of a room.
+void EmbreeScene::find_roundings(const CastGeometry& source) {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  for_each_primitive_box(source, [&](int g, const Eigen::AlignedBox3d& box) {
+    if (g >= static_cast<int>(boxes.size())) boxes.resize(g + std::size_t{1});
+    boxes[g].extend(box);
+  });
+  std::vector<Eigen::AlignedBox3d> known = boxes;
+  std::erase_if(known, [](const auto& box) { return box.isEmpty(); });
+  if (known.empty()) return;
+  Eigen::AlignedBox3d all;
+  for (const Eigen::AlignedBox3d& box : known) all.extend(box);
+  const Eigen::AlignedBox3d scenery = scenery_box(std::move(known));
+  center = scenery.center();
+  rounding = ray_rounding(scenery.diagonal().norm());
+  if (scenery.contains(all)) return;
+  for (const Eigen::AlignedBox3d& box : boxes) {
+    roundings.push_back(box.isEmpty() ? rounding : std::max(rounding, ray_rounding(box, center)));
+  }
 }
 
 void EmbreeScene::check() const {
@@ -218,7 +251,8 @@ std::vector<int> EmbreeScene::groups_at(const Eigen::Vector3d& place, int on) co
     std::vector<int> found;
   } search;
   const Eigen::Vector3d& normal = planes->normal(on);
-  const Ray ray{.origin = place - 8.0 * rounding * normal, .direction = normal};
+  const double reach = near_roundings * rounding_of(on);
+  const Ray ray{.origin = place - reach * normal, .direction = normal};
   init(search, &ray);  // read by the callback of round shapes
   search.caster = this;
   const Eigen::Vector3d from = ray.origin - center;
@@ -229,7 +263,7 @@ std::vector<int> EmbreeScene::groups_at(const Eigen::Vector3d& place, int on) co
   query.ray.dir_x = static_cast<float>(normal.x());
   query.ray.dir_y = static_cast<float>(normal.y());
   query.ray.dir_z = static_cast<float>(normal.z());
-  query.ray.tfar = static_cast<float>(16.0 * rounding);
+  query.ray.tfar = static_cast<float>(2.0 * reach);
   query.ray.mask = ~0u;
   clear(query.hit);
   intersect(scene, search, query, [](const RTCFilterFunctionNArguments* args) {
@@ -260,6 +294,7 @@ void EmbreeScene::find_hidden(const CastGeometry& source) {
     const int facing = front.dot(planes->normal(g)) > 0.0 ? 1 : -1;
     for (const int other : groups_at(mean, g)) {
       if (other == g || is_porous[other] || !planes->are_parallel(g, other)) continue;
+      if (std::abs(planes->height(other, mean)) > near_roundings * rounding) continue;
       const int above = planes->order(other, g);
       if (above != 0) hidden[p] |= above == facing ? from_front : from_back;
     }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <memory>
 #include <span>
@@ -9,6 +10,7 @@
 #include "scene/rays/cell_sheets.h"
 #include "scene/rays/coplanar_groups.h"
 #include "scene/rays/embree_queries.h"
+#include "scene/rays/float_rounding.h"
 
 namespace lightwell {
 
@@ -27,7 +29,8 @@ struct EmbreeScene {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   Eigen::Vector3d center = Eigen::Vector3d::Zero();  // Embree's origin
-  double rounding = 0.0;  // largest error of a point by float coordinates, metres
+  double rounding = 0.0;  // largest error of a point of the scenery by float coordinates, metres
+  std::vector<double> roundings{};  // the same by group; empty without a backdrop (scenery_box)
   std::vector<int> group;
   std::unique_ptr<CoplanarGroups> planes;
   std::vector<std::uint8_t> hidden;  // per triangle and quad: sides hidden by another group
@@ -38,6 +41,14 @@ struct EmbreeScene {
   std::vector<int> solid, porous;
   CellSheets sheets;  // the last entries of `solid` are their first cells
   std::function<bool(int group, const Eigen::Vector3d& point)> is_hole;
+
+  double rounding_of(int of_group) const {
+    return roundings.empty() ? rounding : roundings[of_group];
+  }
+  double rounding_at(const Eigen::Vector3d& point) const {
+    return roundings.empty() ? rounding
+                             : std::max(rounding, ray_rounding(2.0 * (point - center).norm()));
+  }
 
   // Number of the primitive that was met. For a sheet: any cell, since all cells are of one group
   // and nothing lies on them.
@@ -61,6 +72,7 @@ struct EmbreeScene {
  private:
   EmbreeScene() = default;
   void check() const;
+  void find_roundings(const CastGeometry& source);
   void attach(RTCGeometry geometry, GeometryId id);
   void add_polygons(const CastGeometry& source);
   bool may_join(const CastGeometry& source, int quad) const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <limits>
 
 namespace lightwell {
@@ -14,6 +15,12 @@ inline double float_rounding(double diagonal) {
 inline double ray_rounding(double diagonal) {
   constexpr double roundings = 4.0;
   return roundings * float_rounding(diagonal);
+}
+
+/// The same for points and vertices in a box, of coordinates converted about `center`, metres.
+inline double ray_rounding(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& center) {
+  const Eigen::Vector3d low = (box.min() - center).cwiseAbs();
+  return ray_rounding(2.0 * low.cwiseMax((box.max() - center).cwiseAbs()).norm());
 }
 
 /// Largest height over a plane, in ray_rounding(), of a point that rays take as in the plane.

@@ -23,7 +23,8 @@ struct RayCaster::Impl : EmbreeScene {
     r.tnear = 0.0f;
     if (ray.origin_group >= 0) {
       const Eigen::Vector3d& normal = planes->normal(ray.origin_group);
-      const double past = starts_covered(ray) ? -rounding : rounding;
+      const double own = rounding_of(ray.origin_group);
+      const double past = starts_covered(ray) ? -own : own;
       origin += std::copysign(1.0, normal.dot(ray.direction)) * past * normal;
       r.tnear = std::numeric_limits<float>::min();
     }
@@ -70,19 +71,24 @@ struct RayCaster::Impl : EmbreeScene {
   // Largest displacement of the target by rounding, along a ray.
   double target_depth(const Ray& ray) const {
     const double along = std::abs(planes->normal(ray.target_group).dot(ray.direction));
-    return coplanar_roundings * rounding / along;
+    return coplanar_roundings * rounding_towards(ray) / along;
+  }
+
+  // Rounding where a ray meets its target.
+  double rounding_towards(const Ray& ray) const {
+    return std::max(rounding_of(ray.target_group), rounding_at(ray.origin));
   }
 
   // True if the plane of a hit coincides with that of group `with` where the ray meets the hit.
-  bool is_coplanar(const RTCHit& hit, double off_plane, int with) const {
-    return std::abs(off_plane) <= coplanar_roundings * rounding &&
-           planes->are_parallel(with, group[primitive(hit)]);
+  bool is_coplanar(const RTCHit& hit, double off_plane, int with, double with_rounding) const {
+    const int met = group[primitive(hit)];
+    return std::abs(off_plane) <= coplanar_roundings * std::max(with_rounding, rounding_of(met)) &&
+           planes->are_parallel(with, met);
   }
 
   // True if a hit is the surface that the ray meets. False for the ray's own plane, and for
-  // surfaces on that plane that lie before the plane or in unknown order; for surfaces hidden by
-  // another; for the target, and for surfaces on its plane that lie behind the target or in unknown
-  // order; and past the end of the ray.
+  // surfaces on that plane that lie before the plane; for surfaces hidden by another; for the
+  // target, and for surfaces on its plane that lie behind the target; and past the end of the ray.
   bool counts(const RTCHit& hit, float t, const Ray& ray, int target) const {
     const bool is_past = target >= 0 && t > static_cast<float>(ray.t_max);
     const int p = primitive(hit), g = group[p];
@@ -90,7 +96,7 @@ struct RayCaster::Impl : EmbreeScene {
     if (g == ray.origin_group || (target >= 0 && g == target)) return false;
     if (ray.origin_group >= 0) {
       const double along = planes->normal(ray.origin_group).dot(ray.direction);
-      if (is_coplanar(hit, t * along, ray.origin_group)) {
+      if (is_coplanar(hit, t * along, ray.origin_group, rounding_of(ray.origin_group))) {
         return planes->order(g, ray.origin_group) * along > 0.0;
       }
     }
@@ -101,7 +107,7 @@ struct RayCaster::Impl : EmbreeScene {
     }
     if (target >= 0 && planes->has_overlaps(target)) {
       const Eigen::Vector3d at = ray.origin + static_cast<double>(t) * ray.direction;
-      if (is_coplanar(hit, planes->height(target, at), target)) {
+      if (is_coplanar(hit, planes->height(target, at), target, rounding_towards(ray))) {
         return planes->order(g, target) * planes->normal(target).dot(ray.direction) < 0.0;
       }
     }

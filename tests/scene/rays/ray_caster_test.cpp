@@ -385,5 +385,39 @@ TEST(RayCaster, CountsItsPrimitivesAndRefusesMissingGroups) {
   EXPECT_THROW(RayCaster{g}, std::invalid_argument);
 }
 
+// Rays in a cube of 1 m with sheets closely over its floor meet the same between a ground and a
+// cover of 6 km, the middle of whose box lies 1.5 km above the cube.
+TEST(RayCaster, ABackdropFarAwayLeavesARoomAsItIs) {
+  CastGeometry near = box(2);
+  for (const double height : {1e-5, 1e-4, 1e-3}) {
+    const int first = static_cast<int>(near.vertices.size()), group = near.group.back() + 1;
+    for (const auto& [x, y] :
+         {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+      near.vertices.emplace_back(0.2 + 0.6 * x, 0.2 + 0.6 * y, height);
+    }
+    near.quads.push_back({first, first + 1, first + 2, first + 3});
+    near.group.push_back(group);
+  }
+  CastGeometry wide = near;
+  constexpr double r = 3000.0;
+  for (const double height : {0.0, r}) {
+    const int first = static_cast<int>(wide.vertices.size()), group = wide.group.back() + 1;
+    wide.vertices.insert(wide.vertices.end(),
+                         {{-r, -r, height}, {r, -r, height}, {r, r, height}, {-r, r, height}});
+    wide.quads.push_back({first, first + 1, first + 2, first + 3});
+    wide.group.push_back(group);
+  }
+  const RayCaster small(near), large(wide);
+  for (int i = 0; i < 10000; ++i) {
+    Vector3d from = random_point(static_cast<std::uint64_t>(i), 1);
+    from.z() = 0.0;
+    Vector3d to = random_point(static_cast<std::uint64_t>(i), 2);
+    Ray ray{.origin = from, .direction = to - from, .t_max = 1.0, .origin_group = 4};
+    EXPECT_EQ(is_blocked(large, ray), is_blocked(small, ray)) << from << to;
+    ray.t_max = 10.0;
+    EXPECT_EQ(closest(large, ray).group, closest(small, ray).group) << from << to;
+  }
+}
+
 }  // namespace
 }  // namespace lightwell::ray_caster_test
