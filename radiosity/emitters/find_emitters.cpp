@@ -29,13 +29,6 @@ Loop loop_points(const PolygonMesh& mesh, const std::vector<int>& loop) {
   return points;
 }
 
-// Boundary and holes of a facet.
-std::vector<Loop> facet_loops(const PolygonMesh& mesh, const Facet& facet) {
-  std::vector<Loop> loops = {loop_points(mesh, facet.boundary)};
-  for (const auto& hole : facet.holes) loops.push_back(loop_points(mesh, hole));
-  return loops;
-}
-
 // True for a convex polygon: a fan of triangles keeps samples better stratified than the many
 // elements of the mesh.
 bool is_convex_emitter(const Loop& loop, const Eigen::Vector3d& normal) {
@@ -224,6 +217,12 @@ std::size_t direct_count(const std::vector<EmittingFacet>& emitting, double scen
 }
 
 }  // namespace
+
+std::vector<Loop> facet_loops(const PolygonMesh& mesh, const Facet& facet) {
+  std::vector<Loop> loops = {loop_points(mesh, facet.boundary)};
+  for (const auto& hole : facet.holes) loops.push_back(loop_points(mesh, hole));
+  return loops;
+}
 
 std::vector<Emitter> find_emitters(const Scene& scene, const std::vector<FacetRef>& facets,
                                    const PatchMesh& mesh, std::span<const Emitter> known) {

@@ -9,16 +9,27 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
+#include "radiosity/emitters/clear_places.h"
 #include "radiosity/visibility/shadow_rays.h"
 #include "scene/sampling.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
 
-// Clearance as a share of the scene's diagonal: above the rounding of rays, below the gaps at which
-// lamps hang.
-constexpr double clearance_share = 1e-5;
+// Clearances of the lamps, m: above the rounding of rays, below the gaps at which lamps hang.
+std::vector<double> clearances(const Scene& scene) {
+  constexpr double of_diagonal = 1e-5;
+  const Eigen::AlignedBox3d scenery = scenery_box(scene);
+  std::vector<double> clearances;
+  for (const Lamp& lamp : scene.lamps) {
+    const double across = 2.0 * (lamp.position - scenery.center()).norm();
+    clearances.push_back(of_diagonal * std::max(scenery.diagonal().norm(), across));
+  }
+  return clearances;
+}
 
 // The kernel shape(omega) cos / r^2 of a sample point of the lamp.
 double point_kernel(const Lamp& lamp, const Eigen::Vector3d& on_lamp, const Eigen::Vector3d& point,
@@ -176,9 +187,12 @@ std::vector<FreeSource> free_sources(const Scene& scene, const BandArray& scale,
     sources.push_back(std::move(source));
   };
   const Bounds bounds = scene_bounds(scene);
-  const double clearance = clearance_share * bounds.diagonal();
-  for (const Lamp& lamp : scene.lamps) {
-    add(lamp.intensity, LampLight{.lamp = lamp, .clearance = clearance});
+  const std::vector<double> clearance = clearances(scene);
+  const std::vector<Eigen::Vector3d> places = clear_places(scene, clearance);
+  for (std::size_t i = 0; i < scene.lamps.size(); ++i) {
+    LampLight light{.lamp = scene.lamps[i], .clearance = clearance[i]};
+    light.lamp.position = places[i];
+    add(scene.lamps[i].intensity, std::move(light));
   }
   if (!scene.sky) return sources;
   if (has_dome(*scene.sky)) add(constant_spectrum(scene.bands, 1.0f), DomeLight{});

@@ -165,6 +165,39 @@ TEST(FreeLight, FluxOfALampIsAbsorbedAndEscaped) {
 }
 
 // In a closed room that reflects rho, what leaves all surfaces is rho flux / (1 - rho).
+// No ray of a lamp that touches the ceiling begins behind the ceiling, and no ground around the
+// room makes rays begin farther from their lamp.
+TEST(FreeLight, LampsUnderACeilingLightIt) {
+  for (const double around : {0.0, 3000.0}) {
+    for (const double below : {0.0, 1e-7, 1e-5, 1e-3, 0.05}) {
+      Scene scene = box(0.5f);
+      if (around > 0.0) {
+        test::add_polygon(scene, "ground", 0,
+                          {{-around, -around, 0},
+                           {around, -around, 0},
+                           {around, around, 0},
+                           {-around, around, 0}});
+      }
+      scene.lamps = {point_lamp(scene)};
+      scene.lamps[0].position.z() = 3.0 - below;
+      const PatchMesh mesh = build_patches(scene, {.max_patch_size = 1.0});
+      const ElementCaster caster(mesh);
+      const DirectLight lights(scene, mesh);
+      const FreeLight light =
+          cast_free_light(scene, caster, LightPaths(scene, caster, 8), lights, 1 << 14);
+      EXPECT_EQ(light.missed[0], 0.0) << below << " m below, ground of " << around;
+      double on_ceiling = 0.0;
+      for (int p = 0; p < mesh.patch_count(); ++p) {
+        const bool is_ceiling = scene.surfaces[mesh.surface[p]].name == "z1";
+        if (is_ceiling) on_ceiling += mesh.area[p] * light.irradiance(p, 0);
+      }
+      // Half of the rays go up, but at 5 cm for 1 / 40 of these, which meet walls 2 m away. Halves
+      // of a Sobol sequence are exact to a few rays in 16384.
+      EXPECT_NEAR(on_ceiling / light.emitted[0], 0.5, below < 0.05 ? 1e-3 : 0.05) << below;
+    }
+  }
+}
+
 TEST(FreeLight, ClosedRoomAddsUpAllReflections) {
   Scene scene = box(0.5f);
   scene.lamps = {point_lamp(scene)};
