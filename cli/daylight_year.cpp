@@ -252,7 +252,7 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightInputs& i
 
   Stopwatch watch;
   const DaylightOptions options = daylight_options(arguments, inputs.scene, console);
-  // Before form factors, which take long where the page is too large.
+  // A page that is too large is refused before form factors, which take long.
   if (!arguments.walk.empty()) {
     constexpr int fewest_bands = 1;  // of a grey scene; find_year_basis() knows them
     check_year_basis(build_patches(inputs.scene, options.mesh), fewest_bands, hours);

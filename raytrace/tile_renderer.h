@@ -9,7 +9,7 @@
 
 namespace lightwell {
 
-/// Which pixels get many samples.
+/// The pixels that get many samples.
 enum class Sampled { none, with_gloss, all };
 
 /// A row of pixel corners, each as a point of the panel to its right and below.

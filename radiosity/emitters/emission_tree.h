@@ -50,7 +50,7 @@ class EmissionTree {
     double area_per_share = 0.0;               ///< 1 over the density in area, m^2
     const Eigen::Array3f* exitance = nullptr;  ///< as taken_at()
   };
-  /// For (u, v) in [0,1)^2. Precondition: the view has parts.
+  /// `u` and `v` lie in [0,1). Precondition: the view has parts.
   Sample sample(const View& view, double u, double v) const;
 
  private:

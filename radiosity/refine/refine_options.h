@@ -8,7 +8,7 @@
 
 namespace lightwell {
 
-/// What is asked of each part of a scene (see SceneParts::judged_with).
+/// Requirements of each part of a scene (see SceneParts::judged_with).
 struct PartEffort {
   double tolerance = 0.0;  ///< RefineOptions::tolerance within the part
   /// Most noise of the final gather, and of the light of the sky's dome, relative to the part's

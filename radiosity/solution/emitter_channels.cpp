@@ -131,7 +131,7 @@ EmitterChannels channels_by_kind(const Scene& scene) {
   const std::size_t outside = scene.surfaces.size() + scene.lamps.size();
   std::vector<std::string> names;
   std::vector<int> of_light(lights.size(), -1);
-  // From the last on: sky and sun follow the lamps.
+  // Lights are taken from the last on: sky and sun follow the lamps.
   for (std::size_t i = lights.size(); i-- > 0;) {
     if (!lights[i].shines) continue;
     of_light[i] = channel_of(names, i < outside ? electric_channel : lights[i].name);

@@ -51,7 +51,7 @@ struct RaySample {
   float cut_weight = 0.0f;     ///< sum over these branches of the largest weight of any band
 };
 
-/// What light does at each smooth surface of a path: it is reflected or it crosses.
+/// The event at each smooth surface of a path: light is reflected or crosses.
 struct ChainTurns {
   static constexpr int most = 64;
   std::uint64_t crosses = 0;  ///< bit i: the light crosses surface i

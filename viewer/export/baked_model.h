@@ -117,7 +117,7 @@ struct BakedModel {
 
   std::vector<BakedCue> cues{};  ///< for pages; see bake_cues()
 
-  /// Of the scene's lamps; numbered where another lamp or a surface has that name.
+  /// Names of the scene's lamps, numbered where another lamp or a surface has that name.
   std::vector<std::string> lamp_names{};
   std::vector<BakedLampFace> lamp_faces{};  ///< in the order of lamps
 

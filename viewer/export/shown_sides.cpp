@@ -16,7 +16,7 @@ namespace lightwell {
 namespace {
 
 constexpr int rays_per_patch = 64, patch_grain = 64;
-/// What a ray meets instead of an element: nothing, or the black back of a one-sided surface.
+/// Ends of rays that meet no element: nothing, or the black back of a one-sided surface.
 constexpr int way_out = -1, black_back = -2;
 
 /// Sight from a patch, and of a patch.

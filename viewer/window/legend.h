@@ -24,7 +24,7 @@ LegendPicture with_legend(const std::vector<float>& values, int width, int heigh
 /// pixels and about `height` pixels high, more if the numbers need more. Throws as with_legend().
 LegendPicture draw_legend(const LuxRange& range, const std::string& unit, int font, int height);
 
-/// As draw_legend(), of the classes of illuminance (see lux_classes).
+/// Draws a legend as draw_legend() does, of the classes of illuminance (see lux_classes).
 LegendPicture draw_class_legend(int font, int height);
 
 }  // namespace lightwell

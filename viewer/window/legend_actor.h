@@ -13,7 +13,7 @@ class vtkRenderer;
 
 namespace lightwell {
 
-/// What a legend shows.
+/// The values that a legend shows.
 struct LegendContent {
   LuxRange range{};
   std::string unit{};

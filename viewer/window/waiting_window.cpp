@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::chrono::milliseconds between_looks{20};
 
-/// What the callbacks of a waiting window share.
+/// State that the callbacks of a waiting window share.
 struct Waiting {
   vtkRenderWindowInteractor* interactor;
   bool is_closed = false;
