@@ -2,70 +2,25 @@
 
 #include <filesystem>
 #include <memory>
-#include <sstream>
-#include <tuple>
-#include <utility>
 
 #include "cli/arguments.h"
 #include "cli/commands.h"
 #include "cli/compass.h"
 #include "cli/daylight_year.h"
-#include "scene/io/dashed_pair.h"
+#include "scene/errors.h"
+#include "scene/io/weather/clock_time.h"
 
 namespace lightwell {
 namespace {
 
-// Reads "8-18".
-Occupancy parse_occupancy(const std::string& text) {
-  const auto hours = dashed_pair(text);
-  if (!hours || hours->first < 0 || hours->first >= hours->second || hours->second > hours_a_day) {
-    throw CLI::ValidationError(
-        "--occupied",
-        fmt::format("'{}' is no span of hours; write two from 0 to 24, such as 8-18", text));
+// Reads the text of an option by a reader of the library, whose errors become those of the option.
+template <class Read>
+auto read_option(const char* option, const std::string& text, const Read& read) {
+  try {
+    return read(text);
+  } catch (const InputError& error) {
+    throw CLI::ValidationError(option, error.what());
   }
-  return {.from = hours->first, .to = hours->second};
-}
-
-// Reads "03-21".
-void parse_sun_day(const std::string& text, ExposureDay& day) {
-  const auto date = dashed_pair(text);
-  if (!date || number_of({.month = date->first, .day = date->second}, false) < 0) {
-    throw CLI::ValidationError(
-        "--sun-day", fmt::format("'{}' is no day; write month and day, such as 03-21", text));
-  }
-  if (*date < std::pair(2, 1) || *date > std::pair(3, 21)) {
-    throw CLI::ValidationError(
-        "--sun-day", fmt::format("'{}' is none of the days of EN 17037; write one from 02-01 to "
-                                 "03-21",
-                                 text));
-  }
-  std::tie(day.month, day.day) = *date;
-}
-
-// Reads "2024-11-21 15:30", with a T or a space before the time of day.
-ClockTime parse_instant(const std::string& text) {
-  std::istringstream words(text);
-  ClockTime when;
-  int hour = -1, minute = -1;
-  char first = ' ', second = ' ', between = ' ', colon = ' ';
-  words >> when.year >> first >> when.month >> second >> when.day;
-  words.get(between);
-  words >> hour >> colon >> minute;
-  const bool is_whole = !words.fail() && words.peek() == std::istringstream::traits_type::eof() &&
-                        first == '-' && second == '-' && colon == ':' &&
-                        (between == ' ' || between == 'T');
-  constexpr int first_year = 1950, last_year = 2050;  // of the sun's position
-  const bool is_leap_year = when.year % 4 == 0 && (when.year % 100 != 0 || when.year % 400 == 0);
-  if (!is_whole || when.year < first_year || when.year > last_year || hour < 0 || hour > 23 ||
-      minute < 0 || minute > 59 ||
-      number_of({.month = when.month, .day = when.day}, is_leap_year) < 0) {
-    throw CLI::ValidationError(
-        "--at", fmt::format("'{}' is no instant from {} to {}; write date and standard time, such "
-                            "as \"2024-11-21 15:30\"",
-                            text, first_year, last_year));
-  }
-  when.hour = hour + minute / 60.0;
-  return when;
 }
 
 std::string parse_page(const std::string& text) {
@@ -78,9 +33,9 @@ std::string parse_page(const std::string& text) {
 
 int daylight(const DaylightArguments& arguments, Console& console) {
   Report report(console.options());
-  const DaylightInputs inputs = read_daylight_inputs(arguments, console, report);
-  return arguments.at ? daylight_of_instant(arguments, inputs, console, report)
-                      : daylight_of_year(arguments, inputs, console, report);
+  const DaylightStudy study = read_daylight_study(arguments, console, report);
+  return arguments.at ? daylight_of_instant(arguments, study, console, report)
+                      : daylight_of_year(arguments, study, console, report);
 }
 
 // Options on rooms that are judged.
@@ -126,7 +81,11 @@ void add_people(CLI::App& command, const std::shared_ptr<DaylightArguments>& arg
   command
       .add_option_function<std::string>(
           "--sun-day",
-          [arguments](const std::string& text) { parse_sun_day(text, arguments->sun_day); },
+          [arguments](const std::string& text) {
+            const ExposureDay day = read_option("--sun-day", text, read_exposure_day);
+            arguments->sun_day.month = day.month;
+            arguments->sun_day.day = day.day;
+          },
           "day of --sun-points, 02-01 to 03-21 (default 03-21)")
       ->type_name("MM-DD")
       ->needs(sun_points);
@@ -140,7 +99,7 @@ void add_people(CLI::App& command, const std::shared_ptr<DaylightArguments>& arg
       .add_option_function<std::string>(
           "--at",
           [arguments](const std::string& text) {
-            arguments->at = parse_instant(text);
+            arguments->at = read_option("--at", text, read_clock_time);
             arguments->at_text = text;
           },
           "one instant in standard time instead of the year: \"2024-11-21 15:30\"")
@@ -185,7 +144,9 @@ Action add_daylight(CLI::App& command) {
   command
       .add_option_function<std::string>(
           "--occupied",
-          [arguments](const std::string& text) { arguments->occupancy = parse_occupancy(text); },
+          [arguments](const std::string& text) {
+            arguments->occupancy = read_option("--occupied", text, read_occupancy);
+          },
           "occupied hours of every day, standard time (default 8-18)")
       ->type_name("FROM-TO");
   command

@@ -10,8 +10,8 @@
 
 #include "cli/channels.h"
 #include "mesh/patches/translucency.h"
-#include "scene/atomic_file.h"
 #include "scene/parallel.h"
+#include "viewer/export/write_whole.h"
 
 namespace lightwell {
 namespace {
@@ -211,11 +211,6 @@ Json parts_json(const SolvedScene& solved) {
   return parts;
 }
 
-std::string to_text(const Json& json) {
-  // File names may hold bytes that are not UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
-
 }  // namespace
 
 Report::Report(const CommonOptions& options) : options_(options) {}
@@ -316,13 +311,11 @@ void Report::write(const std::filesystem::path& file) const {
 }
 
 void print_json(const Json& json) {
-  fmt::print("{}", to_text(json));
+  fmt::print("{}", json_text(json));
 }
 
 void write_json(const std::filesystem::path& file, const Json& json) {
-  AtomicStream target(file);
-  target.stream() << to_text(json);
-  target.commit();
+  write_whole(file, {json_text(json)});
 }
 
 std::string outcome_name(Outcome outcome) {

@@ -9,7 +9,6 @@
 #include <string>
 
 #include "cli/commands.h"
-#include "cli/compass.h"
 #include "cli/facet_geometry.h"
 #include "cli/interrupt.h"
 #include "cli/outputs.h"
@@ -19,6 +18,7 @@
 #include "raytrace/readings/exposure_points.h"
 #include "scene/errors.h"
 #include "scene/sun_position.h"
+#include "viewer/export/compass.h"
 
 namespace lightwell {
 namespace {

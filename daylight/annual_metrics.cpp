@@ -1,9 +1,13 @@
 #include "daylight/annual_metrics.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
+#include "scene/errors.h"
+#include "scene/io/dashed_pair.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -94,6 +98,15 @@ AnnualMetrics::AnnualMetrics(int sensors, std::span<const SkyHour> hours, int ye
   for (std::size_t i = 0; i < count; ++i) {
     is_bright_[static_cast<std::size_t>(hours[static_cast<std::size_t>(by_light[i])].number)] = 1;
   }
+}
+
+Occupancy read_occupancy(const std::string& text) {
+  const auto hours = dashed_pair(text);
+  if (!hours || hours->first < 0 || hours->first >= hours->second || hours->second > hours_a_day) {
+    throw InputError(
+        fmt::format("'{}' is no span of hours; write two from 0 to 24, such as 8-18", text));
+  }
+  return {.from = hours->first, .to = hours->second};
 }
 
 bool Occupancy::holds(int hour_of_year) const {

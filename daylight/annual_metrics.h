@@ -18,6 +18,9 @@ struct Occupancy {
   bool holds(int hour_of_year) const;
 };
 
+/// Reads "8-18". Throws InputError for other text, and for hours out of range.
+Occupancy read_occupancy(const std::string& text);
+
 /// Measures of a year, one value for each sensor.
 struct SensorMetrics {
   // Shares of the occupied hours, %.

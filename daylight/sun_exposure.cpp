@@ -1,6 +1,12 @@
 #include "daylight/sun_exposure.h"
 
+#include <fmt/format.h>
+
+#include <utility>
+
 #include "radiosity/visibility/clear_panes.h"
+#include "scene/errors.h"
+#include "scene/io/dashed_pair.h"
 #include "scene/parallel.h"
 #include "scene/sun_position.h"
 
@@ -30,6 +36,18 @@ std::vector<Eigen::Vector3d> suns_of_day(const SkyPatches& sky, const Weather& w
 }
 
 }  // namespace
+
+ExposureDay read_exposure_day(const std::string& text) {
+  const auto date = dashed_pair(text);
+  if (!date || number_of({.month = date->first, .day = date->second}, false) < 0) {
+    throw InputError(fmt::format("'{}' is no day; write month and day, such as 03-21", text));
+  }
+  if (*date < std::pair(2, 1) || *date > std::pair(3, 21)) {
+    throw InputError(
+        fmt::format("'{}' is none of the days of EN 17037; write one from 02-01 to 03-21", text));
+  }
+  return {.month = date->first, .day = date->second};
+}
 
 Eigen::ArrayXd sun_exposure(const DaylightModel& model, const Weather& weather,
                             std::span<const Eigen::Vector3d> points, const ExposureDay& day) {

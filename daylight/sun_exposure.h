@@ -16,6 +16,10 @@ struct ExposureDay {
   double least_altitude_degrees = 0.0;  ///< of the sun that counts, [0, 90)
 };
 
+/// Reads "03-21", month and day. Throws InputError for other text, and for another day than those
+/// of the standard.
+ExposureDay read_exposure_day(const std::string& text);
+
 /// Hours of the day in which each point (m) has the middle of the sun in sight, straight or through
 /// clear panes: the minutes in whose middle it has. The year is 2017.
 Eigen::ArrayXd sun_exposure(const DaylightModel& model, const Weather& weather,

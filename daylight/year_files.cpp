@@ -51,6 +51,21 @@ void NumpyRows::commit() {
   file_.commit();
 }
 
+HourlyFiles::HourlyFiles(const std::filesystem::path& folder, int sensors)
+    : sensors_(sensors),
+      total_(folder / "illuminance.npy", sensors),
+      sunlight_(folder / "sunlight.npy", sensors) {}
+
+void HourlyFiles::append(const HourBlock& block) {
+  total_.append(block.total.topRows(sensors_));
+  sunlight_.append(block.sunlight.topRows(sensors_));
+}
+
+void HourlyFiles::commit() {
+  total_.commit();
+  sunlight_.commit();
+}
+
 void write_sensors(const std::filesystem::path& csv, std::span<const Probe> sensors,
                    const SensorMetrics& metrics, const Eigen::ArrayXf& daylight_factor,
                    double metres_per_unit) {

@@ -33,6 +33,21 @@ class NumpyRows {
   std::int64_t rows_ = 0;
 };
 
+/// Light of every hour and sensor: illuminance.npy and sunlight.npy in a folder, hours x sensors,
+/// lx.
+class HourlyFiles {
+ public:
+  /// For the first `sensors` of each block. Throws as NumpyRows does.
+  HourlyFiles(const std::filesystem::path& folder, int sensors);
+
+  void append(const HourBlock& block);
+  void commit();
+
+ private:
+  int sensors_;
+  NumpyRows total_, sunlight_;
+};
+
 /// Writes a line for each sensor: x,y,z,nx,ny,nz in file units, the measures of SensorMetrics and
 /// the daylight factor DF, %. Throws std::runtime_error with the file and the reason.
 void write_sensors(const std::filesystem::path& csv, std::span<const Probe> sensors,

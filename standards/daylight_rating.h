@@ -75,6 +75,12 @@ std::vector<DaylightRating> read_daylight_ratings(const std::filesystem::path& f
 const DaylightRating& find_daylight_rating(const std::vector<DaylightRating>& ratings,
                                            const std::string& key, const std::string& asked_by);
 
+/// The ratings of keys, of the table in a file, or of the program's own where `file` is empty.
+/// Throws InputError as read_daylight_ratings() and find_daylight_rating() do.
+std::vector<DaylightRating> find_daylight_ratings(std::span<const std::string> keys,
+                                                  const std::filesystem::path& file,
+                                                  const std::string& asked_by);
+
 /// The figures of a room, or of a part that is rated by itself. Hours are those of the rating's
 /// illuminances.
 struct DaylitRoom {

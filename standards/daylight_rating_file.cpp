@@ -109,4 +109,15 @@ const DaylightRating& find_daylight_rating(const std::vector<DaylightRating>& ra
                     {.key = key, .asked_by = asked_by, .noun = "rating", .option = "--ratings"});
 }
 
+std::vector<DaylightRating> find_daylight_ratings(std::span<const std::string> keys,
+                                                  const std::filesystem::path& file,
+                                                  const std::string& asked_by) {
+  std::vector<DaylightRating> asked;
+  if (keys.empty()) return asked;
+  const std::vector<DaylightRating> known =
+      file.empty() ? usual_daylight_ratings() : read_daylight_ratings(file);
+  for (const std::string& key : keys) asked.push_back(find_daylight_rating(known, key, asked_by));
+  return asked;
+}
+
 }  // namespace lightwell

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "scene/errors.h"
+
 namespace lightwell::annual_metrics_test {
 namespace {
 
@@ -108,6 +110,15 @@ TEST(AnnualMetrics, OfARoom) {
   // The last two meet 500 lx everywhere and 750 lx on half; 300 lx everywhere.
   EXPECT_EQ(room_metrics(sensors, factor, 2, 2).en_level, "high");
   EXPECT_EQ(room_metrics(sensors, factor, 0, 1).en_level, "none");
+}
+
+TEST(Occupancy, IsReadFromTwoHours) {
+  const Occupancy read = read_occupancy("0-24");
+  EXPECT_EQ(read.from, 0);
+  EXPECT_EQ(read.to, 24);
+  for (const char* const text : {"", "8", "18-8", "8-8", "0-25", "-1-8", "8-18h", "8.5-18"}) {
+    EXPECT_THROW(read_occupancy(text), InputError) << text;
+  }
 }
 
 }  // namespace lightwell::annual_metrics_test

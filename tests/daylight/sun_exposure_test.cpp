@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "scene/errors.h"
 #include "tests/daylight/daylight_rooms.h"
 
 namespace lightwell::sun_exposure_test {
@@ -43,6 +44,15 @@ TEST(SunExposure, PanesPassTheSunAndWallsDoNot) {
   // the window reaches 0.8 m and 1 m: all of half a day, to two minutes.
   EXPECT_NEAR(february[0], 12.0, 2.0 / 60.0);
   EXPECT_EQ(february[2], 0.0);
+}
+
+TEST(SunExposure, DaysAreThoseOfEn17037) {
+  const ExposureDay day = read_exposure_day("02-28");
+  EXPECT_EQ(day.month, 2);
+  EXPECT_EQ(day.day, 28);
+  for (const char* const text : {"", "02-29", "01-31", "03-22", "3", "03-21-", "1e300-1"}) {
+    EXPECT_THROW(read_exposure_day(text), InputError) << text;
+  }
 }
 
 TEST(SunExposure, LevelsAreThoseOfEn17037) {

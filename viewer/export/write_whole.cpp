@@ -1,6 +1,7 @@
 #include "viewer/export/write_whole.h"
 
 #include <list>
+#include <nlohmann/json.hpp>
 
 #include "scene/atomic_file.h"
 
@@ -28,6 +29,11 @@ void write_together(std::initializer_list<FileText> files) {
   std::list<AtomicStream> written;
   for (const auto& [path, text] : files) write_temporary(written.emplace_back(path), {text});
   for (AtomicStream& file : written) file.commit();
+}
+
+std::string json_text(const nlohmann::ordered_json& json) {
+  constexpr int indent = 2;
+  return json.dump(indent, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
 std::string one_line(std::string name) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <initializer_list>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -18,6 +19,9 @@ struct FileText {
 };
 /// Writes files that belong together: none gets its name before all are written.
 void write_together(std::initializer_list<FileText> files);
+
+/// A JSON value as the text of a file, indented. Bytes of names that are not UTF-8 are replaced.
+std::string json_text(const nlohmann::ordered_json& json);
 
 /// Appends the bytes of a value in memory order. The formats written here are little-endian, as
 /// x86-64 is.

@@ -274,9 +274,7 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
 }
 
 std::string report_json(const LightingReport& report) {
-  // Names may hold bytes that are not UTF-8.
-  using Json = nlohmann::ordered_json;
-  return figures_json(report).dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(figures_json(report));
 }
 
 void require_report_file(const std::filesystem::path& path) {

@@ -268,10 +268,7 @@ void write_road_report(const std::filesystem::path& path, const RoadReport& repo
   } else if (kind == ".pdf") {
     write_whole(path, {pdf_document(road_document(report))});
   } else {
-    const int indent = 2;
-    write_whole(
-        path,
-        {road_json(report).dump(indent, ' ', false, RoadJson::error_handler_t::replace) + "\n"});
+    write_whole(path, {json_text(road_json(report))});
   }
 }
 

@@ -1,4 +1,4 @@
-#include "cli/daylight_count.h"
+#include "viewer/report/year_count.h"
 
 #include <algorithm>
 
@@ -15,25 +15,8 @@ void set_metrics(const SensorMetrics& sensors, const Eigen::ArrayXf& daylight_fa
 
 }  // namespace
 
-HourlyFiles::HourlyFiles(const OutputFolder& folder, int sensors)
-    : sensors_(sensors),
-      total_(folder / "illuminance.npy", sensors),
-      sunlight_(folder / "sunlight.npy", sensors) {}
-
-void HourlyFiles::append(const HourBlock& block) {
-  total_.append(block.total.topRows(sensors_));
-  sunlight_.append(block.sunlight.topRows(sensors_));
-}
-
-void HourlyFiles::commit() {
-  total_.commit();
-  sunlight_.commit();
-}
-
-YearCount::YearCount(std::span<const SkyHour> hours, int sensors, HourlyFiles* files,
-                     YearReport& made)
+YearCount::YearCount(std::span<const SkyHour> hours, int sensors, YearReport& made)
     : made_(made),
-      files_(files),
       metrics_(AnnualMetrics(sensors, hours, static_cast<int>(made.weather.hours.size()),
                              made.occupancy)) {
   for (YearRoom& room : made_.rooms) {
@@ -66,20 +49,21 @@ void YearCount::add(const HourBlock& block, const std::vector<double>& errors) {
           block.total.col(static_cast<Eigen::Index>(h)).segment(room.first, room.count).mean();
     }
   }
-  if (files_) files_->append(block);
 }
 
-void YearCount::finish(const Eigen::ArrayXd* open_sun_hours) {
+MetricBounds YearCount::finish(const Eigen::ArrayXd* open_sun_hours) {
   const auto with_sun = [&](const AnnualMetrics& metrics) {
     SensorMetrics sensors = metrics.sensors();
     if (open_sun_hours) sensors.sun_hours = *open_sun_hours;
     return sensors;
   };
   made_.sensors = with_sun(metrics_.value);
+  MetricBounds bounds{.least = with_sun(metrics_.less), .most = with_sun(metrics_.more)};
   set_metrics(made_.sensors, made_.daylight_factor, &YearRoom::metrics, made_.rooms);
-  set_metrics(with_sun(metrics_.less), made_.daylight_factor, &YearRoom::least, made_.rooms);
-  set_metrics(with_sun(metrics_.more), made_.daylight_factor, &YearRoom::most, made_.rooms);
+  set_metrics(bounds.least, made_.daylight_factor, &YearRoom::least, made_.rooms);
+  set_metrics(bounds.most, made_.daylight_factor, &YearRoom::most, made_.rooms);
   for (std::size_t r = 0; r < rooms_.size(); ++r) finish_room(rooms_[r], made_.rooms[r]);
+  return bounds;
 }
 
 void YearCount::finish_room(const OfRoom& counted, YearRoom& room) const {

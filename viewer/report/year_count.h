@@ -5,28 +5,13 @@
 #include <span>
 #include <vector>
 
-#include "cli/outputs.h"
 #include "daylight/annual_metrics.h"
 #include "daylight/lamp_use.h"
 #include "daylight/operated_year.h"
 #include "daylight/room_hours.h"
-#include "daylight/year_files.h"
 #include "viewer/report/year_report.h"
 
 namespace lightwell {
-
-/// Files of every hour and sensor, where they are asked for.
-class HourlyFiles {
- public:
-  HourlyFiles(const OutputFolder& folder, int sensors);
-
-  void append(const HourBlock& block);
-  void commit();
-
- private:
-  int sensors_;
-  NumpyRows total_, sunlight_;
-};
 
 /// A count of the year's light, and counts of that much less and more light by its bound.
 template <class Count>
@@ -43,17 +28,22 @@ struct BoundedCount {
   }
 };
 
+/// Measures of sensors with less and with more light, by the bound of its error.
+struct MetricBounds {
+  SensorMetrics least{}, most{};
+};
+
 /// Measures of a year and of its rooms, hour by hour.
 class YearCount {
  public:
-  /// Counts for `made`, whose rooms, ratings and weather are known. `files` may be null.
-  YearCount(std::span<const SkyHour> hours, int sensors, HourlyFiles* files, YearReport& made);
+  /// Counts for `made`, whose rooms, ratings and weather are known, and which is kept.
+  YearCount(std::span<const SkyHour> hours, int sensors, YearReport& made);
 
   /// Adds a block of hours, with the bound of each hour's light.
   void add(const HourBlock& block, const std::vector<double>& errors);
-  /// Fills in the measures. `open_sun_hours`, if not null, are those of windows without blinds,
-  /// which ASE asks for.
-  void finish(const Eigen::ArrayXd* open_sun_hours);
+  /// Fills in the measures, and returns the ends of their bounds. `open_sun_hours`, if not null,
+  /// are those of windows without blinds, which ASE asks for.
+  MetricBounds finish(const Eigen::ArrayXd* open_sun_hours);
 
  private:
   // Counts of one room.
@@ -65,7 +55,6 @@ class YearCount {
   void finish_room(const OfRoom& counted, YearRoom& room) const;
 
   YearReport& made_;
-  HourlyFiles* files_;
   BoundedCount<AnnualMetrics> metrics_;
   std::vector<OfRoom> rooms_{};
 };
