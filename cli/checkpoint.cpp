@@ -121,20 +121,11 @@ Checkpoint::Checkpoint(const CheckpointArguments& arguments, const Provenance& o
   }
   require_writable(file);
   const bool exists = fs::exists(file);
-  if (exists && !arguments.resume) {
-    if (Journal::holds_work(file)) {
-      throw InputError(fmt::format(
-          "the checkpoint '{}' holds finished work already; add --resume to continue from it, or "
-          "remove it to start again",
-          file.string()));
-    }
-    fs::remove(file);
-  }
   if (!exists && arguments.resume) {
     console.say(fmt::format("note: there is no checkpoint '{}' yet; starting from the beginning",
                             file.string()));
   }
-  journal_ = std::make_unique<Journal>(file, of, arguments.every);
+  journal_ = Journal::open(file, of, arguments.every, arguments.resume);
   if (journal_->found() > 0) {
     console.say(fmt::format("resuming from '{}': {} of finished work", file.string(),
                             bytes_text(journal_->found())));

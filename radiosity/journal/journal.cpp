@@ -149,6 +149,20 @@ std::unique_ptr<Journal> Journal::of_another_solve(fs::path file, const std::str
   return std::unique_ptr<Journal>(new Journal(std::make_unique<Impl>(std::move(file), version)));
 }
 
+std::unique_ptr<Journal> Journal::open(const fs::path& file, const Provenance& of, double every,
+                                       bool resumes) {
+  if (!resumes && fs::exists(file)) {
+    if (holds_work(file)) {
+      throw InputError(fmt::format(
+          "the checkpoint '{}' holds finished work already; add --resume to continue from it (in "
+          "Python resume=True), or remove it to start again",
+          file.string()));
+    }
+    fs::remove(file);
+  }
+  return std::make_unique<Journal>(file, of, every);
+}
+
 Journal::~Journal() = default;
 
 bool Journal::holds_work(const fs::path& file) {

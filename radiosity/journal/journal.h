@@ -40,6 +40,11 @@ class Journal {
   /// damaged, of another version, or in use by a running solve.
   static std::unique_ptr<Journal> of_another_solve(std::filesystem::path file,
                                                    const std::string& version);
+  /// The journal for work that begins, or that is resumed where the file has any. A file without
+  /// finished work is begun anew. Throws InputError for one that holds finished work unless
+  /// `resumes`, and as the constructor does.
+  static std::unique_ptr<Journal> open(const std::filesystem::path& file, const Provenance& of,
+                                       double every, bool resumes);
   ~Journal();
   Journal(const Journal&) = delete;
   Journal& operator=(const Journal&) = delete;
