@@ -6,6 +6,7 @@
 
 #include "scene/io/lighting_design.h"
 #include "scene/io/read_scene.h"
+#include "scene/io/window_states.h"
 #include "scene/scene.h"
 
 namespace lightwell {
@@ -28,6 +29,10 @@ Scene read_scene_text(const SceneText& text, const AddSurfaces& add_surfaces = {
 
 /// Reads the lighting design of the text that `scene` was read from, as read_toml_lighting() does.
 LightingDesign read_lighting_text(const SceneText& text, const Scene& scene);
+
+/// Reads the [[windows]] of the text that `scene` was read from, as read_windows() does of a file;
+/// none where the text has none.
+OperatedWindows read_windows_text(const SceneText& text, const Scene& scene);
 
 /// Reads the keys of one [[cameras]] table, lengths in metres, for a picture of `scene`: its
 /// `motion` is one of the scene's, and its shutter lies about the instant that light is solved for.

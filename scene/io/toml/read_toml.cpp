@@ -157,6 +157,12 @@ std::filesystem::path place_of(const SceneText& text) {
   return text.folder / "";
 }
 
+// The files that a text names, as far as it may name them.
+FilesRead files_of(const SceneText& text) {
+  return text.references == References::inside_folder ? FilesRead::inside_folder_of(place_of(text))
+                                                      : FilesRead();
+}
+
 }  // namespace
 
 Scene read_toml(const std::filesystem::path& path) {
@@ -167,9 +173,7 @@ Scene read_toml(const std::filesystem::path& path) {
 
 Scene read_scene_text(const SceneText& text, const AddSurfaces& add_surfaces) {
   const std::filesystem::path place = place_of(text);
-  const FilesRead read = text.references == References::inside_folder
-                             ? FilesRead::inside_folder_of(place)
-                             : FilesRead();
+  const FilesRead read = files_of(text);
   const toml::table root = parse_toml_text(text.text);
   Scene scene = read_document(TomlValue(place, root, ""), add_surfaces);
   scene.files = read.files();
@@ -182,6 +186,14 @@ LightingDesign read_lighting_text(const SceneText& text, const Scene& scene) {
   const std::filesystem::path place = place_of(text);
   const toml::table root = parse_toml_text(text.text);
   return read_lighting(TomlValue(place, root, ""), scene);
+}
+
+OperatedWindows read_windows_text(const SceneText& text, const Scene& scene) {
+  const std::filesystem::path place = place_of(text);
+  const FilesRead read = files_of(text);
+  const toml::table root = parse_toml_text(text.text);
+  const auto windows = TomlValue(place, root, "").member("windows");
+  return windows ? read_toml_windows(*windows, scene, scene.materials) : OperatedWindows{};
 }
 
 Camera read_camera_text(const std::string& text, const Scene& scene) {
