@@ -38,13 +38,17 @@ double edge_term(const SeenVertex& a, const SeenVertex& b, const Eigen::Vector3d
 }
 
 // Sum of edge_term over the part of the loop above the horizon (Sutherland & Hodgman against one
-// plane, without storing the clipped loop).
+// plane, without storing the clipped loop). A loop around the point, in the plane of the point but
+// for rounding, would fill the hemisphere or nothing: such a loop gives nothing.
 double loop_term(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                  std::span<const Eigen::Vector3d> loop) {
+  constexpr double in_plane = 1e-9;  // sine over the horizon
   double sum = 0.0;
+  bool rises = false;
   std::optional<SeenVertex> first, previous;
-  const auto visit = [&](const Eigen::Vector3d& to) {
+  const auto visit = [&](const Eigen::Vector3d& to, double height) {
     const SeenVertex v(to);
+    rises = rises || height > in_plane * v.distance;
     if (previous) {
       sum += edge_term(*previous, v, normal);
     } else {
@@ -58,14 +62,14 @@ double loop_term(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
     const Eigen::Vector3d b = vertex - point;
     const double height_b = b.dot(normal);
     if ((height_a > 0.0) != (height_b > 0.0)) {
-      visit(a + (height_a / (height_a - height_b)) * (b - a));
+      visit(a + (height_a / (height_a - height_b)) * (b - a), 0.0);
     }
-    if (height_b > 0.0) visit(b);
+    if (height_b > 0.0) visit(b, height_b);
     a = b;
     height_a = height_b;
   }
   if (previous) sum += edge_term(*previous, *first, normal);
-  return sum;
+  return rises ? sum : 0.0;
 }
 
 }  // namespace

@@ -13,7 +13,8 @@ using Loop = std::vector<Eigen::Vector3d>;
 /// polygon: Lambert's contour formula F = 1/(2 pi) sum_k Gamma_k . n (Baum, Rushmeier & Winget
 /// 1989, eq. 5) after clipping to the element's horizon. The first loop is the boundary, further
 /// loops are holes of opposite winding. Positive when the loop runs counter-clockwise seen from the
-/// element, negative when clockwise. |F| <= 1. Relative error about 1e-12.
+/// element, negative when clockwise. |F| <= 1. Relative error about 1e-12; 0 for a polygon that
+/// rises above the horizon by less than 1e-9 of its distance, as one in the plane of the point.
 double point_to_polygon(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                         std::span<const Loop> loops);
 /// Form factor to a polygon without holes; otherwise as above.

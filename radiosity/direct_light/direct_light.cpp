@@ -19,6 +19,7 @@
 #include "radiosity/sky/sky_light.h"
 #include "radiosity/visibility/shadow_rays.h"
 #include "scene/random_purpose.h"
+#include "scene/rays/float_rounding.h"
 
 namespace lightwell {
 namespace {
@@ -99,6 +100,9 @@ double DirectLight::unoccluded_form_factor(const Emitter& emitter, const Surface
   } else {
     const double front = (point - emitter.loops[0][0]).dot(emitter.normal);
     if (!(front > 0.0) && !(emitter.emits_both_sides && front < 0.0)) return 0.0;
+    // Surfaces that face one way see nothing of each other's fronts, whichever of two planes that
+    // lie on each other rounding puts before the other.
+    if (!emitter.emits_both_sides && normal.dot(emitter.normal) > parallel_cosine) return 0.0;
     F = std::abs(point_to_polygon(point, normal, emitter.loops));
   }
   // A smaller F is rounding: the emitter grazes the horizon or is seen edge-on.

@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "scene/sampling.h"
 
@@ -102,6 +104,29 @@ double sphere_by_quadrature(double distance, double theta, double radius) {
     }
   }
   return sum * (alpha / steps) * (2.0 * std::numbers::pi / (steps / 4)) / std::numbers::pi;
+}
+
+// Once turned, corners lie above or below the point's plane by the rounding of 5 m, 1e-15 m. Around
+// the point they would fill the whole hemisphere.
+TEST(PointToPolygon, NothingFromItsOwnPlaneHoweverThatIsTurned) {
+  for (int i = 0; i < 100; ++i) {
+    const auto key = static_cast<std::uint64_t>(i);
+    const Eigen::Vector3d axis(random_uniform(random_key(key, 1)) - 0.5,
+                               random_uniform(random_key(key, 2)),
+                               random_uniform(random_key(key, 3)));
+    const Eigen::Matrix3d turn =
+        Eigen::AngleAxisd(6.0 * random_uniform(random_key(key, 4)), axis.normalized()).matrix();
+    const Eigen::Vector3d at = turn * Eigen::Vector3d(2.3, 1.7, 3.0), n = turn.col(2);
+    Loop loop;
+    for (const auto& [x, y] :
+         {std::pair(2, 1), std::pair(3, 1), std::pair(3, 2), std::pair(2, 2)}) {
+      loop.push_back(turn * Eigen::Vector3d(x, y, 3.0));
+    }
+    EXPECT_EQ(point_to_polygon(at, n, loop), 0.0) << i;
+    EXPECT_EQ(point_to_polygon(at, -n, loop), 0.0) << i;
+    // A gap of 1 um is none of that: what the square leaves of the hemisphere is about its width.
+    EXPECT_NEAR(std::abs(point_to_polygon(at - 1e-6 * n, n, loop)), 1.0, 1e-5) << i;
+  }
 }
 
 TEST(PointToSphere, AgreesWithQuadratureAboveAcrossAndBelowTheHorizon) {

@@ -169,6 +169,25 @@ TEST(DirectLight, SphereLampObeysTheClosedForm) {
 // A point that drawn lights are compared with all lights at: a large emitter through whose plane
 // the point's horizon runs, with its middle below the horizon; small emitters of other brightness,
 // one behind the point; a sphere; a lamp. Nothing stands between.
+// Rounding, of a turn or of coordinates in single precision, puts a lamp in the plane of its
+// ceiling a little before or behind the ceiling. The ceiling under the lamp is dark in either case.
+TEST(DirectLight, LampsInTheirCeilingDoNotShineAtIt) {
+  for (const double height : {0.0, 1e-15, -1e-15, 2e-7, -2e-7}) {
+    Scene scene;
+    const int lamp = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 100.0f));
+    const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+    test::add_polygon(scene, "ceiling", grey, {{0, 0, 3}, {0, 4, 3}, {5, 4, 3}, {5, 0, 3}});
+    const double z = 3.0 + height;
+    test::add_polygon(scene, "lamp", lamp, {{2, 1, z}, {2, 2, z}, {3, 2, z}, {3, 1, z}});
+    const PatchMesh mesh = build_patches(scene, {.max_patch_size = 1.0});
+    const ElementCaster caster(mesh);
+    const DirectLight light(scene, mesh);
+    const Spectrum E =
+        light.irradiance(caster, {.at = {{2.3, 1.7, 3.0}, -Eigen::Vector3d::UnitZ(), 0}, .key = 7});
+    EXPECT_EQ(E[0], 0.0f) << height;
+  }
+}
+
 TEST(DirectLight, OneLightStandsForAllInTheMean) {
   Scene scene;
   const auto shines = [&](float M) {
