@@ -16,6 +16,7 @@
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "scene/round_shape.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
@@ -278,6 +279,19 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOption
   return best;
 }
 
+// Adds a note if patches follow surroundings beside which the rest of the scene is small. A dome
+// has most of the area, so the error estimate says little of a room within it.
+void note_surroundings(const Scene& scene, const CutSize& cut, std::vector<std::string>& notes) {
+  const double all = scene_bounds(scene).diagonal(), scenery = scenery_box(scene).diagonal().norm();
+  if (!(scenery < all) || !(cut.patch_size > scenery / 8.0)) return;
+  notes.push_back(fmt::format(
+      "the surroundings are {:.4g} m long, and what they surround {:.3g} m: patches of {:.3g} m "
+      "are "
+      "too coarse for its light, and the error estimate may not show that; make the surroundings "
+      "smaller, up to 50 times as long, or use a [sky] in place of a dome",
+      all, scenery, cut.patch_size));
+}
+
 bool is_sphere(const Surface& surface) {
   return std::holds_alternative<Sphere>(surface.shape);
 }
@@ -343,6 +357,7 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Pr
                                  scene.file.string(), scene.file.empty() ? "" : ": "));
   }
   lay_on_textures(scene, mesh);
+  note_surroundings(scene, round_cut, notes);
   mesh.notes = std::move(notes);
   report(progress, "mesh", 1.0);
   return mesh;

@@ -339,8 +339,8 @@ LuxGrid without_buried_points(const ElementCaster& caster, LuxGrid grid) {
   const SobolPoints sobol(ray_count);
   // Rounding decides on which side of a face a point in its plane lies, so points beside it are
   // tested too. Light inside a body is not light of the plane.
-  constexpr double beside = 1e-5;  // share of the scene's diagonal
-  const double aside = beside * mesh_bounds(caster.mesh()).diagonal();
+  constexpr double beside = 1e-5;  // share of the scenery's diagonal
+  const double aside = beside * scenery_bounds(caster.mesh()).diagonal();
   const auto is_inside = [&](const Eigen::Vector3d& position, const Eigen::Vector3d& normal) {
     Eigen::Vector3d a, b;
     tangent_frame(normal, a, b);

@@ -28,7 +28,7 @@ Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
 }  // namespace
 
 ProbeSurface::ProbeSurface(const ElementCaster& caster)
-    : caster_(caster), reach_(reach_share * mesh_bounds(caster.mesh()).diagonal()) {}
+    : caster_(caster), reach_(reach_share * scenery_bounds(caster.mesh()).diagonal()) {}
 
 std::optional<ProbeSurface::Found> ProbeSurface::find(const Probe& probe) const {
   Frame frame{.normal = probe.normal};
