@@ -3,7 +3,7 @@
 import fnmatch
 import os
 from dataclasses import dataclass
-from typing import Any, Iterator, List, Optional, Tuple
+from typing import Any, Dict, Iterator, List, Optional, Tuple
 
 import numpy as np
 
@@ -143,17 +143,22 @@ def _photometry(source: Any, data: Any, name: str) -> Tuple[Optional[str], str]:
     """An LM-63 file of an IfcLightIntensityDistribution; or None, and what keeps it from being one."""
     from ifcopenshell.util.unit import calculate_unit_scale
 
-    if data.LightDistributionCurve != "TYPE_C":
-        return None, f"the intensities of its light source are of {data.LightDistributionCurve}, and TYPE_C is read"
+    if data.LightDistributionCurve not in ("TYPE_A", "TYPE_B", "TYPE_C"):
+        return None, f"the intensities of its light source are of type {data.LightDistributionCurve}; A, B and C are read"
     if not source.LuminousFlux or source.LuminousFlux <= 0.0:
         return None, "its light source has no luminous flux"
     degrees = np.degrees(calculate_unit_scale(source.file, "PLANEANGLEUNIT"))
-    planes = {round(plane.MainPlaneAngle * degrees, 6): plane for plane in data.DistributionData}
-    gammas = _gammas(np.concatenate([plane.SecondaryPlaneAngle for plane in planes.values()]) * degrees)
-    intensities = {
-        angle: np.interp(gammas, np.array(plane.SecondaryPlaneAngle) * degrees, plane.LuminousIntensity, 0.0, 0.0)
-        for angle, plane in sorted(planes.items())
+    given = {
+        round(plane.MainPlaneAngle * degrees, 6): (np.array(plane.SecondaryPlaneAngle) * degrees, plane.LuminousIntensity)
+        for plane in data.DistributionData
     }
+    for angles, values in given.values():
+        if len(angles) != len(values) or (np.diff(angles) <= 0.0).any():
+            return None, "the angles of a plane of its light source do not rise, or are not as many as its intensities"
+    if data.LightDistributionCurve != "TYPE_C":
+        given = _type_c_of(data.LightDistributionCurve, given)
+    gammas = _with_ends(np.concatenate([angles for angles, _ in given.values()]), 0.0, 180.0)
+    intensities = _on_common_angles(given, gammas)
     angles = list(intensities)
     if angles[0] != 0.0 or angles[-1] > 360.0:
         return None, "the planes of its light source do not begin at C0"
@@ -166,11 +171,93 @@ def _photometry(source: Any, data: Any, name: str) -> Tuple[Optional[str], str]:
     return _lm63(name, np.array(list(intensities)), gammas, values), ""
 
 
-def _gammas(given: np.ndarray) -> np.ndarray:
-    """Angles from 0 to 180 degrees, with an end of light just beyond those given."""
+Planes = Dict[float, Tuple[np.ndarray, Any]]
+"""Angles within each plane and the intensities there, by the angle of the plane; degrees."""
+
+
+def _with_ends(given: np.ndarray, least: float, most: float) -> np.ndarray:
+    """Angles from `least` to `most` degrees, with an end of light just beyond those given."""
     low, high = given.min(), given.max()
-    ends = [0.0, 180.0] + ([low - 0.01] if low > 0.01 else []) + ([high + 0.01] if high < 179.99 else [])
+    ends = [least, most] + ([low - 0.01] if low > least + 0.01 else []) + ([high + 0.01] if high < most - 0.01 else [])
     return np.unique(np.round(np.concatenate([given, ends]), 6))
+
+
+def _on_common_angles(planes: Planes, angles: np.ndarray) -> Dict[float, np.ndarray]:
+    return {main: np.interp(angles, own, values, 0.0, 0.0) for main, (own, values) in sorted(planes.items())}
+
+
+def _type_c_of(kind: str, given: Planes) -> Planes:
+    """Intensities of type A or B, linear between their angles, on planes of type C.
+
+    The planes of type B meet in a horizontal axis along C90, with B0 at the bottom and B90 at C0, and beta rises
+    towards C90 (CIE 121). Those of type A are these, turned by 90 degrees counter-clockwise about the vertical (IFC).
+    Angles from 0 on alone hold for both signs.
+    """
+    planes = _mirrored({_turned(main): own for main, own in given.items()})
+    planes = {main: _mirrored_within(own) for main, own in planes.items()}
+    inner = _with_ends(np.concatenate([angles for angles, _ in planes.values()]), -90.0, 90.0)
+    rows = _on_common_angles(planes, inner)
+    mains = np.array(list(rows))
+    table = np.array(list(rows.values()))
+    gap = mains[0] + 360.0 - mains[-1]
+    if len(mains) > 1 and 0.0 < gap <= 1.5 * np.diff(mains).max():  # all around
+        mains = np.concatenate([mains, [mains[0] + 360.0]])
+        table = np.concatenate([table, table[:1]])
+    step = float(np.clip(min(_least_step(mains), _least_step(inner)), 1.0, 5.0))
+    c = np.linspace(0.0, 360.0, round(360.0 / step) + 1)
+    gammas = np.linspace(0.0, 180.0, round(180.0 / step) + 1)
+    sine = np.sin(np.radians(gammas))
+    found: Planes = {}
+    for angle in c:
+        x, y, down = sine * np.cos(np.radians(angle)), sine * np.sin(np.radians(angle)), np.cos(np.radians(gammas))
+        towards, axis = (x, y) if kind == "TYPE_B" else (y, -x)
+        main = np.degrees(np.arctan2(towards, down))
+        main[main < mains[0] - 1e-9] += 360.0
+        secondary = np.degrees(np.arcsin(np.clip(axis, -1.0, 1.0)))
+        found[round(float(angle), 6)] = gammas, _bilinear((mains, inner), table, main, secondary)
+    return found
+
+
+def _turned(angle: float) -> float:
+    """An angle from -180 to 180 degrees."""
+    return angle - 360.0 if angle > 180.0 else angle
+
+
+def _mirrored(planes: Planes) -> Planes:
+    """Planes on both sides of the vertical one, where those of one side alone are given."""
+    if min(planes) < 0.0 or len(planes) == 1:
+        return planes
+    return {**{-main: own for main, own in planes.items() if main > 0.0}, **planes}
+
+
+def _mirrored_within(plane: Tuple[np.ndarray, Any]) -> Tuple[np.ndarray, Any]:
+    angles, values = plane[0], np.asarray(plane[1], dtype=np.float64)
+    if angles[0] < 0.0:
+        return angles, values
+    first = 1 if angles[0] == 0.0 else 0
+    return np.concatenate([-angles[first:][::-1], angles]), np.concatenate([values[first:][::-1], values])
+
+
+def _least_step(angles: np.ndarray) -> float:
+    """The least step between angles, but for those that end the light."""
+    steps = np.diff(angles)
+    wide = steps[steps > 0.1]
+    return float(wide.min()) if len(wide) else 5.0
+
+
+def _bilinear(
+    angles: Tuple[np.ndarray, np.ndarray], table: np.ndarray, main: np.ndarray, secondary: np.ndarray
+) -> np.ndarray:
+    """Values of a table between its angles; 0 beyond them. A single plane holds for all angles of planes."""
+    mains, inner = angles
+    columns = np.array([np.interp(secondary, inner, row, 0.0, 0.0) for row in table])
+    if len(mains) == 1:
+        return columns[0]
+    at = np.clip(np.searchsorted(mains, main, side="right") - 1, 0, len(mains) - 2)
+    t = (main - mains[at]) / (mains[at + 1] - mains[at])
+    number = np.arange(len(main))
+    between = (1.0 - t) * columns[at, number] + t * columns[at + 1, number]
+    return np.where((t < -1e-9) | (t > 1.0 + 1e-9), 0.0, between)
 
 
 def _flux(planes: np.ndarray, gammas: np.ndarray, values: np.ndarray) -> float:

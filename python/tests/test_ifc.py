@@ -255,12 +255,69 @@ class FromIfc(unittest.TestCase):
         cosines = (-down[2] / np.linalg.norm(down)) * (down[0] / np.linalg.norm(down))
         np.testing.assert_allclose(before, 500 / np.pi / 2.0**2 + 800 / np.pi * cosines / (down @ down), rtol=4e-4)
 
+    def test_sources_of_types_a_and_b_have_the_light_of_the_same_web_in_lm63(self):
+        def intensity(x, y, down):
+            """cd/klm towards C0, C90 and the nadir; without light above."""
+            return 400.0 * np.clip(down, 0.0, None) ** 2 * (1.0 + 0.5 * x + 0.3 * y)
+
+        angles = np.arange(-90.0, 90.1, 2.5)
+
+        def planes(kind):
+            for main in np.radians(angles):
+                sine, cosine = np.sin(np.radians(angles)), np.cos(np.radians(angles))
+                across, down = cosine * np.sin(main), cosine * np.cos(main)
+                yield intensity(across, sine, down) if kind == "TYPE_B" else intensity(-sine, across, down)
+
+        c, gammas = np.arange(0.0, 360.1, 2.5), np.arange(0.0, 90.1, 2.5)
+        lm63 = [intensity(np.sin(g) * np.cos(a), np.sin(g) * np.sin(a), np.cos(g))
+                for a in np.radians(c) for g in [np.radians(gammas)]]  # fmt: skip
+        rows = [" ".join(f"{value:.9g}" for value in row) for row in (gammas, c, *lm63)]
+        text = "IESNA:LM-63-2002\nTILT=NONE\n1 1000 1 %d %d 1 2 0 0 0\n1 1 0\n" % (len(gammas), len(c))
+        self.write("web.ies", text + "\n".join(rows) + "\n")
+        black = self.write("black.csv", "material,reflectance\n*,0\n")
+        points = np.array([[x, y, 0.0] for x in (0.5, 2.0, 4.0) for y in (1.0, 2.0, 3.5)])
+        found = {}
+        for kind in ("TYPE_A", "TYPE_B", "lm63"):
+            model = self.room.Model()
+            model.box("IfcSlab", "floor", (0, 0, -0.2), (5, 4, 0))
+            if kind == "lm63":
+                data = model.file.createIfcDocumentReference("web.ies")
+            else:
+                data = model.distribution({main: (angles, row) for main, row in zip(angles, planes(kind))}, kind=kind)
+            model.light_source("lamp", (2, 2, 2.5), model.goniometric(data, flux=1000.0))
+            scene = self.from_ifc(model, fixtures=None, materials=black)
+            self.assertEqual(len(scene.lamps), 1, scene.notes)
+            found[kind] = lw.solve(scene, refine="off", gather_rays=16).lux_at(points, (0, 0, 1), rays=64)
+        # Values are linear between 2.5 degrees in two angles. Second derivatives of the intensity are at most
+        # 400 * 2 * 1.6 + 2 * 400 * 0.6 = 1760 per squared radian, so each of three interpolations (of the web in its
+        # own type, of its conversion, of LM-63) is off by (2.5 pi / 180)^2 / 8 of that in each angle: 0.42 cd each,
+        # within three times two of these, over the square of 2.5 m.
+        within = 3 * 2 * 1760 * np.radians(2.5) ** 2 / 8 / 2.5**2
+        for kind in ("TYPE_A", "TYPE_B"):
+            np.testing.assert_allclose(found[kind], found["lm63"], rtol=0, atol=within)
+        self.assertGreater(found["lm63"].min(), 4 * within)
+
+    def test_half_of_a_symmetrical_source_is_all_of_it(self):
+        from lightwell._ifc_lamps import _type_c_of
+
+        def web(mains, inner):
+            cosine = np.outer(np.cos(np.radians(mains)), np.cos(np.radians(inner)))
+            return {float(main): (inner, row) for main, row in zip(mains, cosine)}
+
+        whole, half = np.arange(-90.0, 91.0, 10.0), np.arange(0.0, 91.0, 10.0)
+        for kind in ("TYPE_A", "TYPE_B"):
+            all_planes, quarter = _type_c_of(kind, web(whole, whole)), _type_c_of(kind, web(half, half))
+            self.assertEqual(list(all_planes), list(quarter))
+            for main, (_, values) in all_planes.items():
+                # The same products and sums of the same numbers, up to their order: units of 2^-53 of 1.
+                np.testing.assert_allclose(quarter[main][1], values, atol=16 * 2.0**-53)
+
     def test_sources_that_give_no_light_say_why(self):
         model = self.room.Model()
         model.box("IfcSlab", "floor", (0, 0, -0.2), (5, 4, 0))
         file, white = model.file, model.file.createIfcColourRgb(None, 1.0, 1.0, 1.0)
         ambient = file.createIfcLightSourceAmbient(None, white, None, 1.0)
-        flat = model.distribution({0: ([0, 90], [0.3, 0.0])}, kind="TYPE_B")
+        flat = model.distribution({0: ([0, 90], [0.3, 0.0])}, kind="NOTDEFINED")
         beside = file.createIfcDocumentReference("panel.ies")
         for name, source in (
             ("ambient", ambient),
@@ -273,7 +330,7 @@ class FromIfc(unittest.TestCase):
         notes = "\n".join(self.from_ifc(model, fixtures=None).notes)
         for sentence in (
             "ambient .* gives no light: its IfcLightSourceAmbient has no photometry",
-            "b .* gives no light: the intensities of its light source are of TYPE_B",
+            "b .* gives no light: the intensities of its light source are of type NOTDEFINED",
             "dark .* gives no light: its light source has no luminous flux",
             "turned .* gives no light: the planes of its light source do not begin at C0",
             "missing .* the file of its light source, 'panel.ies', is not beside the model",
