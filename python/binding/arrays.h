@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "raytrace/readings/probe.h"
 #include "scene/bands.h"
 
 // Arrays that Python and the library hand each other.
@@ -55,6 +56,15 @@ inline ArrayOut owned_bands(BandArray values) {
   return owned(std::move(values), {rows, columns});
 }
 
+/// Values of bands as lx, one for each row.
+inline std::vector<double> luminous_values(const Bands& bands, const BandArray& E) {
+  std::vector<double> lux(static_cast<std::size_t>(E.rows()));
+  for (std::size_t i = 0; i < lux.size(); ++i) {
+    lux[i] = luminous(bands, E.row(static_cast<Eigen::Index>(i)).transpose());
+  }
+  return lux;
+}
+
 /// The rows of an array of points, m.
 inline std::vector<Eigen::Vector3d> points_from(const PointsIn& given) {
   std::vector<Eigen::Vector3d> points(given.shape(0));
@@ -62,6 +72,15 @@ inline std::vector<Eigen::Vector3d> points_from(const PointsIn& given) {
     points[i] = Eigen::Map<const Eigen::Vector3d>(given.data() + 3 * i);
   }
   return points;
+}
+
+/// Probes at the rows of an array of points, m, that face along the rows of `normals`.
+inline std::vector<Probe> probes_from(const PointsIn& points, const PointsIn& normals) {
+  const std::vector<Eigen::Vector3d> places = points_from(points), ways = points_from(normals);
+  std::vector<Probe> probes;
+  for (std::size_t i = 0; i < places.size(); ++i)
+    probes.push_back({places[i], ways[i].stableNormalized()});
+  return probes;
 }
 
 }  // namespace lightwell::python

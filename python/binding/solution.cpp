@@ -53,10 +53,7 @@ ArrayOut view_of_list(const Scalar* data, std::size_t count, const Handle& self)
 
 // Values per vertex as lx.
 ArrayOut lux_of(const Bands& bands, const BandArray& E) {
-  std::vector<double> lux(static_cast<std::size_t>(E.rows()));
-  for (std::size_t v = 0; v < lux.size(); ++v) {
-    lux[v] = luminous(bands, E.row(static_cast<Eigen::Index>(v)).transpose());
-  }
+  std::vector<double> lux = luminous_values(bands, E);
   const std::size_t count = lux.size();
   return owned(std::move(lux), {count});
 }
@@ -85,14 +82,6 @@ std::string outcome_of(const SolutionData& s) {
       break;
   }
   return "cut_short";
-}
-
-std::vector<Probe> probes_from(const PointsIn& points, const PointsIn& normals) {
-  const std::vector<Eigen::Vector3d> places = points_from(points), ways = points_from(normals);
-  std::vector<Probe> probes;
-  for (std::size_t i = 0; i < places.size(); ++i)
-    probes.push_back({places[i], ways[i].stableNormalized()});
-  return probes;
 }
 
 ArrayOut probe(const SharedSolution& solution, const PointsIn& points, const PointsIn& normals,
@@ -268,6 +257,9 @@ void add_figures(Class& solution) {
       .def_prop_ro("sweeps", [](const SolutionData& s) { return s.solved.solution.history.size(); })
       .def_prop_ro("solver", [](const SolutionData& s) { return s.solved.solution.solver; })
       .def_prop_ro("refinement", [](const SolutionData& s) { return s.refinement; })
+      .def_ro("unkept", &SolutionData::unkept)
+      .def_prop_ro("looked_from",
+                   [](const SolutionData& s) { return s.solved.solution.provenance.looked_from; })
       .def_prop_ro("notes", [](const SolutionData& s) { return s.solved.mesh.notes; })
       .def_prop_ro("bands", [](const SolutionData& s) { return s.solved.solution.bands.names; })
       .def_prop_ro("relative_units",

@@ -13,6 +13,7 @@ struct SolutionData {
   SharedScene scene{};  ///< null: read from a file without its scene
   SolvedScene solved{};
   std::string refinement{};  ///< how refinement ended, a sentence; empty: not solved here
+  std::string unkept{};      ///< why a checkpoint is not complete; empty: it is, or there is none
 
   /// The scene, for what needs one; `what` ("a picture") begins the message. Throws InputError for
   /// a solution without its scene.

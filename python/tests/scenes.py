@@ -15,6 +15,18 @@ ROOM = os.path.join(SOURCE, "examples", "room", "room.toml")
 
 FLOAT = 2.0**-24  # half a unit in the last place of a float32 near 1, relative
 
+# Three hours of a year with light, of which two are clear.
+WEATHER = """place Testville
+latitude 50
+longitude 0
+time_zone 0
+site_elevation 0
+weather_data_file_units 1
+6 21 9.5 500 150
+6 21 12.5 700 150
+12 21 12.5 0 50
+"""
+
 
 def box(low=(0, 0, 0), high=(1, 1, 1)):
     """Vertices and faces of a box whose faces are seen from inside."""
@@ -53,3 +65,29 @@ def scratch(test):
     folder = tempfile.TemporaryDirectory()
     test.addCleanup(folder.cleanup)
     return folder.name
+
+
+_SOLUTION_ARRAYS = [
+    "vertices",
+    "normals",
+    "elements",
+    "element_area",
+    "element_patch",
+    "patch_area",
+    "patch_surface",
+    "direct_irradiance",
+    "indirect_irradiance",
+    "patch_radiosity",
+    "patch_reflectance",
+    "patch_emission",
+    "element_error",
+]
+
+
+def assert_same_solutions(test, one, other):
+    """Fails the test unless all arrays of two solutions have the same bits."""
+    for name in _SOLUTION_ARRAYS:
+        a, b = getattr(one, name), getattr(other, name)
+        test.assertEqual(a.dtype, b.dtype, name)
+        test.assertGreater(a.size, 0, name)
+        test.assertEqual(a.tobytes(), b.tobytes(), name)

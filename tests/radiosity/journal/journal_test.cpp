@@ -126,6 +126,20 @@ TEST(Journal, HoldsWorkOnceABlockIsKept) {
 }
 
 // A process may end at any moment: all work before remains, and the resumed journal becomes whole.
+TEST(Journal, IsNotOpenedOverFinishedWorkUnlessItIsResumed) {
+  const TemporaryFolder folder;
+  const fs::path file = small_journal(folder);
+  EXPECT_THROW(Journal::open(file, some_solve(), never, false), InputError);
+  EXPECT_GT(Journal::open(file, some_solve(), never, true)->found(), 0);
+  // A file without finished work is begun anew, whatever solve it is of.
+  const fs::path empty = folder / "empty";
+  Journal(empty, some_solve(), never).close();
+  Provenance other = some_solve();
+  other.options = "--rays 256";
+  EXPECT_THROW(Journal::open(empty, other, never, true), InputError);
+  EXPECT_EQ(Journal::open(empty, other, never, false)->of().options, other.options);
+}
+
 TEST(Journal, CutOffAnywhereItHoldsWhatLiesBefore) {
   TemporaryFolder folder;
   const std::string whole = small_journal(folder);
