@@ -1,6 +1,5 @@
 """Solutions: the light of a scene on a mesh."""
 
-import json
 import os
 from functools import cached_property
 from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Union
@@ -8,18 +7,11 @@ from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Uni
 import numpy as np
 
 from . import _lightwell
-from ._arrays import (
-    at_least_zero,
-    checked_progress,
-    directions_of,
-    points_of,
-    real_number,
-    set_options,
-    share_text,
-    whole_number,
-)
+from ._arrays import checked_progress, directions_of, points_of, real_number, set_options, share_text, whole_number
 from ._camera import Camera
 from ._errors import InputError
+from ._lightmaps import Lightmaps, are_both, lightmap_options
+from ._report import report_figures
 from ._scene import Progress, Scene, fixed
 
 Path = Union[str, "os.PathLike[str]"]
@@ -174,9 +166,15 @@ class Solution:
 
     @property
     def notes(self) -> List[str]:
-        """What meshing had to leave out, and how refinement ended, a sentence each."""
-        refined = self._data.refinement
-        return self._data.notes + ([f"Refinement: {refined}."] if refined else [])
+        """What meshing had to leave out, how refinement ended, and what a checkpoint lacks, a sentence each."""
+        refined, unkept = self._data.refinement, self._data.unkept
+        notes = self._data.notes + ([f"Refinement: {refined}."] if refined else [])
+        return notes + ([f"Checkpoint: {unkept}."] if unkept else [])
+
+    @property
+    def looked_from(self) -> List[str]:
+        """Where errors were held small, the names of `look_from`; empty: everywhere."""
+        return self._data.looked_from
 
     @property
     def bands(self) -> List[str]:
@@ -359,32 +357,9 @@ class Solution:
 
         Keys: those of `lightwell report --json`; lengths there are metres or the unit they name.
         """
-        request = _lightwell.ReportRequest()
-        request.surfaces = [str(name) for name in surfaces]
-        request.observers = [str(name) for name in observers]
-        for name, height in planes.items():
-            request.add_plane(str(name), at_least_zero(f"the height above {name}", height))
-        for name, power in watts.items():
-            request.add_watts(str(name), real_number(f"the power of {name}", power))
-        request.margin = None if margin is None else at_least_zero("margin", margin)
-        if maintenance is not None:
-            request.maintenance = real_number("maintenance", maintenance)
-            if not 0.0 < request.maintenance <= 1.0:
-                raise InputError(f"maintenance is {maintenance}; a factor above 0 up to 1 is needed")
-        request.activity = str(activity)
-        tables = {"areas": areas, "activities": activities, "sports": sports, "colour_samples": colour_samples}
-        set_options(request, {name: None if file is None else os.fspath(file) for name, file in tables.items()})
+        asked = {name: value for name, value in locals().items() if name not in ("self", "paths", "progress")}
         files = [os.fspath(path) for path in paths]
-        request.has_picture = any(file.endswith((".html", ".pdf")) for file in files)
-        request.camera = "" if camera is None else str(camera)
-        set_options(request, {"spacing": spacing, "rays": rays})
-        for file in files:
-            if os.path.splitext(file)[1] not in (".html", ".pdf", ".json", ".csv"):
-                raise InputError(f"'{file}' must end in .html, .pdf, .json or .csv")
-        figures: Dict[str, Any] = json.loads(
-            _lightwell.report(self._data, request, files, str(language), checked_progress(progress))
-        )
-        return figures
+        return report_figures(self._data, files, asked, checked_progress(progress))
 
     def save(self, path: Path) -> None:
         """Writes the solution (.vtp), which `load`, the command line and ParaView read."""
@@ -392,17 +367,64 @@ class Solution:
             raise InputError(f"'{os.fspath(path)}' must end in .vtp")
         _lightwell.save(self._data, os.fspath(path))
 
-    def export(self, path: Path, *, exposure: float = 0.0, sides: str = "front") -> None:
+    def export(
+        self,
+        path: Path,
+        *,
+        exposure: float = 0.0,
+        sides: str = "front",
+        lightmap: bool = False,
+        lightmap_size: int = 2048,
+        texels_per_metre: Optional[float] = None,
+        lightmap_padding: int = 4,
+        lightmap_pass: str = "interpolate",
+        lightmap_channels: bool = False,
+        progress: Optional[Progress] = None,
+    ) -> None:
         """Writes a model with its light: .glb, .ply or .obj, or a page to walk through, .html.
 
         exposure: stops, negative for darker.
         sides: of thin surfaces, "front" or "both".
+        lightmap: light of a .glb in textures instead of colours of vertices; its data go beside it, into
+            FILE-lightmap-1.exr and so on.
+        lightmap_size, texels_per_metre, lightmap_padding, lightmap_pass: those of `lightmaps`.
+        lightmap_channels: also data of each channel of light, FILE-lightmap-1-CHANNEL.exr.
+        progress: called with the phase and the share done of lightmaps; False stops the work.
         """
-        if sides not in ("front", "both"):
-            raise InputError(f"there are no sides '{sides}'; choose from: front, both")
-        _lightwell.export_model(
-            self._data, os.fspath(path), real_number("exposure", exposure), sides == "both"
-        )
+        both = are_both(sides)
+        ev = real_number("exposure", exposure)
+        if not lightmap:
+            _lightwell.export_model(self._data, os.fspath(path), ev, both)
+            return
+        options = lightmap_options(lightmap_size, texels_per_metre, lightmap_padding, lightmap_pass)
+        options.channels = bool(lightmap_channels)
+        _lightwell.export_lightmaps(self._data, os.fspath(path), options, (ev, both), checked_progress(progress))
+
+    def lightmaps(
+        self,
+        *,
+        size: int = 2048,
+        texels_per_metre: Optional[float] = None,
+        padding: int = 4,
+        pass_: str = "interpolate",
+        sides: str = "front",
+        progress: Optional[Progress] = None,
+    ) -> Lightmaps:
+        """The light in square pictures that lie on the surfaces: charts of triangles, and NumPy arrays.
+
+        size: texels along an edge of a picture, 16 to 8192.
+        texels_per_metre: resolution, in several pictures if necessary; None: what fits into one.
+        padding: texels around each chart, 1 to 64.
+        pass_: light of a texel: "interpolate" (from the solution), "direct" (direct light anew) or
+            "gather" (indirect light anew too).
+        sides: of thin surfaces, "front" or "both".
+
+        Values are those of the files that `export` writes with the same options.
+
+        Raises InputError for options out of range and for charts that do not fit; Interrupted after False.
+        """
+        options = lightmap_options(size, texels_per_metre, padding, pass_)
+        return Lightmaps(_lightwell.lightmaps(self._data, options, are_both(sides), checked_progress(progress)))
 
     def to_pyvista(self) -> Any:
         """The elements as a `pyvista.PolyData`; point data irradiance, radiosity, lux. Needs pyvista."""
