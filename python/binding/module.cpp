@@ -36,9 +36,11 @@ NB_MODULE(_lightwell, module) {
   add_solve(module);
   add_solution(module);
   add_pictures(module);
+  add_lightmaps(module);
   add_report(module);
   add_radiation(module);
   add_shortwave(module);
+  add_daylight(module);
   nb::class_<Threads>(module, "ThreadLimit")
       .def(nb::init<int>(), nb::arg("count"))
       .def("enter", &Threads::enter)

@@ -12,8 +12,10 @@ void add_form_factors(nanobind::module_& module);
 void add_solve(nanobind::module_& module);
 void add_solution(nanobind::module_& module);
 void add_pictures(nanobind::module_& module);
+void add_lightmaps(nanobind::module_& module);
 void add_shortwave(nanobind::module_& module);
 void add_report(nanobind::module_& module);
+void add_daylight(nanobind::module_& module);
 void add_radiation(nanobind::module_& module);
 
 }  // namespace lightwell::python

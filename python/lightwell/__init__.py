@@ -19,10 +19,13 @@ same bits for any number of threads.
 
 from ._errors import Error, InputError, Interrupted  # isort: skip  (the compiled module needs it)
 from ._camera import Camera
+from ._daylight import daylight, daylight_at
+from ._daylight_year import DaylightGlare, DaylightInstant, DaylightMeasures, DaylightRoom, DaylightYear
 from ._form_factors import FormFactors, form_factors
 from ._ifc import convert_ifc, from_ifc
 from ._lightwell import thread_count
 from ._lightwell import version as __version__
+from ._lightmaps import Lightmap, Lightmaps
 from ._material import Material
 from ._pictures import tone_map, write_picture
 from ._radiation import Radiation, radiation
@@ -35,10 +38,17 @@ from ._weather import Weather, read_weather
 
 __all__ = [
     "Camera",
+    "DaylightGlare",
+    "DaylightInstant",
+    "DaylightMeasures",
+    "DaylightRoom",
+    "DaylightYear",
     "Error",
     "FormFactors",
     "InputError",
     "Interrupted",
+    "Lightmap",
+    "Lightmaps",
     "Material",
     "PointLight",
     "Radiation",
@@ -49,6 +59,8 @@ __all__ = [
     "Weather",
     "__version__",
     "convert_ifc",
+    "daylight",
+    "daylight_at",
     "form_factors",
     "from_ifc",
     "load",

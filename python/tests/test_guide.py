@@ -5,7 +5,7 @@ import re
 import shutil
 import unittest
 
-from scenes import SOURCE, box, run_program, scratch
+from scenes import SOURCE, WEATHER, box, run_program, scratch
 
 
 class Guide(unittest.TestCase):
@@ -18,12 +18,15 @@ class Guide(unittest.TestCase):
         os.chdir(folder)
         for example in ("room", "office"):
             shutil.copytree(os.path.join(SOURCE, "examples", example), os.path.join("examples", example))
+        with open("year.wea", "w", encoding="utf-8") as file:
+            file.write(WEATHER)
         names = {}
         for number, block in enumerate(blocks):
             with self.subTest(block=number):
                 exec(compile(block, f"docs/python.md, block {number}", "exec"), names)
         self.assertAlmostEqual(names["exchange"].heat.sum(), names["exchange"].to_surroundings, delta=1e-9)
-        self.assertTrue(os.path.exists("door.png") and os.path.exists("evening.html"))
+        for made in ("door.png", "evening.html", "baked.glb", "year/year.json"):
+            self.assertTrue(os.path.exists(made), made)
 
     def test_the_page_of_view_factors_works_as_printed(self):
         with open(os.path.join(SOURCE, "docs", "view-factors.md"), encoding="utf-8") as file:
