@@ -286,9 +286,8 @@ void note_surroundings(const Scene& scene, const CutSize& cut, std::vector<std::
   if (!(scenery < all) || !(cut.patch_size > scenery / 8.0)) return;
   notes.push_back(fmt::format(
       "the surroundings are {:.4g} m long, and what they surround {:.3g} m: patches of {:.3g} m "
-      "are "
-      "too coarse for its light, and the error estimate may not show that; make the surroundings "
-      "smaller, up to 50 times as long, or use a [sky] in place of a dome",
+      "are too coarse for its light, and the error estimate may not show that; make the "
+      "surroundings smaller, up to 50 times as long, or use a [sky] in place of a dome",
       all, scenery, cut.patch_size));
 }
 
