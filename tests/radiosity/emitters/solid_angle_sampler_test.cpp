@@ -7,6 +7,9 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
+#include "mesh/elements/element_caster.h"
+#include "radiosity/direct_light/direct_light.h"
+#include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 
 namespace lightwell::solid_angle_sampler_test {
