@@ -282,13 +282,14 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOption
 // Adds a note if patches follow surroundings beside which the rest of the scene is small. A dome
 // has most of the area, so the error estimate says little of a room within it.
 void note_surroundings(const Scene& scene, const CutSize& cut, std::vector<std::string>& notes) {
+  constexpr double longest = 50.0;  // a backdrop is at least twice as far away, see scenery_box()
   const double all = scene_bounds(scene).diagonal(), scenery = scenery_box(scene).diagonal().norm();
-  if (!(scenery < all) || !(cut.patch_size > scenery / 8.0)) return;
+  if (!(all > longest * scenery) || !(cut.patch_size > scenery / 8.0)) return;
   notes.push_back(fmt::format(
       "the surroundings are {:.4g} m long, and what they surround {:.3g} m: patches of {:.3g} m "
       "are too coarse for its light, and the error estimate may not show that; make the "
-      "surroundings smaller, up to 50 times as long, or use a [sky] in place of a dome",
-      all, scenery, cut.patch_size));
+      "surroundings smaller, up to {:g} times as long, or use a [sky] in place of a dome",
+      all, scenery, cut.patch_size, longest));
 }
 
 bool is_sphere(const Surface& surface) {

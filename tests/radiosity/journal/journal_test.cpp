@@ -128,7 +128,8 @@ TEST(Journal, HoldsWorkOnceABlockIsKept) {
 // A process may end at any moment: all work before remains, and the resumed journal becomes whole.
 TEST(Journal, IsNotOpenedOverFinishedWorkUnlessItIsResumed) {
   const TemporaryFolder folder;
-  const fs::path file = small_journal(folder);
+  small_journal(folder);
+  const fs::path file = folder / "small";
   EXPECT_THROW(Journal::open(file, some_solve(), never, false), InputError);
   EXPECT_GT(Journal::open(file, some_solve(), never, true)->found(), 0);
   // A file without finished work is begun anew, whatever solve it is of.
