@@ -480,13 +480,4 @@ Spectrum Media::passed(const Scene& scene, int material, bool from_back, double 
   return (-static_cast<float>(distance) * glass->absorption).exp();
 }
 
-double Media::index(const Scene& scene) const {
-  double product = 1.0;
-  for (int i = 0; i < count_; ++i) {
-    const auto material = static_cast<std::size_t>(bodies_[static_cast<std::size_t>(i)]);
-    product *= scene.materials[material].dielectric->index_of_refraction;
-  }
-  return product;
-}
-
 }  // namespace lightwell

@@ -125,8 +125,6 @@ class Media {
   /// or not: exp(-absorption d) of the body around the light, ones where nothing absorbs. A clear
   /// surface met from behind bounds its own body, whatever was crossed before.
   Spectrum passed(const Scene& scene, int material, bool from_back, double distance) const;
-  /// Index of refraction of the body around the light, over that where the path began.
-  double index(const Scene& scene) const;
 
  private:
   static constexpr int deepest = 4;  // bodies within bodies; beyond, the outermost is forgotten

@@ -87,7 +87,7 @@ struct SpecularSegment {
 ///
 /// Within an absorbing body L falls by the law of Beer and Lambert, see Media. L inside a
 /// dielectric is the basic radiance L/n^2, which refraction leaves unchanged; a path that ends
-/// outside again needs no factor n^2, and one that ends at an emitter inside has M / (pi n^2).
+/// outside again needs no factor n^2.
 ///
 /// The *fingerprint* is equal for two rays whose trees see the same smooth surfaces from the same
 /// sides in the same order. Branches that weigh less than RenderOptions::contrast are left out,

@@ -314,17 +314,15 @@ float RayTree::share_of_bright(const Branch& branch, const ElementHit& hit,
   return static_cast<float>(branch.lobe_density / (branch.lobe_density + aimed));
 }
 
-// Exitance M of the side that was hit, less the share that add_lamp() samples, and over n^2 within
-// a body of index n: the share of basic radiance. A picture is averaged over the pixel's footprint.
+// Exitance M of the side that was hit, less the share that add_lamp() samples. A picture is
+// averaged over the pixel's footprint.
 Spectrum RayTree::emission(const Branch& branch, const ElementHit& hit,
                            const ShadingPoint& at) const {
   const PatchMesh& mesh = caster_.mesh();
   const int patch = mesh.patch[hit.element];
-  Spectrum M = pictured_emission_.shines(patch)
-                   ? pictured_emission_.over(hit.facet, at.rest, footprint(branch, at))
-                   : Spectrum(mesh.emission.row(patch).transpose());
-  const double n = branch.media.index(scene_);
-  if (n != 1.0) M /= static_cast<float>(n * n);
+  const Spectrum M = pictured_emission_.shines(patch)
+                         ? pictured_emission_.over(hit.facet, at.rest, footprint(branch, at))
+                         : Spectrum(mesh.emission.row(patch).transpose());
   if (branch.is_aimed && direct_light_.owns(hit.facet, hit.from_back))
     return Spectrum::Zero(M.size());
   if (!(branch.lobe_density > 0.0) || !(M > 0.0f).any()) return M;
