@@ -5,10 +5,10 @@
 // ROOMS: closed rooms with boxes, of 0.1 to 30 m; GAPS: furnished rooms with gaps of 0.2 to 10 mm
 // (see random_rooms.h). Each of COUNT rooms (5) is solved, by default or to ACCURACY, and
 // interpolated and gathered at PLACES places (64). The truth is a path tracer's (path_tracer.h).
-// Printed for all places, those in gaps, and dim ones (below a tenth of the mean): the share of places
-// whose error exceeds lux_within, the RMS of bounds over the RMS of errors, and the share of places
-// within a fifth of their own light. Environment: LIGHTWELL_PLACES names a file to which each place
-// is written, LIGHTWELL_ROOMS a folder to which rooms and places are written for
+// Printed for all places, those in gaps, and dim ones (below a tenth of the mean): the share of
+// places whose error exceeds lux_within, the RMS of bounds over the RMS of errors, and the share of
+// places within a fifth of their own light. Environment: LIGHTWELL_PLACES names a file to which
+// each place is written, LIGHTWELL_ROOMS a folder to which rooms and places are written for
 // bench/bounds_mitsuba.py, and from which the truth that it adds is read. LIGHTWELL_TRUTH: no more
 // than the truth is computed.
 #include <fmt/format.h>

@@ -2,10 +2,10 @@
 //
 //   xvfb-run -a frame_bench [ELEMENTS ...]
 //
-// Prints for each number of elements (100 000 and 1 000 000) of a room: frames per second of the walk's
-// window while the eye turns, and of a plain VTK window with the same triangles and colours, both
-// of 1280 x 720 pixels, frame by frame in one run; and their ratio. Then the time from a change of
-// exposure, and from a change of a channel's scale, to the next picture.
+// Prints for each number of elements (100 000 and 1 000 000) of a room: frames per second of the
+// walk's window while the eye turns, and of a plain VTK window with the same triangles and colours,
+// both of 1280 x 720 pixels, frame by frame in one run; and their ratio. Then the time from a
+// change of exposure, and from a change of a channel's scale, to the next picture.
 #include <fmt/format.h>
 #include <vtkActor.h>
 #include <vtkCamera.h>

@@ -50,9 +50,9 @@ struct PilotGather {
 /// Pilot gathers at the vertices of elements, which each call may refine further.
 class PilotGathers {
  public:
-  /// Gathers for the patches of `base`, whose radiosities `solution` has. Gathered light has columns for
-  /// each channel of `direct_light`; all channels together decide which elements are split. Keeps
-  /// references to `scene` and `direct_light`.
+  /// Gathers for the patches of `base`, whose radiosities `solution` has. Gathered light has
+  /// columns for each channel of `direct_light`; all channels together decide which elements are
+  /// split. Keeps references to `scene` and `direct_light`.
   PilotGathers(const Scene& scene, PatchMesh base, const DirectLight& direct_light,
                const RadiositySolution& solution);
   ~PilotGathers();

@@ -52,7 +52,8 @@ struct Exposure {
   std::optional<RigidMotion> camera{};  ///< motion of the camera; none: the camera stands still
 };
 
-/// The samples that a pixel is the mean of: those of its square, or those of FilterSampler's window.
+/// The samples that a pixel is the mean of: those of its square, or those of FilterSampler's
+/// window.
 enum class PixelFilter { square, window };
 
 /// Sampler of a pixel by many samples, each through its own point of picture and lens: for gloss,
