@@ -35,10 +35,23 @@ struct RayCaster::Impl : EmbreeScene {
     r.dir_y = static_cast<float>(ray.direction.y());
     r.dir_z = static_cast<float>(ray.direction.z());
     r.tfar = static_cast<float>(ends_covered(ray) ? past_target(ray) : before_target(ray));
+    if (!is_in_range(origin)) make_empty(r);
     r.time = 0.0f;
     r.mask = ~0u;
     r.id = id;
     r.flags = 0;
+  }
+
+  // Embree refuses larger coordinates, and a ray from there meets nothing: the scene is smaller
+  // than the rounding of the ray's origin.
+  static bool is_in_range(const Eigen::Vector3d& origin) {
+    constexpr double largest = 1e18;
+    return (origin.array().abs() < largest).all();
+  }
+
+  static void make_empty(RTCRay& r) {
+    r.org_x = r.org_y = r.org_z = r.tfar = 0.0f;
+    r.tnear = std::numeric_limits<float>::min();
   }
 
   bool starts_covered(const Ray& ray) const {

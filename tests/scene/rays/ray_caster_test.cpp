@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <vector>
 
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -158,6 +159,28 @@ TEST(RayCaster, FrontIsTheCounterClockwiseSide) {
   const RayCaster caster(g);
   EXPECT_FALSE(closest(caster, {.origin = {0.2, 0.2, 1}, .direction = {0, 0, -1}}).from_back);
   EXPECT_TRUE(closest(caster, {.origin = {0.2, 0.2, -1}, .direction = {0, 0, 1}}).from_back);
+}
+
+// Packets of 16 rays, of which every other one begins beyond what single precision can tell.
+TEST(RayCaster, RaysFromBeyondSinglePrecisionMeetNothing) {
+  const RayCaster caster(box(5));
+  for (const double far : {1e19, 1e39, 1e300}) {
+    std::vector<Ray> rays;
+    for (int i = 0; i < 40; ++i) {
+      const Vector3d origin(i % 2 == 0 ? far : 0.5, 0.5, 0.5);
+      rays.push_back({.origin = origin, .direction = -Vector3d::UnitX()});
+    }
+    std::vector<Hit> hits(rays.size());
+    std::vector<std::uint8_t> blocked(rays.size(), 2);
+    caster.closest_hits(rays, hits);
+    caster.occluded(rays, blocked);
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      EXPECT_EQ(hits[i].primitive < 0, i % 2 == 0) << far;
+      EXPECT_EQ(blocked[i], i % 2) << far;
+      EXPECT_EQ(closest(caster, rays[i]).primitive < 0, i % 2 == 0) << far;
+      EXPECT_EQ(is_blocked(caster, rays[i]), i % 2 != 0) << far;
+    }
+  }
 }
 
 TEST(RayCaster, TheOriginsOwnPlaneIsNeverMet) {
