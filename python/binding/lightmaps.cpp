@@ -40,7 +40,7 @@ struct LightmapData {
 };
 using SharedLightmaps = std::shared_ptr<const LightmapData>;
 
-// What lies behind all charts, and does not change among them.
+/// The model and the layout that all charts share.
 struct Charted {
   const BakedModel& model;
   const LightmapLayout& layout;

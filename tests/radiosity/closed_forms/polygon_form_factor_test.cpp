@@ -124,8 +124,9 @@ TEST(PointToPolygon, NothingFromItsOwnPlaneHoweverThatIsTurned) {
     }
     EXPECT_EQ(point_to_polygon(at, n, loop), 0.0) << i;
     EXPECT_EQ(point_to_polygon(at, -n, loop), 0.0) << i;
-    // A gap of 1 um is none of that: what the square leaves of the hemisphere is about its width.
-    EXPECT_NEAR(std::abs(point_to_polygon(at - 1e-6 * n, n, loop)), 1.0, 1e-5) << i;
+    // A gap of h = 1 um is none of that: a disc of R = 0.3 m within the square leaves less than
+    // (h / R)^2 = 1.2e-11 of the hemisphere, and the sum of four edges rounds by 1e-15.
+    EXPECT_NEAR(std::abs(point_to_polygon(at - 1e-6 * n, n, loop)), 1.0, 1.2e-11) << i;
   }
 }
 

@@ -166,9 +166,6 @@ TEST(DirectLight, SphereLampObeysTheClosedForm) {
   }
 }
 
-// A point that drawn lights are compared with all lights at: a large emitter through whose plane
-// the point's horizon runs, with its middle below the horizon; small emitters of other brightness,
-// one behind the point; a sphere; a lamp. Nothing stands between.
 // Rounding, of a turn or of coordinates in single precision, puts a lamp in the plane of its
 // ceiling a little before or behind the ceiling. The ceiling under the lamp is dark in either case.
 TEST(DirectLight, LampsInTheirCeilingDoNotShineAtIt) {
@@ -188,6 +185,9 @@ TEST(DirectLight, LampsInTheirCeilingDoNotShineAtIt) {
   }
 }
 
+// A point that drawn lights are compared with all lights at: a large emitter through whose plane
+// the point's horizon runs, with its middle below the horizon; small emitters of other brightness,
+// one behind the point; a sphere; a lamp. Nothing stands between.
 TEST(DirectLight, OneLightStandsForAllInTheMean) {
   Scene scene;
   const auto shines = [&](float M) {

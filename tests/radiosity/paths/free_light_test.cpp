@@ -164,7 +164,6 @@ TEST(FreeLight, FluxOfALampIsAbsorbedAndEscaped) {
   }
 }
 
-// In a closed room that reflects rho, what leaves all surfaces is rho flux / (1 - rho).
 // No ray of a lamp that touches the ceiling begins behind the ceiling, and no ground around the
 // room makes rays begin farther from their lamp.
 TEST(FreeLight, LampsUnderACeilingLightIt) {
@@ -191,14 +190,16 @@ TEST(FreeLight, LampsUnderACeilingLightIt) {
         const bool is_ceiling = scene.surfaces[mesh.surface[p]].name == "z1";
         if (is_ceiling) on_ceiling += mesh.area[p] * light.irradiance(p, 0);
       }
-      // Half of the rays go up, but at 5 cm one in 40 of these meets a wall 2 m away. Independent
-      // rays have a standard error of 0.5 / sqrt(2^14); four of them.
+      // Half of the rays go up. From 5 cm below the ceiling those whose sine over the horizon is
+      // below 0.05 / 2, one in 40, meet a wall 2 m away. Independent rays have a standard error of
+      // 0.5 / sqrt(2^14); four of them.
       constexpr double noise = 4.0 * 0.5 / 128.0;
       EXPECT_NEAR(on_ceiling / light.emitted[0], 0.5, below < 0.05 ? noise : noise + 0.5 / 40.0);
     }
   }
 }
 
+// In a closed room that reflects rho, what leaves all surfaces is rho flux / (1 - rho).
 TEST(FreeLight, ClosedRoomAddsUpAllReflections) {
   Scene scene = box(0.5f);
   scene.lamps = {point_lamp(scene)};

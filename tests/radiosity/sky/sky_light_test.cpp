@@ -256,8 +256,6 @@ TEST(SkyLight, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(found(1), found(3));
 }
 
-// Beside the wall of a shed the site may have learnt from within it, where a slit in the roof is
-// all that shows of the sky.
 // Points far apart first, so that sites are found in another order than by find_all().
 TEST(SkyLight, IsTheSameWhereSitesAreFoundOnDemand) {
   const UnderSky on_demand{room_with_window()};
@@ -282,6 +280,8 @@ TEST(SkyLight, IsTheSameWhereSitesAreFoundOnDemand) {
   EXPECT_GT(sum, 0.0);
 }
 
+// Beside the wall of a shed the site may have learnt from within it, where a slit in the roof is
+// all that shows of the sky.
 TEST(SkyLight, BesideAShedTheSkyIsNotWhatShowsWithinIt) {
   Scene scene{.sky = sky_of()};
   const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
