@@ -283,8 +283,9 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOption
 // has most of the area, so the error estimate says little of a room within it.
 void note_surroundings(const Scene& scene, const CutSize& cut, std::vector<std::string>& notes) {
   constexpr double longest = 50.0;  // a backdrop is at least twice as far away, see scenery_box()
+  constexpr double fewest_patches = 8.0;  // along what is surrounded, for its light to vary at all
   const double all = scene_bounds(scene).diagonal(), scenery = scenery_box(scene).diagonal().norm();
-  if (!(all > longest * scenery) || !(cut.patch_size > scenery / 8.0)) return;
+  if (!(all > longest * scenery) || !(cut.patch_size > scenery / fewest_patches)) return;
   notes.push_back(fmt::format(
       "the surroundings are {:.4g} m long, and what they surround {:.3g} m: patches of {:.3g} m "
       "are too coarse for its light, and the error estimate may not show that; make the "

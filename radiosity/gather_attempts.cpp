@@ -21,6 +21,7 @@
 #include "radiosity/solution/relight.h"
 #include "radiosity/stopwatch.h"
 #include "scene/errors.h"
+#include "scene/name_in_messages.h"
 
 namespace lightwell {
 namespace {
@@ -52,7 +53,7 @@ void require_finite(const Scene& scene, const RadiositySolution& solution) {
   throw InputError(fmt::format(
       "{}: irradiance is not a finite number at {} of {} vertices; an exitance near 1e38 W/m2 is "
       "more than single precision holds. Check the units of the scene's emission",
-      scene.file.empty() ? "the scene" : scene.file.string(), odd, E.rows()));
+      name_in_messages(scene), odd, E.rows()));
 }
 
 // The options of a solve; with a target error, elements may be split deeper and be more than by

@@ -27,6 +27,7 @@
 #include "radiosity/solvers/solve_radiosity.h"
 #include "radiosity/stopwatch.h"
 #include "scene/errors.h"
+#include "scene/name_in_messages.h"
 
 namespace lightwell {
 
@@ -35,7 +36,7 @@ void require_light(const Scene& scene) {
   std::string message = fmt::format(
       "{}: nothing emits light, so there is nothing to solve; give a material a 'radiance', "
       "'exitance' or 'power' (in OBJ files: Ke) and use it on a surface, or add a lamp",
-      scene.file.empty() ? "the scene" : scene.file.string());
+      name_in_messages(scene));
   // The lamp may be among what was left out.
   constexpr std::size_t most = 5;
   for (std::size_t i = 0; i < std::min(most, scene.losses.size()); ++i) {

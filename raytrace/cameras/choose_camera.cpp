@@ -7,15 +7,16 @@
 
 #include "scene/errors.h"
 #include "scene/io/nearest_name.h"
+#include "scene/name_in_messages.h"
 
 namespace lightwell {
 
 const Camera& choose_camera(const Scene& scene, const std::string& name) {
   if (scene.cameras.empty()) {
     throw InputError(fmt::format(
-        "{}: the scene has no camera, so there is nothing to look from; add one "
+        "{} has no camera, so there is nothing to look from; add one "
         "([[cameras]] in a .toml scene, see docs/scene-format.md), or use 'lightwell solve'",
-        scene.file.string()));
+        name_in_messages(scene)));
   }
   if (name.empty()) return scene.cameras.front();
   std::vector<std::string> names;
@@ -24,7 +25,7 @@ const Camera& choose_camera(const Scene& scene, const std::string& name) {
     names.push_back(camera.name);
   }
   throw InputError(fmt::format("{}: there is no camera '{}'; the scene has: {}.{}",
-                               scene.file.string(), name, fmt::join(names, ", "),
+                               name_in_messages(scene), name, fmt::join(names, ", "),
                                did_you_mean(name, names)));
 }
 

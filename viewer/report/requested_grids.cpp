@@ -13,6 +13,7 @@
 #include "scene/io/matches_glob.h"
 #include "scene/io/nearest_name.h"
 #include "scene/io/polygon.h"
+#include "scene/name_in_messages.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -111,9 +112,12 @@ std::vector<int> surfaces_named(const Scene& scene, const std::string& name) {
     names.push_back(surface.name);
   }
   if (!fitting.empty()) return fitting;
-  throw InputError(
-      fmt::format("{}: there is no surface '{}'.{} 'lightwell info {} --surfaces' lists all.",
-                  scene.file.string(), name, did_you_mean(name, names), scene.file.string()));
+  const std::string list =
+      scene.file.empty()
+          ? ""
+          : fmt::format(" 'lightwell info {} --surfaces' lists all.", scene.file.string());
+  throw InputError(fmt::format("{}: there is no surface '{}'.{}{}", name_in_messages(scene), name,
+                               did_you_mean(name, names), list));
 }
 
 void require_surfaces(const GridRequest& asked, const Scene& scene) {

@@ -16,6 +16,7 @@
 #include "radiosity/solution/relight.h"
 #include "radiosity/solvers/vertex_light.h"
 #include "scene/errors.h"
+#include "scene/name_in_messages.h"
 
 namespace lightwell {
 namespace {
@@ -45,7 +46,7 @@ SolveOptions for_a_window(SolveOptions options, const Scene& scene) {
   throw InputError(fmt::format(
       "{}: nothing emits light, so there is nothing to watch arriving; give a material a "
       "'radiance', 'exitance' or 'power' (in OBJ files: Ke) and use it on a surface, or add a lamp",
-      scene.file.empty() ? "the scene" : scene.file.string()));
+      name_in_messages(scene)));
 }
 
 }  // namespace
