@@ -52,7 +52,8 @@ class Eye {
   Eye(const CameraRays& rays, const RayTree& tree, RayCounters& counters)
       : rays_(rays), tree_(tree), counters_(counters) {}
 
-  RaySample trace(int x, int y, int panel, float effort = 1.0f) const {
+  /// Traces a point; the random numbers are those of the lattice point above and to its left.
+  RaySample trace(double x, double y, int panel, float effort = 1.0f) const {
     const auto ray = ray_at(x, y, panel);
     if (!ray) return tree_.nothing();
     const auto key = random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y));

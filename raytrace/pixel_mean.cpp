@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <utility>
+#include <vector>
 
 #include "scene/random_purpose.h"
 
@@ -36,6 +37,23 @@ bool are_alike(const PixelMean::Corners& c) {
   return std::all_of(c.begin(), c.end(), [&](const RaySample* sample) {
     return sample->fingerprint == c[0]->fingerprint;
   });
+}
+
+// Surfaces that rays within a cell see, but none of its corners.
+struct BetweenCorners {
+  std::uint64_t fingerprint = 0;
+  double x = 0.0, y = 0.0;  // of the first of the rays
+  int votes = 0;
+};
+
+void count_vote(std::uint64_t fingerprint, double x, double y,
+                std::vector<BetweenCorners>& between) {
+  const auto known = std::ranges::find(between, fingerprint, &BetweenCorners::fingerprint);
+  if (known != between.end()) {
+    ++known->votes;
+  } else {
+    between.push_back({.fingerprint = fingerprint, .x = x, .y = y, .votes = 1});
+  }
 }
 
 }  // namespace
@@ -99,24 +117,36 @@ PixelValue PixelMean::split(int i, int j, int size) {
 // Mean over a cell of the finest level with an edge in it. The weight of a corner is the share of
 // the cell that looks like the corner. The shares come from rays without shadow rays, so edges
 // are resolved many times finer than samples, as the edge of a lamp against a wall a hundred
-// times darker needs.
+// times darker needs. Of the surfaces that no corner shows, such as a thin bar, the one that most
+// of the rays see has a sample of its own; a single ray is not worth one.
 PixelValue PixelMean::edge_mean(int i, int j, const Corners& c) const {
   const double x = x_ + i * steps_per_cell_, y = y_ + j * steps_per_cell_;
   const std::uint64_t key = random_key(static_cast<std::uint64_t>(x), static_cast<std::uint64_t>(y),
                                        RandomPurpose::pixel_edges);
   PixelValue sum = PixelValue::zero(static_cast<int>(c[0]->radiance.size()));
+  std::vector<BetweenCorners> between;
   int votes = 0;
   for (int s = 0; s < edge_points_.count(); ++s) {
     const Eigen::Array4f u = edge_points_.point(s, key);
-    const std::uint64_t seen =
-        eye_.fingerprint(x + u[0] * steps_per_cell_, y + u[1] * steps_per_cell_, panel_);
+    const double at_x = x + u[0] * steps_per_cell_, at_y = y + u[1] * steps_per_cell_;
+    const std::uint64_t seen = eye_.fingerprint(at_x, at_y, panel_);
     const auto alike = [&](const RaySample* sample) { return sample->fingerprint == seen; };
     const auto count = std::count_if(c.begin(), c.end(), alike);
-    if (count == 0) continue;  // a surface that no corner shows
+    if (count == 0) {
+      count_vote(seen, at_x, at_y, between);
+      continue;
+    }
     ++votes;
     for (const RaySample* sample : c) {
       if (alike(sample)) sum.add(*sample, 1.0f / static_cast<float>(count));
     }
+  }
+  constexpr int fewest_votes = 2;  // a 128th of a pixel by the default subdivision
+  const auto most = std::ranges::max_element(between, {}, &BetweenCorners::votes);
+  if (most != between.end() && most->votes >= fewest_votes) {
+    sum.add(eye_.trace(most->x, most->y, panel_, 1.0f / static_cast<float>(cells_)),
+            static_cast<float>(most->votes));
+    votes += most->votes;
   }
   return votes > 0 ? scaled(sum, 1.0f / static_cast<float>(votes)) : mean(c);
 }

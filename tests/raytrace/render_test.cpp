@@ -126,6 +126,33 @@ TEST(Render, StripThinnerThanAPixelIsNotLost) {
   for (int y = 0; y < 16; ++y) EXPECT_GT(image.radiance(16 * y + 8, 0), 0.3f);
 }
 
+// A bright strip before the edge between two dark surfaces, so narrow that no sample sees the
+// strip.
+TEST(Render, StripAlongAnEdgeIsNotLost) {
+  constexpr double pixel = 0.1, cell = pixel / 4, width = cell / 2;
+  constexpr double left = 1.25 * cell, right = left + width, edge = 1.5 * cell;
+  const auto plate = [](double from, double to, double z) -> std::vector<Eigen::Vector3d> {
+    return {{from, -5, z}, {to, -5, z}, {to, 5, z}, {from, 5, z}};
+  };
+  const TracedScene lit(SceneBuilder()
+                            .polygon({}, plate(-5, edge, 0))
+                            .polygon({}, plate(edge - 0.01, 5, -0.01))
+                            .polygon({.exitance = pi_f}, plate(left, right, 0.01))
+                            .build());
+  const Camera camera{.position = {0, 0, 8},
+                      .direction = {0, 0, -1},
+                      .up = {0, 1, 0},
+                      .fov_degrees = 2 * std::atan(0.1) * 180 / std::numbers::pi,  // 1.6 m wide
+                      .width = 16,
+                      .height = 16};
+  const Image image = lit.render(camera, {.max_subdivision = 2});
+  // The strip covers an eighth of the pixel. Of the 16 rays through each of the four cells, one
+  // lies in each of 16 columns, so the strip's share of a cell is right within a 16th.
+  for (int y = 0; y < 16; ++y) {
+    EXPECT_NEAR(image.radiance(16 * y + 8, 0), width / pixel, cell / pixel / 16) << y;
+  }
+}
+
 TEST(Render, WorldOutsideIsBlack) {
   TracedScene lit(SceneBuilder().square({.reflectance = 1.0f}, {0, 0, 0}, {0, 0, 1}, 0.5).build());
   lit.set_direct([](const auto&) { return 1.0f; });
