@@ -52,10 +52,26 @@ def readable_copy(scene, folder, is_matt):
     return copy
 
 
+def with_facets(text):
+    """The scene with the normals of facets on shapes of matt materials. Where normals are interpolated, a path tracer scatters light into
+    directions below the facet, and what lies behind a wall, such as the sky, lights the room: 0.7 % of the living room's picture, and up to two
+    fifths of the light on mouldings beside its windows."""
+    of_gloss = re.compile(r'type="(rough|thin)?(conductor|dielectric|plastic)"')
+    glossy = {match[1] for match in re.finditer(r'^\t<bsdf [^>]*id="([^"]*)".*?^\t</bsdf>', text, re.MULTILINE | re.DOTALL) if of_gloss.search(match[0])}
+
+    def of_facets(match):
+        names = set(re.findall(r'<ref [^>]*id="([^"]*)"', match[0]))
+        if re.search("face_?normals", match[0], re.IGNORECASE) or of_gloss.search(match[0]) or names & glossy:
+            return match[0]
+        return match[1] + '<boolean name="face_normals" value="true"/>' + match[2]
+
+    return re.sub(r'(<shape type="(?:obj|ply|serialized)"[^>]*>)(.*?</shape>)', of_facets, text, flags=re.DOTALL)
+
+
 def comparable_copy(mi, file):
     """The scene as Mitsuba is to read it, beside `file`. A pixel is the mean over its square, as Lightwell's are: a wider filter spreads the
     light of windows over the squares beside them. Pictures with an alpha channel cover by that channel; Mitsuba would take their colours, and
-    the white around a leaf for the leaf."""
+    the white around a leaf for the leaf. Matt surfaces scatter by their facets."""
     def alpha_alone(match):
         picture = mi.Bitmap(str(file.parent / match[2]))
         if picture.pixel_format() != mi.Bitmap.PixelFormat.RGBA:
@@ -67,7 +83,7 @@ def comparable_copy(mi, file):
     text = re.sub(r'(<rfilter [^>]*type=")[^"]*"', r'\1box"', file.read_text())
     text = re.sub(r'(<texture name="opacity" type="bitmap"\s*>\s*<string name="filename" value=")([^"]*)"\s*/>', alpha_alone, text)
     copy = file.with_name("comparable.xml")
-    copy.write_text(text)
+    copy.write_text(with_facets(text))
     return copy
 
 

@@ -92,8 +92,7 @@ void check_energy(const Subject& subject, Verdict& verdict) {
                  100.0 * std::abs(energy.emitted - exact) / exact, 0.001);
 }
 
-// What the solution says that probes may be off by, in lux of the bands' mean, against what they
-// are.
+// The errors of probes, in lux of the bands' mean, against the bounds that the solution states.
 void check_bounds(const Subject& subject, const Eigen::ArrayXd& bound, const BandArray& E,
                   const BandArray& R, Verdict& verdict) {
   if (bound.size() == 0) return;  // refinement was off

@@ -169,7 +169,7 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
   std::vector<GapElement> lit_elements;
   for (const int e : elements_in_gaps(lit.caster)) {
     const int corners = mesh.corner_count(e), dark = dark_corners(mesh, irradiance, e);
-    // Where none of N rays found light, light from less than 3 / N of the directions may be missed
+    // If none of N rays found light, light from less than 3 / N of the directions may be missed
     // (rule of three, odds of 19 to 1), and the error is half of the bound.
     const double rays = static_cast<double>(corners) * gather.rays;
     if (dark > 0) raise_to(solution.interpolation_error[e], 0.5 * 3.0 / rays);

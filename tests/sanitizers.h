@@ -1,4 +1,4 @@
-// What sanitizers change about a program that tests measure.
+// Differences that sanitizers make to a program that tests measure.
 #pragma once
 
 namespace lightwell::test {

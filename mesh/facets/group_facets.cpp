@@ -14,7 +14,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double most_facet = 0.5;  // of a patch's area: a larger facet is a patch of its own
-// Of the patch size: a disc of this radius has the area of 1.5 patches.
+// A share of the patch size: a disc of this radius has the area of 1.5 patches.
 constexpr double reach = 0.7;
 constexpr double join_share = 0.5;   // of a patch's area: a smaller group joins a neighbour
 constexpr double most_extent = 2.5;  // of the reach: largest diagonal of two joined groups

@@ -214,7 +214,7 @@ class Estimator {
       for (const FormFactor& f : row.shares) {
         if (!is_count(i, f.patch)) continue;
         worst = std::max(worst, static_cast<double>(f.value * (1.0f - f.value)));
-        // Where all rays agree, the standard error is that of Laplace's rule of succession.
+        // Rays that all agree have the standard error of Laplace's rule of succession.
         worst = std::max(worst, row.rays / ((row.rays + 2.0) * (row.rays + 2.0)));
       }
       return row.rays > 0.0 ? std::sqrt(worst / row.rays) : 0.0;

@@ -253,7 +253,7 @@ HemicubeScan::HemicubeScan(const ElementCaster& caster) : caster_(caster) {
   const PatchMesh& mesh = caster.mesh();
   Eigen::AlignedBox3d box;
   for (int v = 0; v < mesh.vertex_count(); ++v) box.extend(mesh.position(v));
-  // As RayCaster: planes that float coordinates of the scene cannot distinguish.
+  // Planes that float coordinates of the scene cannot distinguish, as in RayCaster.
   constexpr double roundings = 16.0;
   if (!box.isEmpty()) {
     coplanar_ = roundings * 0.5 * box.diagonal().norm() * std::numeric_limits<float>::epsilon();

@@ -244,7 +244,7 @@ GatheredIrradiance VertexGathers::sharpened_indirect(const BandArray& radiosity)
 }
 
 // Replaces the radiosity of patches, one value each, by what a gather finds at the base's vertices.
-// Where the noise is limited, that of this gather decides over the rays of the final gather.
+// If the noise is limited, that of this gather decides over the rays of the final gather.
 void VertexGathers::sharpen_radiosity(const BandArray& caustic) {
   const PatchMesh& mesh = elements_.base();
   make_room();

@@ -1,4 +1,4 @@
-// What the changes of several formats share.
+// Parts that the changes of several formats share.
 #pragma once
 
 #include <cstddef>

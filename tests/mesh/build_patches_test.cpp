@@ -211,7 +211,7 @@ TEST(BuildPatches, TessellatedCylinderIsSmoothAroundAndSharpAtItsRim) {
     for (int i = 0; i < mesh.corner_count(e); ++i) {
       const Vector3d p = mesh.position(mesh.corners[e][i]);
       Vector3d radial = is_lid ? Vector3d::UnitZ() : Vector3d(p.x(), p.y(), 0).normalized();
-      // By symmetry the mean of two neighbouring normals is radial where the facets meet.
+      // The mean of two neighbouring normals is radial where the facets meet, by symmetry.
       if (!is_lid && std::hypot(p.x(), p.y()) < 1 - 1e-9) continue;
       EXPECT_NEAR((side * mesh.vertex_normal[mesh.corners[e][i]] - radial).norm(), 0, 1e-9);
     }

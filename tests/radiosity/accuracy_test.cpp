@@ -300,7 +300,7 @@ double true_error_of_direct_light(const Scene& scene, const SolvedScene& solved,
   return std::sqrt(square);
 }
 
-// Where nothing reflects, all that does not emit is there to be measured. Elements of half a metre
+// If nothing reflects, all that does not emit is there to be measured. Elements of half a metre
 // under a lamp of 20 cm are far from its light.
 TEST(ErrorEstimate, KnowsTheErrorWhereNothingReflects) {
   Scene scene;

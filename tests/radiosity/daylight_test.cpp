@@ -238,7 +238,7 @@ TEST_F(SunBehindAPane, IsTintedByEveryFormFactorMethod) {
     SolveOptions options = quick();
     options.mesh.max_patch_size = 1.0;
     options.form_factors.method = method.method;
-    // What escapes through the bare opening is counted by rays.
+    // Rays count the light that escapes through the bare opening.
     options.form_factors.rays_per_patch = 4096;
     expect_tinted(options, method.name);
   }

@@ -82,7 +82,7 @@ TEST(BalanceParts, LeavesAWhiteRoomWithALampAsItIs) {
       changed = std::max(
           changed, std::abs(double{after(v, 0)} / (double{times} * double{before(v, 0)}) - 1.0));
     }
-    // Of 3 % a share e^2 / (e^2 + n^2) is left: a third if the noise n is sqrt(2) times the
+    // A share e^2 / (e^2 + n^2) of 3 % is left: a third if the noise n is sqrt(2) times the
     // expected error e of 0.3 %. The noise is larger: 16 rays at 512 points whose light varies by a
     // tenth know their mean to 0.1 %, and the factor of a room that reflects 0.9 to ten times that.
     EXPECT_LT(changed, 0.01);

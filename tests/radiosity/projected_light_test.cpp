@@ -58,7 +58,7 @@ TEST(ProjectedLight, PicturesLightEachTexelsPartOfAWall) {
     for (int x = 0; x < 4; ++x) {
       const Eigen::Vector3d way =
           lamp.axes * Eigen::Vector3d((x - 1.6) * texel, (0.6 - y) * texel, -1.0);
-      // Where the ray meets a plane across z below the lamp.
+      // The point where the ray meets a plane across z below the lamp.
       const Eigen::Vector3d at = lamp.position - way * (0.4 / way.z());
       const Eigen::Vector3d to = lamp.position - at;
       const double cos_axis = 1.0 / way.norm();

@@ -133,7 +133,7 @@ TEST(PilotGathers, GoesOnWhereItEnded) {
   EXPECT_LE(fine.refinement.estimate, 0.01);
   EXPECT_GT(fine.refined->element_count(), coarse.refined->element_count());
   EXPECT_EQ(fine.refinement.elements_at_first, other.refinement.elements_at_first);
-  // Which cells are split in which round depends on the rounds: a tenth either way.
+  // The rounds decide which cells are split when: a tenth either way.
   EXPECT_LT(fine.refinement.gathers, 1.1 * static_cast<double>(other.refinement.gathers));
 
   std::vector<int> place(

@@ -199,7 +199,7 @@ TEST(DaylightPictures, ErrorsOfTheSkyFollowTheLightAsRelit) {
       scales[c] = constant_spectrum(relit.solution.bands, c == sky ? of_sky : of_lamp);
     }
     relight(relit, scales);
-    // As if the mesh had been made coarser: errors about the limit.
+    // Errors about the limit, as of a coarser mesh.
     relit.solution.interpolation_error *= 4.0f;
     const DomeOnMesh dome =
         dome_on_mesh(relit.mesh, DirectLight(apart.scene, relit.mesh), relit.solution);

@@ -170,7 +170,7 @@ TEST(ProjectedPictures, AHemisphericalFisheyeMeasuresBySums) {
   const double E = image.radiance.col(0).mean() * 4.0;
   // Form factor of a point to a quarter of the square, parallel to it: X = Y = 1/2.
   const double s = std::sqrt(1.25), quarter = 2 * 0.5 / s * std::atan(0.5 / s) / (2 * pi);
-  // Of about 4 * 32 pixels at the luminaire's edges each has an error of at most half a cell's row,
+  // Each of about 4 * 32 pixels at the luminaire's edges has an error of at most half a cell's row,
   // 0.5 / 2^levels, of alternating sign; a bound without cancellation is 128 / 32 of 64^2 pixels.
   const double bound = M / pi * 4.0 * (128.0 / 32.0) / (64.0 * 64.0);
   EXPECT_NEAR(E, 4 * quarter * M, bound);

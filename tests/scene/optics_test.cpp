@@ -41,7 +41,7 @@ TEST(Pane, ReflectsAllWhereOneOfItsFacesDoes) {
   EXPECT_EQ(pane_reflectance(0.5, 0.6), 1.0);
 }
 
-// What the faces and the body of a pane leave of light that goes to and fro inside: with the
+// The share of light that a pane passes after going to and fro inside: with the
 // reflectance r of a face and the share d of one crossing, (1 - r)^2 d (r d)^2k passes after 2k
 // reflections inside, and r + (1 - r)^2 r d^2 (r d)^2k comes back.
 TEST(Pane, WithABodyPassesTheSumOfItsInnerReflections) {

@@ -77,8 +77,8 @@ TEST(Polarisation, ParallelPanesPassEachPolarisationByItself) {
   }
 }
 
-// What is s-polarised for the first pane is p-polarised for a second one that is turned by a right
-// angle about the light; half-way, both polarisations have equal parts in it.
+// Light that is s-polarised for the first pane is p-polarised for a second one that is turned by a
+// right angle about the light; half-way, both polarisations have equal parts in it.
 TEST(Polarisation, IsTurnedWithThePlaneOfIncidence) {
   constexpr double degrees = 65.0;
   const PolarisedReflectance face = polarised_reflectance(std::cos(degrees * degree), 1.5);

@@ -32,7 +32,7 @@ constexpr std::array entries = {
            "lumière électrique et naturelle", "luz eléctrica y natural"}},
     Entry{Word::both, {"both", "zusammen", "ensemble", "total"}},
     Entry{Word::sky, {"sky", "Himmel", "ciel", "cielo"}},
-    // As the readers of scenes name skies.
+    // The names of skies in scene files.
     Entry{Word::sky_overcast,
           {"CIE overcast", "bedeckter Himmel nach CIE", "ciel couvert CIE", "cielo cubierto CIE"}},
     Entry{Word::sky_clear,

@@ -233,7 +233,7 @@ std::string radiance_view_options(const Camera& camera, double metres_per_unit) 
   if (type == view_types.end() || !camera.distortion.is_none()) return {};
   const bool is_parallel = projection == Projection::orthographic;
   const PictureWindow& part = camera.window;
-  // Of the part that is rendered: its width on the plane, and the offset of its middle.
+  // The width on the plane of the part that is rendered, and the offset of its middle.
   const double whole = is_parallel ? camera.view_width / metres_per_unit
                                    : plane_length(projection, camera.fov_degrees, false);
   const double width = whole * part.width();

@@ -9,7 +9,7 @@ namespace {
 
 using namespace lightwell::test;
 
-// Of a triangle thinner than the welding tolerance, a corner lies on the opposite edge. An outline
+// A triangle thinner than the welding tolerance has a corner on the opposite edge. An outline
 // that passes through the corner there has no area inside; the triangle has.
 TEST(FacetMesh, NeedlesThinnerThanTheWeldingToleranceKeepTheirArea) {
   Scene scene = empty_scene();

@@ -76,7 +76,7 @@ TEST(DirectLight, OccludedFormFactorsAreExactInTheMean) {
       sum2 += F * F;
     }
     const double mean = sum / points;
-    // As if the points were independent: an upper bound for a scrambled Sobol mean.
+    // The error of independent points is an upper bound for a scrambled Sobol mean.
     const double se = std::sqrt(std::max(0.0, sum2 / points - mean * mean) / points);
     const double exact = c["value"];
     std::printf("%s: F %.6f exact %.6f difference %.1e (standard error < %.1e)\n",

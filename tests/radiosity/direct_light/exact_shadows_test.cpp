@@ -31,7 +31,7 @@ struct Lit {
     return shadows.share(0, {point, normal, facet}, most);
   }
 
-  // Of the kernel cos cos / r^2, by rays to a grid of places; the lamp is a rectangle.
+  // The share of the kernel cos cos / r^2, by rays to a grid of points; the lamp is a rectangle.
   double share_of_rays(const Vector3d& point, const Vector3d& normal, int side) const {
     const Emitter& lamp = light.emitters()[0];
     const Vector3d corner = lamp.loops[0][0], u = lamp.loops[0][1] - corner,
@@ -125,7 +125,7 @@ TEST(ExactShadows, OfAStraightEdgeAreTheFormFactorOfWhatItLeaves) {
     };
     const auto share = lit.share(at, up, 4);
     ASSERT_TRUE(share);
-    // What point_to_polygon is good for.
+    // The precision of point_to_polygon.
     EXPECT_NEAR(*share, lamp_from(cut) / lamp_from(4.5), 1e-12) << x;
   }
 }

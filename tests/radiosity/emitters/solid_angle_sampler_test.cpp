@@ -44,7 +44,7 @@ TEST(SolidAngleSampler, PlacesAreEvenInSolidAngle) {
   const Vector3d point{0.9, 1.2, 0.1}, normal = Vector3d(0.3, 0.2, -0.9).normalized();
   const SolidAngleSampler sampler(window, point);
   ASSERT_FALSE(sampler.empty());
-  // Of a rectangle whose corner is below the point (twice the integral of Lambert's cosine).
+  // Twice the integral of Lambert's cosine over a rectangle whose corner is below the point.
   const auto corner = [&](double x, double y) {
     const double z = point.z();
     return std::atan(x * y / (z * std::sqrt(x * x + y * y + z * z)));

@@ -60,7 +60,7 @@ TEST(CausticPhotons, CarryWhatALampSendsToAGlassBall) {
   const Shot shot(scene);
   const auto photons = shoot_photons({scene, shot.caster, shot.light}, 1 << 14, 40);
   const double power = 5.0 * 4e-6 * 0.09;
-  // Of the cone around the ball all rays meet it, each for the cosine it has; 1e-5 of its size are
+  // All rays of the cone around the ball meet it, each for the cosine it has; 1e-5 of its size are
   // the margin, 1e-6 the lamp's own extent.
   EXPECT_NEAR(photons.power.col(0).cast<double>().sum() / power, 1.0, 1e-3);
 }

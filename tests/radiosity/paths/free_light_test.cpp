@@ -291,8 +291,8 @@ TEST(FreeLight, ChannelsOfLampsAddUpAndRelight) {
   EXPECT_TRUE(dimmed.free_sources()[1].is_on());
 }
 
-// What a mirror throws on is what it takes in but for what it absorbs; at a place, that of the
-// lamp's mirror image.
+// The light that a mirror throws on is the light that falls on the mirror less the absorbed share;
+// at a point, that of the lamp's mirror image.
 TEST(FreeLight, MirrorThrowsTheLampsLightOn) {
   Scene scene;
   const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
@@ -324,7 +324,7 @@ TEST(FreeLight, MirrorThrowsTheLampsLightOn) {
   EXPECT_NEAR(found / exact, 1.0, 0.02);
 }
 
-// By way of a pane of glass light goes straight on, dimmed.
+// Light goes straight on through a pane of glass, dimmed.
 TEST(FreeSources, PanesPassLightStraightOn) {
   Scene scene = box(0.5f);
   scene.lamps = {point_lamp(scene)};

@@ -91,9 +91,9 @@ TEST(LightPaths, BlockOfGlassThatStandsOnTheFloorLightsIt) {
   EXPECT_GT(standing.under_block, 0.5);
 }
 
-// By all reflections within and between N slabs, each of reflectance R1 = 2 r / (1 + r) for one
-// polarisation, (1 - R1) / (1 + (N - 1) R1) of it passes (Stokes 1862). The depth of 8 surfaces is
-// that of a straight path alone.
+// N slabs, each of reflectance R1 = 2 r / (1 + r) for one polarisation, pass (1 - R1) / (1 + (N -
+// 1) R1) of it, with all reflections within and between the slabs (Stokes 1862). The depth of 8
+// surfaces is that of a straight path alone.
 TEST(LightPaths, StackOfSlabsPassesTheSumOfAllItsReflections) {
   constexpr int slabs = 4, rays = 1 << 16;
   Scene scene;

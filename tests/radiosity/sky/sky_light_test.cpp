@@ -58,7 +58,7 @@ TEST(SkyLight, OpenPlaneUnderAUniformSkyGetsPiL) {
   for (const double x : {0.0, 0.7, 1.9}) {
     EXPECT_NEAR(plane.at({x, 0.3, 0}, Vector3d::UnitZ(), 0), pi, 1e-6 * pi);
   }
-  // Where no surface is near, nothing has been learnt.
+  // Nothing has been learnt far from all surfaces.
   EXPECT_NEAR(plane.at({30.0, 0.0, 20.0}, Vector3d::UnitZ(), -1), pi, 1e-6 * pi);
 }
 
@@ -80,7 +80,7 @@ TEST(SkyLight, TiltedSurfacesSeeTheirShareOfAUniformSky) {
   }
 }
 
-// Of an endless street the share of the sky seen from the middle of its floor is the cosine of the
+// The share of the sky seen from the middle of the floor of an endless street is the cosine of the
 // angle at which the eaves stand (Oke 1987).
 TEST(SkyLight, StreetCanyonShowsTheCosineOfItsEaves) {
   for (const double height : {0.5, 1.0, 2.0}) {
@@ -154,7 +154,7 @@ TEST(SkyLight, WindowGivesItsClosedFormWithLittleNoise) {
   for (const double x : {2.0, 1.0, -0.5, -2.5}) {
     const double expected = pi * window_form_factor({x, 0.3, 0}, Vector3d::UnitZ());
     const Spread found = spread(room, {x, 0.3, 0}, Vector3d::UnitZ(), floor);
-    // Of 16 + 128 rays half find the window: 1 / sqrt(144), and an eighth of that in 64 looks.
+    // Half of 16 + 128 rays find the window: 1 / sqrt(144), and an eighth of that in 64 looks.
     EXPECT_NEAR(found.mean, expected, 2.0 / 8.0 * 0.08 * expected) << x;
     EXPECT_LT(found.deviation, 0.08 * expected) << x;
   }
@@ -215,7 +215,7 @@ TEST(SkyLight, SingleRaysHaveTheRightMean) {
   }
 }
 
-// What a wall sees that a picture hides, none of the sky, tells nothing of the picture's face.
+// A wall behind a picture sees none of the sky, which tells nothing of the picture's face.
 TEST(SkyLight, APictureIsKnownAsTheWallBehindItIs) {
   Scene scene = room_with_window();
   const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
@@ -230,7 +230,7 @@ TEST(SkyLight, APictureIsKnownAsTheWallBehindItIs) {
     const Spread found = spread(room, point, Vector3d::UnitX(), picture);
     std::printf("%g m from the middle: %.4f, exact %.4f, noise %.4f\n", y, found.mean, expected,
                 found.deviation / expected);
-    // As on the wall: half of some 144 rays find the window, so that a look is off by
+    // Half of some 144 rays find the window, as on the wall, so that a look is off by
     // 1 / sqrt(144) = 0.08, and the mean of 64 looks by an eighth of that, twice which is allowed.
     EXPECT_NEAR(found.mean, expected, 2.0 / 8.0 * 0.08 * expected);
     EXPECT_LT(found.deviation, 0.08 * expected);
@@ -243,7 +243,7 @@ TEST(SkyLight, PanePassesWhatItsOpticsSay) {
   const double without = spread(bare, point, Vector3d::UnitX(), -1).mean;
   const double with = spread(glazed, point, Vector3d::UnitX(), -1).mean;
   const double expected = (1.0 - pane_reflectance(1.0, 1.5)) * 0.9;
-  // By the same rays; within 12 degrees Fresnel's reflectance changes by less than 1e-4.
+  // The rays are the same; within 12 degrees Fresnel's reflectance changes by less than 1e-4.
   EXPECT_NEAR(with / without, expected, 1e-4);
 }
 
@@ -309,7 +309,8 @@ TEST(SkyLight, BesideAShedTheSkyIsNotWhatShowsWithinIt) {
   }
 }
 
-// Of radiance 0.1, and of 5000 in three pixels of 1.4 degrees that give nine tenths of the light.
+// A map of radiance 0.1, and of 5000 in three pixels of 1.4 degrees that give nine tenths of the
+// light.
 Sky map_with_a_sun() {
   constexpr int width = 256, height = 128;
   BandArray pixels = BandArray::Constant(width * height, 3, 0.1f);

@@ -98,7 +98,7 @@ TEST(Progressive, RowsCastOnTheFlyFindTheSameLight) {
                                    cast_shots(room.caster, room.paths, most_rays),
                                    {.rays = 1200000, .most_rays = most_rays});
   run(progressive);
-  // Of 1.2 million rays one in 300 arrives at a patch: 4000 rays, or 1.6 % if they were random.
+  // One in 300 of 1.2 million rays arrives at a patch: 4000 rays, or 1.6 % if they were random.
   EXPECT_LT(rms(room.mesh, progressive.radiosity(), wanted), 0.016);
   expect_balanced(progressive.energy(), 1e-5);
 }

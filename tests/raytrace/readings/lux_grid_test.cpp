@@ -175,7 +175,7 @@ TEST(LuxGrid, CoversThePartThatIsAskedFor) {
   EXPECT_THROW(lux_grid(floor_of_an_office(), 0, up, {.part = beside}), InputError);
 }
 
-/// Of 20 cells of 1 m, those with their middles over the part of 2 m x 2 m are left out.
+/// The cells, of 20 of 1 m, with their middles over the part of 2 m x 2 m are left out.
 TEST(LuxGrid, LeavesOutThePointsOverAnotherGrid) {
   const Scene scene = floor_of_an_office();
   const Eigen::AlignedBox3d part(Eigen::Vector3d(1, 1, 0), Eigen::Vector3d(3, 3, 0));

@@ -28,7 +28,7 @@ driver.run(async (page, found) => {
 });
 </script>)";
 
-/// As for the window (WhiteBalance.TheWindowShowsTheColoursOfRender): 2 % of noise and
+/// The bound of the window (WhiteBalance.TheWindowShowsTheColoursOfRender): 2 % of noise and
 /// interpolation in one pixel are 2.3 bytes, and rounding adds 0.5.
 TEST_P(InBrowser, ThePageShowsTheColoursOfRender) {
   std::printf(

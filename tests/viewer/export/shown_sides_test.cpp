@@ -1,4 +1,4 @@
-// Which sides of thin surfaces models have, in an office with a window under the sky.
+// Sides of thin surfaces that models have, in an office with a window under the sky.
 #include "viewer/export/shown_sides.h"
 
 #include <gtest/gtest.h>

@@ -95,7 +95,7 @@ TEST_F(Interchange, ColladaColoursAreReflectanceAndRadiance) {
 }
 
 TEST_F(Interchange, OpacityLetsTheRestThrough) {
-  // Of A_ONE, opacity is alpha times transparency.
+  // A_ONE: opacity is alpha times transparency.
   const Material material = dae_material(
       "<diffuse><color>0.8 0.4 0.4 1</color></diffuse><transparent opaque=\"A_ONE\">"
       "<color>1 1 1 1</color></transparent><transparency><float>0.25</float></transparency>");

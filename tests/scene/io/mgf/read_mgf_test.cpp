@@ -145,7 +145,7 @@ TEST_F(Mgf, RoundShapesHaveTheirAreas) {
   constexpr double rounding = 1e-12;
   EXPECT_NEAR(area("cyl a 2 z\n"), 12.0 * pi, 12.0 * pi * rounding);
   EXPECT_NEAR(area("ring z 1 2\n"), 3.0 * pi, 3.0 * pi * rounding);
-  // Of a cone the slant is that of 32 facets: their apothem is 1 - (pi / 32)^2 / 2 of the radius.
+  // The slant of a cone is that of 32 facets: their apothem is 1 - (pi / 32)^2 / 2 of the radius.
   const double facet = 0.5 * pi * pi / 1024.0;
   EXPECT_NEAR(area("cone a 4 z 0\n"), 20.0 * pi, 20.0 * pi * facet * 2.0);
   // A torus of 32 by 16 flat faces is smaller by the chords of both circles.

@@ -250,7 +250,7 @@ TEST_F(Radiance, AGlowHasFourNumbersAndAConeThePowerOfItsSpotlightsBeam) {
   expect_rgb(first_material(scene).emission / static_cast<float>(pi), {2, 2, 2});
 }
 
-// What goes on from a pane, by the angle from its normal: mirrored light, and light straight on.
+// Light that goes on from a pane, by the angle from its normal: mirrored, and straight on.
 SmoothScattering at_angle(const Material& pane, double degrees) {
   const double angle = degrees * pi / 180.0;
   return smooth_scattering({.material = pane,

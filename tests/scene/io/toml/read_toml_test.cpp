@@ -311,7 +311,7 @@ TEST(ReadToml, MaterialsEmit) {
   EXPECT_FALSE(material_of(s, "tube").emits_both_sides);
 }
 
-/// What a square metre emits, lm/m^2.
+/// Light that a square metre emits, lm/m^2.
 double lumens_of(const std::string& bands, const std::string& keys) {
   const Scene s = read_text(bands + "[materials.white]\n" + keys + one_polygon);
   return luminous(s.bands, s.materials[0].emission);
