@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mesh/chosen_sizes.h"
 #include "mesh/contacts/contact_graph.h"
 #include "mesh/discontinuity/critical_lines.h"
 #include "mesh/geometry/facet_plane.h"
@@ -21,86 +22,16 @@
 namespace lightwell {
 namespace {
 
-// Points closer than this share of the scene's diagonal are joined. The first is the precision of
+// Points closer than this share of coordinate_length() are joined. The first is the precision of
 // single-precision coordinates. The others are for rougher files, in which facets that should touch
 // miss each other by more, but by too little to be apart.
 constexpr std::array<double, 3> weld_shares{1e-7, 1e-6, 1e-5};
 constexpr double most_elements = 20e6;
 
-int side_count(const Material& material) {
-  return material.one_sided || material.dielectric ? 1 : 2;
-}
-
-double boundary_length(const PolygonMesh& mesh, const Facet& facet) {
-  double length = 0.0;
-  const auto add = [&](const std::vector<int>& loop) {
-    for (std::size_t i = 0; i < loop.size(); ++i) {
-      length += (mesh.vertices[loop[i]] - mesh.vertices[loop[(i + 1) % loop.size()]]).norm();
-    }
-  };
-  add(facet.boundary);
-  for (const auto& hole : facet.holes) add(hole);
-  return length;
-}
-
-double predicted_elements(const Scene& scene, double element_size) {
-  double count = 0.0;
-  for (const Surface& surface : scene.surfaces) {
-    const int sides = side_count(scene.materials[surface.material]);
-    if (const auto* mesh = std::get_if<PolygonMesh>(&surface.shape)) {
-      for (const Facet& facet : mesh->facets) {
-        // A strip narrower than an element is cut along its length alone.
-        const double inside = facet_area(*mesh, facet) / (element_size * element_size);
-        const double along = boundary_length(*mesh, facet) / (2.0 * element_size);
-        count += sides * std::max({1.0, inside, along});
-      }
-    } else {
-      count += sides * surface_area(surface) / (element_size * element_size);
-    }
-  }
-  return count;
-}
-
-void check(const Scene& scene, const MeshOptions& options) {
-  if (scene_facets(scene).empty()) {
-    throw InputError(fmt::format("{}{}the scene has no surfaces; there is nothing to mesh",
-                                 scene.file.string(), scene.file.empty() ? "" : ": "));
-  }
-  if (!(options.max_patch_size >= 0.0) || !std::isfinite(options.max_patch_size)) {
-    throw InputError(fmt::format(
-        "the largest patch size is {} m; give a positive length, or 0 to have it chosen",
-        options.max_patch_size));
-  }
-  for (const int count : {options.auto_patch_count, options.most_patches}) {
-    if (count >= 1) continue;
-    throw InputError(fmt::format("{} patches are asked for; give at least 1", count));
-  }
-  if (!(options.discontinuity_growth >= 0.0)) {
-    throw InputError(fmt::format(
-        "discontinuity lines may add {} times the elements; give a number that is not negative",
-        options.discontinuity_growth));
-  }
-  if (!(options.max_element_size >= 0.0) || !std::isfinite(options.max_element_size)) {
-    throw InputError(fmt::format(
-        "the largest element size is {} m; give a positive length, or 0 to have it chosen",
-        options.max_element_size));
-  }
-  if (options.max_element_size > 0.0 && options.max_patch_size > 0.0 &&
-      options.max_element_size > options.max_patch_size) {
-    throw InputError(fmt::format(
-        "elements of {:.6g} m do not fit into patches of {:.6g} m; give elements that are smaller",
-        options.max_element_size, options.max_patch_size));
-  }
-  constexpr int most_per_edge = 1000;
-  if (options.elements_per_patch_edge < 1 || options.elements_per_patch_edge > most_per_edge) {
-    throw InputError(fmt::format("{} elements along a patch edge are asked for; give 1 to {}",
-                                 options.elements_per_patch_edge, most_per_edge));
-  }
-}
-
-void check_count(const Scene& scene, const CutSize& cut) {
-  const double count = predicted_elements(scene, cut.element_size());
+void check_count(const Scene& scene, const PatchSizes& sizes) {
+  const double count = predicted_elements(scene, sizes);
   if (count <= most_elements) return;
+  const CutSize& cut = sizes.near();
   throw InputError(fmt::format(
       "{}{}patches of {:.6g} m with {} elements along an edge would make about {:.3g} million "
       "elements; the limit is {:.0f} million. Use a larger patch size",
@@ -174,17 +105,16 @@ struct FacetMeshes {
   bool is_sound() const { return faults() == std::array<int, 3>{}; }
 };
 
-FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut,
+FacetMeshes mesh_facets(const Scene& scene, double tolerance, const PatchSizes& sizes,
                         const MeshOptions& options, const Progress& progress) {
   FacetMeshes result;
   WeldedPoints points(tolerance);
   result.planes = facet_planes(scene, points);
   CriticalLines critical;
   if (options.discontinuity) critical = critical_lines(scene, result.planes, {}, progress);
-  const double most_added =
-      options.discontinuity_growth * predicted_elements(scene, cut.element_size());
-  const ContactGraph graph(scene, result.planes, std::move(points), cut, critical.lines, most_added,
-                           progress);
+  const double most_added = options.discontinuity_growth * predicted_elements(scene, sizes);
+  const ContactGraph graph(scene, result.planes, std::move(points), sizes, critical.lines,
+                           most_added, progress);
   const int count = static_cast<int>(result.planes.size());
   result.meshes.resize(count);
   constexpr int batch = 1024;  // facets between two checks of the stop request
@@ -192,7 +122,9 @@ FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut
     report(progress, "mesh", 0.4 + 0.5 * begin / count);
     parallel_for(std::min(batch, count - begin), 1, [&](int from, int to) {
       for (int i = begin + from; i < begin + to; ++i) {
-        result.meshes[i] = mesh_facet(result.planes[i], graph.outline(i), graph.points(), cut);
+        const FacetPlane& plane = result.planes[i];
+        result.meshes[i] = mesh_facet(plane, graph.outline(i), graph.points(),
+                                      sizes.of_facet(plane.facet, plane.box));
       }
     });
   }
@@ -216,50 +148,15 @@ FacetMeshes mesh_facets(const Scene& scene, double tolerance, const CutSize& cut
   return result;
 }
 
-// The area that the patch size is chosen by, m^2. Mirrors and glass need no patches but are cut as
-// well: a large mirror in a scene with few diffuse surfaces must not make millions of elements.
-double area_to_mesh(const Scene& scene) {
-  double diffuse = 0.0, all = 0.0;
-  for (const Surface& surface : scene.surfaces) {
-    const Material& material = scene.materials[surface.material];
-    const double area = side_count(material) * surface_area(surface);
-    all += area;
-    if (!material.is_specular() || material.mirrors_by_coat() || material.passes_straight() ||
-        material.pattern) {
-      diffuse += area;
-    }
-  }
-  constexpr double most_of_all = 16.0;
-  return std::max(diffuse, all / most_of_all);
-}
-
-// Patch size of `count` patches of even size, or of up to 2.5 times as many in a scene with much
-// area in little space, such as a house of furnished rooms. There patches must not be large beside
-// the mean free path of light from surface to surface, 4 V / A (Cauchy) for the area A within the
-// scene's box. The box's own surface does not count, since an empty room has no other. Both limits
-// were set with a staircase of 257 000 facets in view: four times as many patches took a quarter
-// more time and gained nothing.
-double even_patch_size(const Scene& scene, int count) {
-  constexpr double largest = 0.25, usual_count = 1600.0, most_times = 2.5;
-  const double area = area_to_mesh(scene), size = std::sqrt(area / count);
-  const Bounds bounds = scene_bounds(scene);
-  const Eigen::Vector3d extent = bounds.high - bounds.low;
-  const double of_box =
-      2.0 * (extent.x() * extent.y() + extent.y() * extent.z() + extent.z() * extent.x());
-  if (!(area > of_box)) return size;
-  const double free_path = 4.0 * extent.prod() / (area - of_box);
-  return std::clamp(largest * std::sqrt(usual_count / count) * free_path,
-                    size / std::sqrt(most_times), size);
-}
-
 // Meshes with the smallest tolerance that keeps all contact lines, or else with the one that leaves
 // fewest facets without a mesh and, of those, lets fewest cross themselves and keeps most lines.
-FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOptions& options,
+FacetMeshes mesh_facets(const Scene& scene, const PatchSizes& sizes, const MeshOptions& options,
                         const Progress& progress) {
-  const double diagonal = scene_bounds(scene).diagonal();
+  // Coordinates of what is near are as exact as without surroundings.
+  const double diagonal = coordinate_length(scene);
   FacetMeshes best;
   for (const double share : weld_shares) {
-    FacetMeshes next = mesh_facets(scene, share * diagonal, cut, options, progress);
+    FacetMeshes next = mesh_facets(scene, share * diagonal, sizes, options, progress);
     const bool is_first = share == weld_shares.front();
     if (!is_first && next.faults() >= best.faults()) break;
     best = std::move(next);
@@ -279,7 +176,7 @@ FacetMeshes mesh_facets(const Scene& scene, const CutSize& cut, const MeshOption
   return best;
 }
 
-// Adds a note if patches follow surroundings beside which the rest of the scene is small. A dome
+// Adds a note if patches of one size everywhere are long beside a small part of the scene. A dome
 // has most of the area, so the error estimate says little of a room within it.
 void note_surroundings(const Scene& scene, const CutSize& cut, std::vector<std::string>& notes) {
   constexpr double longest = 50.0;  // a backdrop is at least twice as far away, see scenery_box()
@@ -288,8 +185,10 @@ void note_surroundings(const Scene& scene, const CutSize& cut, std::vector<std::
   if (!(all > longest * scenery) || !(cut.patch_size > scenery / fewest_patches)) return;
   notes.push_back(fmt::format(
       "the surroundings are {:.4g} m long, and what they surround {:.3g} m: patches of {:.3g} m "
-      "are too coarse for its light, and the error estimate may not show that; make the "
-      "surroundings smaller, up to {:g} times as long, or use a [sky] in place of a dome",
+      "are too coarse for its light, and the error estimate may not show that; give no size of "
+      "patches, make the surroundings smaller, up to {:g} times as long, or use a [sky] in place "
+      "of "
+      "a dome",
       all, scenery, cut.patch_size, longest));
 }
 
@@ -299,39 +198,17 @@ bool is_sphere(const Surface& surface) {
 
 }  // namespace
 
-CutSize cut_size(const Scene& scene, const MeshOptions& options) {
-  check(scene, options);
-  if (!(options.max_element_size > 0.0)) {
-    return {.patch_size = options.max_patch_size > 0.0
-                              ? options.max_patch_size
-                              : even_patch_size(scene, options.auto_patch_count),
-            .elements_per_edge = options.elements_per_patch_edge};
-  }
-  const double element = options.max_element_size;
-  if (options.max_patch_size > 0.0) {
-    constexpr double rounding = 1e-5;  // relative rounding of lengths in a text file
-    const double along = std::floor(options.max_patch_size / element + rounding);
-    const auto count = static_cast<int>(std::clamp(along, 1.0, 1e3));
-    return {.patch_size = std::min(options.max_patch_size, count * element),
-            .elements_per_edge = count};
-  }
-  const double along = std::ceil(std::sqrt(area_to_mesh(scene) / options.most_patches) / element);
-  const auto count = static_cast<int>(std::clamp(along, 2.0, 1e3));
-  return {.patch_size = count * element, .elements_per_edge = count};
-}
-
 PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Progress& progress) {
-  const CutSize round_cut = cut_size(scene, options);
-  const double size = round_cut.patch_size;
-  CutSize cut = round_cut;
-  if (options.to_be_refined) cut.elements_per_edge = (cut.elements_per_edge + 1) / 2;
-  check_count(scene, cut);
+  const PatchSizes round_sizes = patch_sizes(scene, options);
+  const int per_edge = round_sizes.near().elements_per_edge;
+  const PatchSizes sizes =
+      options.to_be_refined ? round_sizes.with((per_edge + 1) / 2) : round_sizes;
+  check_count(scene, sizes);
   report(progress, "mesh", 0.0);
-  FacetMeshes facet_meshes = mesh_facets(scene, cut, options, progress);
+  FacetMeshes facet_meshes = mesh_facets(scene, sizes, options, progress);
 
   report(progress, "mesh", 0.9);
-  PatchBuilder builder(scene, options.smooth_angle_degrees,
-                       {.patch_size = size, .angle_degrees = options.curve_angle_degrees});
+  PatchBuilder builder(scene, options.smooth_angle_degrees, options.curve_angle_degrees);
   const std::vector<FacetRef> facets = scene_facets(scene);
   const NearEmitters near_emitters(scene);
   const auto spheres = static_cast<int>(std::ranges::count_if(scene.surfaces, is_sphere));
@@ -339,16 +216,18 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Pr
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {
     const Surface& surface = scene.surfaces[facets[f].surface];
     if (const auto shape = round_shape(surface)) {
-      CutSize size_here = near_emitters.cut(*shape, facets[f].surface, round_cut);
+      const CutSize usual = round_sizes.of_round_shape(f);
+      CutSize size_here = near_emitters.cut(*shape, facets[f].surface, usual);
       if (options.to_be_refined) size_here = fine_enough(*shape, size_here, spheres);
-      builder.add_round(f, facets[f].surface, *shape, round_elements(*shape, size_here));
+      builder.add_round(f, facets[f].surface, usual.patch_size, *shape,
+                        round_elements(*shape, size_here));
       continue;
     }
     FacetMesh& mesh = facet_meshes.meshes[plane];
-    if (!mesh.corners.empty()) {
-      builder.add_facet(f, facets[f].surface, facet_meshes.planes[plane].normal, std::move(mesh));
-    }
-    ++plane;
+    const FacetPlane& of_mesh = facet_meshes.planes[plane++];
+    if (mesh.corners.empty()) continue;
+    const double patch_size = sizes.of_facet(f, of_mesh.box).cut.patch_size;
+    builder.add_facet(of_mesh, patch_size, std::move(mesh));
   }
   std::vector<std::string> notes = std::move(facet_meshes.notes);
   facet_meshes = {};
@@ -358,7 +237,7 @@ PatchMesh build_patches(const Scene& scene, const MeshOptions& options, const Pr
                                  scene.file.string(), scene.file.empty() ? "" : ": "));
   }
   lay_on_textures(scene, mesh);
-  note_surroundings(scene, round_cut, notes);
+  note_surroundings(scene, round_sizes.near(), notes);
   mesh.notes = std::move(notes);
   report(progress, "mesh", 1.0);
   return mesh;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <tuple>
@@ -33,25 +34,29 @@ std::array<int, 4> turned_corners(const std::array<int, 4>& c) {
 
 }  // namespace
 
-void PatchBuilder::add_facet(int facet, int surface, const Vector3d& normal, FacetMesh mesh) {
-  const bool is_flat = !normal.isZero();
-  std::vector<char> at_reflex_corner;
-  if (is_flat) at_reflex_corner = split_reflex_corners(mesh);
-  const int first = shared_.add(mesh.position.size());
-  pieces_.push_back({.facet = facet,
-                     .surface = surface,
-                     .first_vertex = first,
-                     .normal = normal,
-                     .mesh = std::move(mesh),
-                     .at_reflex_corner = std::move(at_reflex_corner)});
+void PatchBuilder::add_piece(Piece piece) {
+  piece.first_vertex = shared_.add(piece.mesh.position.size());
+  pieces_.push_back(std::move(piece));
 }
 
-void PatchBuilder::add_round(int facet, int surface, const RoundShape& shape,
+void PatchBuilder::add_facet(const FacetPlane& plane, double patch_size, FacetMesh mesh) {
+  Piece piece{.facet = plane.facet,
+              .surface = plane.surface,
+              .normal = plane.normal,
+              .patch_size = patch_size,
+              .mesh = std::move(mesh)};
+  if (!plane.normal.isZero()) piece.at_reflex_corner = split_reflex_corners(piece.mesh);
+  add_piece(std::move(piece));
+}
+
+void PatchBuilder::add_round(int facet, int surface, double patch_size, const RoundShape& shape,
                              RoundElements elements) {
-  FacetMesh mesh{.position = std::move(elements.position),
-                 .corners = std::move(elements.corners),
-                 .first_element = std::move(elements.first_element)};
-  add_facet(facet, surface, Vector3d::Zero(), std::move(mesh));
+  add_piece({.facet = facet,
+             .surface = surface,
+             .patch_size = patch_size,
+             .mesh = {.position = std::move(elements.position),
+                      .corners = std::move(elements.corners),
+                      .first_element = std::move(elements.first_element)}});
   pieces_.back().round = static_cast<int>(grids_.size());
   grids_.push_back({.facet = facet,
                     .shape = shape,
@@ -174,6 +179,35 @@ std::vector<FacetPatchContact> PatchBuilder::part_contacts(const std::vector<int
   return contacts;
 }
 
+std::vector<int> PatchBuilder::groups_of(const std::vector<Part>& parts,
+                                         const std::vector<int>& first_part,
+                                         const std::vector<Side>& sides) const {
+  std::vector<int> group(parts.size());
+  std::iota(group.begin(), group.end(), 0);
+  if (!(curve_angle_degrees_ > 0.0)) return group;
+  std::map<double, std::vector<int>> of_size;  // parts by patch size
+  for (int i = 0; i < static_cast<int>(parts.size()); ++i) {
+    of_size[pieces_[parts[i].piece].patch_size].push_back(i);
+  }
+  const std::vector<FacetPatchContact> contacts = part_contacts(first_part, sides);
+  for (const auto& [size, members] : of_size) {
+    std::vector<int> place(parts.size(), -1);
+    std::vector<FacetPatch> patches;
+    for (const int i : members) {
+      place[i] = static_cast<int>(patches.size());
+      patches.push_back(facet_patch(parts[i]));
+    }
+    std::vector<FacetPatchContact> within;
+    for (const auto& [one, other] : contacts) {
+      if (place[one] >= 0 && place[other] >= 0) within.push_back({place[one], place[other]});
+    }
+    const std::vector<int> joined =
+        group_facets(patches, within, {.patch_size = size, .angle_degrees = curve_angle_degrees_});
+    for (std::size_t k = 0; k < members.size(); ++k) group[members[k]] = members[joined[k]];
+  }
+  return group;
+}
+
 std::vector<std::vector<std::vector<PatchBuilder::Part>>> PatchBuilder::patches_of_pieces(
     const std::vector<Side>& sides) const {
   std::vector<Part> parts;
@@ -182,13 +216,7 @@ std::vector<std::vector<std::vector<PatchBuilder::Part>>> PatchBuilder::patches_
     first_part.push_back(static_cast<int>(parts.size()));
     for (int i = 0; i < pieces_[p].mesh.patch_count(); ++i) parts.push_back({p, i});
   }
-  std::vector<int> group(parts.size());
-  std::iota(group.begin(), group.end(), 0);
-  if (groups_.angle_degrees > 0.0) {
-    std::vector<FacetPatch> patches;
-    for (const Part& part : parts) patches.push_back(facet_patch(part));
-    group = group_facets(patches, part_contacts(first_part, sides), groups_);
-  }
+  const std::vector<int> group = groups_of(parts, first_part, sides);
   std::vector<std::vector<std::vector<Part>>> of_piece(pieces_.size());
   std::vector<int> place(parts.size(), -1);
   for (std::size_t i = 0; i < parts.size(); ++i) {

@@ -14,16 +14,19 @@ namespace lightwell {
 /// small facets, and adds the back sides. Keeps a reference to the scene.
 class PatchBuilder {
  public:
-  PatchBuilder(const Scene& scene, double smooth_angle_degrees, const FacetGroupOptions& groups)
+  /// Facets of one surface share patches up to `curve_angle_degrees`, see FacetGroupOptions.
+  PatchBuilder(const Scene& scene, double smooth_angle_degrees, double curve_angle_degrees)
       : scene_(scene),
         normals_(scene),
         smooth_angle_degrees_(smooth_angle_degrees),
-        groups_(groups) {}
+        curve_angle_degrees_(curve_angle_degrees) {}
 
-  /// Adds the front of a facet; `normal` is its unit normal.
-  void add_facet(int facet, int surface, const Eigen::Vector3d& normal, FacetMesh mesh);
+  /// Adds the front of a facet of the plane. Small facets of one `patch_size` (metres) share
+  /// patches.
+  void add_facet(const FacetPlane& plane, double patch_size, FacetMesh mesh);
   /// Adds the front of a round shape.
-  void add_round(int facet, int surface, const RoundShape& shape, RoundElements elements);
+  void add_round(int facet, int surface, double patch_size, const RoundShape& shape,
+                 RoundElements elements);
   /// Returns the mesh; the builder is empty afterwards.
   PatchMesh finish();
 
@@ -32,6 +35,7 @@ class PatchBuilder {
     int facet = 0, surface = 0;
     int first_vertex = 0;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    double patch_size = 1.0;  ///< metres
     FacetMesh mesh{};
     std::vector<char> at_reflex_corner{};  ///< per vertex; empty: none
     int round = -1;                        ///< index into grids_ and round_area_; -1: a polygon
@@ -50,12 +54,16 @@ class PatchBuilder {
   };
   std::vector<Side> border_sides() const;
   void share_smooth_edges(const std::vector<Side>& sides);
+  void add_piece(Piece piece);
   Eigen::Vector3d normal_at(int piece, int vertex) const;
   FacetPatch facet_patch(const Part& part) const;
   /// Parts that share an edge at which nothing else stands. `first_part` is per piece its first
   /// part.
   std::vector<FacetPatchContact> part_contacts(const std::vector<int>& first_part,
                                                const std::vector<Side>& sides) const;
+  /// Per part, a part of its group, the same for all of a group.
+  std::vector<int> groups_of(const std::vector<Part>& parts, const std::vector<int>& first_part,
+                             const std::vector<Side>& sides) const;
   /// Per piece, the patches whose first part lies in the piece; a patch is a list of parts.
   std::vector<std::vector<std::vector<Part>>> patches_of_pieces(
       const std::vector<Side>& sides) const;
@@ -66,7 +74,7 @@ class PatchBuilder {
   const Scene& scene_;
   FacetNormals normals_;
   double smooth_angle_degrees_;
-  FacetGroupOptions groups_;
+  double curve_angle_degrees_;
   std::vector<Piece> pieces_;
   std::vector<RoundGrid> grids_;
   std::vector<std::vector<double>> round_area_;

@@ -9,6 +9,7 @@
 #include "radiosity/refine/error_reference.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
@@ -133,8 +134,8 @@ std::vector<ErrorSample> draw_samples(const Scene& scene, const ElementCaster& c
   const std::uint64_t key = static_cast<std::uint64_t>(RandomPurpose::error_points) +
                             batch_keys * static_cast<std::uint64_t>(batch);
   for (int i = 0; i < wanted; ++i) drawn.push_back(sampler.draw(sobol.point(i, key)));
-  constexpr double crack = 1e-4;  // share of the scene's diagonal
-  return unenclosed_samples(caster, crack * scene_bounds(scene).diagonal(), drawn);
+  constexpr double crack = 1e-4;  // share of scenery_length()
+  return unenclosed_samples(caster, crack * scenery_length(scene), drawn);
 }
 
 // The sample points of each part: `all` shared by area, with a least number for each part.

@@ -14,8 +14,33 @@ namespace lightwell {
 /// as the box of these is long, with each of its facets. Coordinates in single precision are exact
 /// to a few micrometres in a room of 10 m, but to half a millimetre about the middle of a dome of
 /// 3 km, so distances that stand for rounding follow the scenery.
-Eigen::AlignedBox3d scenery_box(std::vector<Eigen::AlignedBox3d> boxes);
+Eigen::AlignedBox3d scenery_box(const std::vector<Eigen::AlignedBox3d>& boxes);
 /// The same for the facets and round shapes of a scene.
 Eigen::AlignedBox3d scenery_box(const Scene& scene);
+
+/// What a scene shows from near, and what only surrounds it.
+struct Scenery {
+  Eigen::AlignedBox3d box{};      ///< of what is near, m
+  std::vector<char> is_near{};    ///< by facet of the scene
+  bool has_surroundings = false;  ///< false: all is near
+};
+
+/// A scene that is all near.
+Scenery all_near(const Scene& scene);
+
+/// Parts a scene at smaller distances than scenery_box(): each of the surroundings' facets reaches
+/// at least twice as far from the middle as what is near is long, and the farthest 16 times as far.
+/// A ground of 300 m about a room, and a land of triangles of 100 m, are such surroundings. Sizes
+/// of patches follow the near part, for which the area of such surroundings would make them longer
+/// than its walls.
+Scenery near_scenery(const Scene& scene);
+/// The length of the box of near_scenery(), m: what distances are shares of that stand for the
+/// details of a scene.
+double scenery_length(const Scene& scene);
+/// The same, or the distance of the box from the origin if that is more, but no more than the
+/// length of the scene: what distances are shares of that stand for the rounding of coordinates.
+double coordinate_length(const Scene& scene);
+/// By box, 1 if it is near as facets of near_scenery() are.
+std::vector<char> are_near(const std::vector<Eigen::AlignedBox3d>& boxes);
 
 }  // namespace lightwell

@@ -6,6 +6,7 @@
 #include <map>
 
 #include "mesh/geometry/welded_points.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
@@ -19,7 +20,7 @@ struct WeldedFacet {
 };
 
 std::vector<WeldedFacet> weld(const Scene& scene) {
-  WeldedPoints points(weld_share * scene_bounds(scene).diagonal());
+  WeldedPoints points(weld_share * coordinate_length(scene));
   std::vector<WeldedFacet> welded;
   const std::vector<FacetRef> facets = scene_facets(scene);
   for (int f = 0; f < static_cast<int>(facets.size()); ++f) {

@@ -15,6 +15,7 @@
 #include "mesh/geometry/box_tree.h"
 #include "mesh/geometry/facet_plane.h"
 #include "mesh/geometry/welded_points.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
@@ -248,9 +249,9 @@ struct JoinedSurfaces::Planes {
 JoinedSurfaces::JoinedSurfaces(const Scene& before, std::vector<int> numbers)
     : numbers_(std::move(numbers)),
       surfaces_(only(before, numbers_).surfaces),
-      reach_(reach_share * scene_bounds(before).diagonal()),
+      reach_(reach_share * coordinate_length(before)),
       planes_(std::make_shared<const Planes>(
-          planes_of(only(before, numbers_), weld_share * scene_bounds(before).diagonal()))) {}
+          planes_of(only(before, numbers_), weld_share * coordinate_length(before)))) {}
 
 int JoinedSurfaces::surface_at(const Vector3d& point, const Vector3d& front) const {
   const Vector3d reach = Vector3d::Constant(reach_);
@@ -282,7 +283,7 @@ Scene JoinedSurfaces::apart(Scene joined) const {
 }
 
 std::int64_t drop_shared_duplicates(Scene& scene) {
-  const double tolerance = weld_share * scene_bounds(scene).diagonal();
+  const double tolerance = weld_share * coordinate_length(scene);
   std::int64_t dropped = 0;
   for (const std::vector<int>& numbers : surfaces_alike(scene)) {
     const Polygons all = polygons_of(scene, numbers, tolerance);
@@ -310,7 +311,7 @@ std::int64_t drop_shared_duplicates(Scene& scene) {
 std::shared_ptr<const JoinedSurfaces> join_surfaces(Scene& scene) {
   const std::vector<std::vector<int>> groups = surfaces_alike(scene);
   if (groups.empty()) return nullptr;
-  const double tolerance = weld_share * scene_bounds(scene).diagonal();
+  const double tolerance = weld_share * coordinate_length(scene);
   Scene before;
   std::vector<int> changed;
   for (const std::vector<int>& numbers : groups) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/geometry/welded_points.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
@@ -78,7 +79,7 @@ void count_edges(std::vector<MeshEdge> edges, MeshQuality& quality) {
 }  // namespace
 
 MeshQuality mesh_quality(const Scene& scene) {
-  const double tolerance = weld_share * scene_bounds(scene).diagonal();
+  const double tolerance = weld_share * coordinate_length(scene);
   MeshQuality quality;
   for (const Surface& surface : scene.surfaces) {
     const auto* mesh = std::get_if<PolygonMesh>(&surface.shape);

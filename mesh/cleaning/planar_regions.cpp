@@ -19,6 +19,7 @@
 #include "mesh/geometry/welded_points.h"
 #include "mesh/patches/element_quality.h"
 #include "scene/parallel.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
@@ -204,7 +205,7 @@ Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {
   total.area_before = total.facets_before > 0 ? scene_area(result) : 0.0;
   const int count = static_cast<int>(scene.surfaces.size());
   if (total.facets_before > 0) {
-    const double diagonal = scene_bounds(scene).diagonal();
+    const double diagonal = coordinate_length(scene);
     WeldedPoints welded(weld_share * diagonal);
     std::vector<std::vector<int>> point(scene.surfaces.size());
     for (int s = 0; s < count; ++s) {

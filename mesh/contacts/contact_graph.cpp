@@ -23,11 +23,11 @@ std::vector<int> without_atoms(const std::vector<int>& all, const std::vector<in
 }  // namespace
 
 ContactGraph::ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes,
-                           WeldedPoints points, const CutSize& size,
+                           WeldedPoints points, const PatchSizes& sizes,
                            const std::vector<CriticalLine>& critical, double most_elements,
                            const Progress& progress)
     : planes_(planes),
-      size_(size),
+      sizes_(sizes),
       welded_(std::move(points)),
       contact_segments_(planes.size()),
       lacks_contacts_(planes.size(), 0),
@@ -39,6 +39,7 @@ ContactGraph::ContactGraph(const Scene& scene, const std::vector<FacetPlane>& pl
   cut_at_points();
   if (!critical.empty()) add_creases(critical, most_elements);
   make_atoms();
+  if (!sizes_.are_even()) grade_atoms();
   count_pieces();
   divide();
 }
@@ -102,7 +103,7 @@ void ContactGraph::add_creases(const std::vector<CriticalLine>& critical, double
     if (fixed[line.plane].empty()) fixed[line.plane] = fixed_pieces(line.plane);
   }
   CreaseSelection selection(planes_, fixed,
-                            {.element_size = size_.element_size(),
+                            {.element_size = sizes_.near().element_size(),
                              .tolerance = welded_.tolerance(),
                              .most_elements = most_elements});
   selection.select(critical);
@@ -132,8 +133,8 @@ void ContactGraph::make_atoms() {
       const auto [entry, is_new] =
           atom_of_ends.try_emplace(ends_key(a, b), static_cast<int>(atoms_.size()));
       if (is_new) {
-        atoms_.push_back(
-            {.a = a, .b = b, .pieces = size_.pieces((welded_[a] - welded_[b]).norm())});
+        const double length = (welded_[a] - welded_[b]).norm();
+        atoms_.push_back({.a = a, .b = b, .pieces = sizes_.near().pieces(length)});
       }
       atoms_of_segment_[i].push_back(entry->second);
     }
@@ -171,6 +172,26 @@ std::vector<int> ContactGraph::crease_atoms(int index) const {
                        contact_atoms(index));
 }
 
+// Lines that lie in no facet of what is near are divided by the sizes along them.
+void ContactGraph::grade_atoms() {
+  std::vector<char> is_near(atoms_.size(), 0);
+  const auto mark = [&](const std::vector<int>& atoms) {
+    for (const int i : atoms) is_near[i] = 1;
+  };
+  for (std::size_t p = 0; p < planes_.size(); ++p) {
+    if (!sizes_.is_near(planes_[p].facet)) continue;
+    mark(atoms_of_boundary(static_cast<int>(p)));
+    mark(atoms_of(contact_segments_[p]));
+    mark(atoms_of(crease_segments_[p]));
+  }
+  for (std::size_t i = 0; i < atoms_.size(); ++i) {
+    if (is_near[i]) continue;
+    Atom& atom = atoms_[i];
+    atom.cuts = sizes_.cuts(welded_[atom.a], welded_[atom.b]);
+    atom.pieces = static_cast<int>(atom.cuts.size()) + 1;
+  }
+}
+
 // Opposite edges of four-sided facets get equal counts where their lengths nearly agree, so that a
 // slightly trapezoidal wall is a grid of quadrilaterals. A contact line with two free ends gets a
 // point of its own, at which the values on the line's two sides can differ.
@@ -198,6 +219,7 @@ void ContactGraph::count_pieces() {
       const auto& one = atoms_of_segment_[edge_segment_[first_edge_[f] + e]];
       const auto& other = atoms_of_segment_[edge_segment_[first_edge_[f] + e + 2]];
       if (one.size() != 1 || other.size() != 1) continue;
+      if (!atoms_[one[0]].cuts.empty() || !atoms_[other[0]].cuts.empty()) continue;
       const double ratio = length(one[0]) / length(other[0]);
       constexpr double nearly = 1.1;
       if (ratio < nearly && ratio * nearly > 1.0) opposite.join(one[0], other[0]);
@@ -209,9 +231,11 @@ void ContactGraph::count_pieces() {
     m = std::max(m, atoms_[i].pieces);
   }
   for (std::size_t i = 0; i < atoms_.size(); ++i) {
+    if (!atoms_[i].cuts.empty()) continue;
     const int wanted = most[opposite.root(static_cast<int>(i))];
     // Limits the effect of a long chain of ever longer edges on its short end.
-    if (wanted <= 1.25 * atoms_[i].pieces + size_.elements_per_edge) atoms_[i].pieces = wanted;
+    if (wanted <= 1.25 * atoms_[i].pieces + sizes_.near().elements_per_edge)
+      atoms_[i].pieces = wanted;
   }
 }
 
@@ -221,7 +245,9 @@ void ContactGraph::divide() {
     atom.first_division = static_cast<int>(points_.size());
     const Vector3d a = points_[atom.a], b = points_[atom.b];
     for (int k = 1; k < atom.pieces; ++k) {
-      points_.push_back(a + (b - a) * (static_cast<double>(k) / atom.pieces));
+      const double at = atom.cuts.empty() ? static_cast<double>(k) / atom.pieces
+                                          : atom.cuts[static_cast<std::size_t>(k) - 1];
+      points_.push_back(a + (b - a) * at);
     }
   }
 }

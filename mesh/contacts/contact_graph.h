@@ -8,8 +8,8 @@
 #include "mesh/contacts/contact_effort.h"
 #include "mesh/contacts/line_selection.h"
 #include "mesh/discontinuity/crease_selection.h"
-#include "mesh/geometry/cut_size.h"
 #include "mesh/geometry/facet_plane.h"
+#include "mesh/geometry/patch_sizes.h"
 #include "scene/progress.h"
 
 namespace lightwell {
@@ -30,15 +30,16 @@ struct FacetOutline {
 /// them, so the mesh conforms across facets.
 class ContactGraph {
  public:
-  /// Keeps a reference to `planes`. `points` must hold the planes' corners. The mesh is cut along
-  /// `critical` lines too, as far as these add no more than about `most_elements` elements.
+  /// Keeps references to `planes` and `sizes`. `points` must hold the planes' corners. The mesh is
+  /// cut along `critical` lines too, as far as these add no more than about `most_elements`
+  /// elements.
   ///
   /// Facets keep only their longest contact lines where there are more contacts than ContactEffort
   /// allows, or where contact lines cross in more than 4000 places and in more than three per
   /// element (see lacks_contacts()).
   ContactGraph(const Scene& scene, const std::vector<FacetPlane>& planes, WeldedPoints points,
-               const CutSize& size, const std::vector<CriticalLine>& critical, double most_elements,
-               const Progress& progress);
+               const PatchSizes& sizes, const std::vector<CriticalLine>& critical,
+               double most_elements, const Progress& progress);
 
   const std::vector<Eigen::Vector3d>& points() const { return points_; }
   /// The outline of the facet of planes[index].
@@ -58,7 +59,8 @@ class ContactGraph {
   struct Atom {
     int a = 0, b = 0;  ///< points, a < b
     int pieces = 1;
-    int first_division = 0;  ///< the pieces - 1 points between a and b, in order
+    int first_division = 0;      ///< the pieces - 1 points between a and b, in order
+    std::vector<double> cuts{};  ///< parameters of these points; empty: at even distances
   };
 
   int segment(int a, int b);
@@ -88,6 +90,7 @@ class ContactGraph {
   std::vector<std::vector<Crossing>> crossings_within_facets() const;
   void cut_at_points();
   void make_atoms();
+  void grade_atoms();
   void count_pieces();
   void divide();
   std::vector<int> atoms_of_boundary(int index) const;
@@ -96,7 +99,7 @@ class ContactGraph {
   std::vector<int> atoms_of(const std::vector<int>& segments) const;
 
   const std::vector<FacetPlane>& planes_;
-  CutSize size_;
+  const PatchSizes& sizes_;
   WeldedPoints welded_;
   std::vector<Segment> segments_;
   std::unordered_map<std::uint64_t, int> segment_of_ends_;

@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr int batch = 4096;  // facets between two checks of the stop request
+constexpr int facet_batch = 4096;  // facets between two checks of the stop request
 
 // Crossings of contact lines in all facets and per element, above which these are thinned out.
 // Furnished rooms of 20 000 to 120 000 facets have one in 100 to 400 elements, an office with
@@ -28,10 +28,19 @@ constexpr double many_crossings = 4000.0, many_per_element = 3.0;
 // Crossings that are then left: in all facets, per element, and in each facet at least.
 constexpr double left_crossings = 1000.0, left_per_element = 0.1, left_in_facet = 4.0;
 
-std::vector<RoundShape> round_shapes_of(const Scene& scene) {
-  std::vector<RoundShape> shapes;
-  for (const Surface& surface : scene.surfaces) {
-    if (const auto shape = round_shape(surface)) shapes.push_back(*shape);
+// A round shape, and the length of its elements.
+struct CutShape {
+  RoundShape shape{};
+  double element = 0.0;
+};
+
+std::vector<CutShape> round_shapes_of(const Scene& scene, const PatchSizes& sizes) {
+  std::vector<CutShape> shapes;
+  const std::vector<FacetRef> facets = scene_facets(scene);
+  for (std::size_t f = 0; f < facets.size(); ++f) {
+    const auto shape = round_shape(scene.surfaces[static_cast<std::size_t>(facets[f].surface)]);
+    if (!shape) continue;
+    shapes.push_back({*shape, sizes.of_round_shape(static_cast<int>(f)).element_size()});
   }
   return shapes;
 }
@@ -51,8 +60,7 @@ class ContactGraph::Search {
 
   Search(const Scene& scene, const ContactGraph& graph)
       : planes_(graph.planes_),
-        round_shapes_(round_shapes_of(scene)),
-        element_size_(graph.size_.element_size()),
+        round_shapes_(round_shapes_of(scene, graph.sizes_)),
         tolerance_(graph.welded_.tolerance()),
         boxes_(boxes()),
         tree_(boxes_) {}
@@ -86,10 +94,13 @@ class ContactGraph::Search {
     const auto plane = [&](int f) -> const FacetPlane& {
       return planes_[static_cast<std::size_t>(f)];
     };
-    const auto segments =
-        j < count ? facet_contact(plane(std::min(i, j)), plane(std::max(i, j)), tolerance_)
-                  : round_contact(plane(i), round_shapes_[static_cast<std::size_t>(j - count)],
-                                  element_size_, least_circle * element_size_, tolerance_);
+    std::vector<ContactSegment> segments;
+    if (j < count) {
+      segments = facet_contact(plane(std::min(i, j)), plane(std::max(i, j)), tolerance_);
+    } else {
+      const auto& [shape, element] = round_shapes_[static_cast<std::size_t>(j - count)];
+      segments = round_contact(plane(i), shape, element, least_circle * element, tolerance_);
+    }
     for (const ContactSegment& segment : segments) contacts.push_back({j, segment});
   }
 
@@ -98,9 +109,9 @@ class ContactGraph::Search {
   template <class Find, class Take>
   bool in_batches(const Progress& progress, Find find, Take take) const {
     const int count = static_cast<int>(planes_.size());
-    for (int begin = 0; begin < count; begin += batch) {
+    for (int begin = 0; begin < count; begin += facet_batch) {
       report(progress, "mesh", 0.3 * begin / count);
-      const int size = std::min(count - begin, batch);
+      const int size = std::min(count - begin, facet_batch);
       std::vector<std::vector<Contact>> contacts(static_cast<std::size_t>(size));
       parallel_for(size, 8, [&](int from, int to) {
         std::vector<int> near;
@@ -124,13 +135,13 @@ class ContactGraph::Search {
       const Vector3d d = Vector3d::Constant(tolerance_);
       boxes.emplace_back(plane.box.min() - d, plane.box.max() + d);
     }
-    for (const RoundShape& shape : round_shapes_) boxes.push_back(bounds(shape));
+    for (const CutShape& round : round_shapes_) boxes.push_back(bounds(round.shape));
     return boxes;
   }
 
   const std::vector<FacetPlane>& planes_;
-  std::vector<RoundShape> round_shapes_;
-  double element_size_, tolerance_;
+  std::vector<CutShape> round_shapes_;
+  double tolerance_;
   std::vector<BoxTree::Box> boxes_;
   BoxTree tree_;
 };
@@ -210,10 +221,9 @@ void ContactGraph::add_longest_contacts(const Search& search, const ContactEffor
 void ContactGraph::thin_out_contacts(const WeldedPoints& corners) {
   const int count = static_cast<int>(planes_.size());
   std::vector<double> elements;
-  const double size = size_.element_size();
   for (const FacetPlane& plane : planes_) {
-    elements.push_back(
-        std::max({1.0, plane.area() / (size * size), plane.boundary_length() / (2.0 * size)}));
+    elements.push_back(sizes_.elements(sizes_.of_facet(plane.facet, plane.box), plane.area(),
+                                       plane.boundary_length()));
   }
   const double all_elements = std::accumulate(elements.begin(), elements.end(), 0.0);
   const double many = std::max(many_crossings, many_per_element * all_elements);
@@ -264,11 +274,12 @@ std::vector<FlatLine> ContactGraph::contact_lines(int index) const {
 // another that rays take both for one plane, but not so near that they touch.
 void ContactGraph::add_gap_lines() {
   constexpr double narrow = 0.1, least_width = 0.2, least_length = 1.0;  // in elements
-  const double element = size_.element_size();
-  Eigen::AlignedBox3d all;
-  for (const FacetPlane& plane : planes_) all.extend(plane.box);
-  if (all.isEmpty()) return;
-  const double touching = coplanar_roundings * ray_rounding(all.diagonal().norm());
+  const double element = sizes_.near().element_size();
+  std::vector<Eigen::AlignedBox3d> facets;
+  for (const FacetPlane& plane : planes_) facets.push_back(plane.box);
+  if (facets.empty()) return;
+  // Rays are as exact in what is near as without a backdrop.
+  const double touching = coplanar_roundings * ray_rounding(scenery_box(facets).diagonal().norm());
   const GapLimits limits{.narrowest = welded_.tolerance(),
                          .widest = std::max(narrow * element, touching),
                          .least_width = least_width * element,

@@ -11,6 +11,7 @@
 #include "mesh/discontinuity/wedge.h"
 #include "mesh/geometry/box_tree.h"
 #include "scene/parallel.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
@@ -319,7 +320,7 @@ CriticalLines critical_lines(const Scene& scene, const std::vector<FacetPlane>& 
 }
 
 CriticalLines critical_lines(const Scene& scene, const CriticalLineOptions& options) {
-  WeldedPoints points(weld_share * scene_bounds(scene).diagonal());
+  WeldedPoints points(weld_share * coordinate_length(scene));
   const std::vector<FacetPlane> planes = facet_planes(scene, points);
   return critical_lines(scene, planes, options);
 }

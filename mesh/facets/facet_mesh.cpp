@@ -93,8 +93,8 @@ std::vector<std::vector<int>> four_sides(const FacetPlane& plane, const std::vec
 // Makes a grid over the unit square, mapped to the facet by the Coons patch of the four sides
 // (bilinear where the sides are divided evenly). False if the facet is not suited.
 bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
-               const std::vector<Vector3d>& points, const CutSize& size, FacetMesh& mesh) {
-  if (outline.loops.size() != 1 || outline.has_lines()) return false;
+               const std::vector<Vector3d>& points, const FacetSize& size, FacetMesh& mesh) {
+  if (outline.loops.size() != 1 || outline.has_lines() || size.graded) return false;
   const auto sides = four_sides(plane, outline.loops.front(), points);
   if (sides.empty()) return false;
   const int nx = static_cast<int>(sides[0].size()), ny = static_cast<int>(sides[1].size());
@@ -120,7 +120,7 @@ bool make_grid(const FacetPlane& plane, const FacetOutline& outline,
                                        between(points[bottom(nx)], points[top(nx)], t), s)));
     }
   }
-  const int k = size.elements_per_edge;
+  const int k = size.cut.elements_per_edge;
   const int columns = (nx + k - 1) / k, rows = (ny + k - 1) / k;
   // Block c of m covers the cells ceil(c n / m) .. ceil((c + 1) n / m) - 1. With m = ceil(n / k)
   // these are exactly k cells where k divides n.
@@ -209,9 +209,9 @@ double least_sine(const FacetPlane& plane, const FacetMesh& mesh) {
 // Meshes the facet with contact lines in fewer pieces. False if nothing was joined, or if joined
 // lines cross or nearly touch lines that the original ones do not.
 bool make_joined(const FacetPlane& plane, const FacetOutline& outline,
-                 const std::vector<Vector3d>& points, const CutSize& size, FacetMesh& mesh) {
+                 const std::vector<Vector3d>& points, const FacetSize& size, FacetMesh& mesh) {
   if (outline.contacts.size() < 2) return false;
-  const FacetOutline joined = with_joined_contacts(outline, points, size.element_size());
+  const FacetOutline joined = with_joined_contacts(outline, points, size.cut.element_size());
   if (joined.contacts.size() == outline.contacts.size()) return false;
   mesh = free_mesh(plane, joined, points, size);
   if (!is_sound(plane, mesh) || mesh.has_cut_lines) return false;
@@ -231,7 +231,7 @@ FacetOutline bare_outline(const FacetPlane& plane) {
 
 // Meshes a polygon that crosses or overlaps itself.
 FacetMesh crossing_mesh(const FacetPlane& plane, FacetOutline outline,
-                        const std::vector<Vector3d>& points, const CutSize& size) {
+                        const std::vector<Vector3d>& points, const FacetSize& size) {
   outline.crosses_itself = true;
   FacetMesh mesh = free_mesh(plane, outline, points, size);
   mesh.crosses_itself = true;
@@ -251,7 +251,7 @@ double quad_quality(const Vector2d& a, const Vector2d& b, const Vector2d& c, con
 }
 
 FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
-                     const std::vector<Vector3d>& points, const CutSize& size) {
+                     const std::vector<Vector3d>& points, const FacetSize& size) {
   FacetMesh mesh;
   if (make_single_element(plane, outline, points, mesh)) return mesh;
   if (make_grid(plane, outline, points, size, mesh)) return mesh;

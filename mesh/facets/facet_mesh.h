@@ -34,15 +34,15 @@ struct FacetMesh {
 
 /// Cuts a facet into elements and patches:
 /// - one element if the facet is small;
-/// - a grid of quadrilaterals if the facet has four sides;
+/// - a grid of quadrilaterals if the facet has four sides and even sizes;
 /// - else a constrained Delaunay triangulation of boundary, contact lines and a grid of inner
-///   points, paired into quadrilaterals.
+///   points (corners of graded cells for sizes that grow), paired into quadrilaterals.
 ///
 /// Vertices on contact lines are split, one for each side; on creases both sides share a vertex.
 /// The outline's numbers are indices into `points`. Returns an empty mesh if the polygon has no
 /// area.
 FacetMesh mesh_facet(const FacetPlane& plane, const FacetOutline& outline,
-                     const std::vector<Eigen::Vector3d>& points, const CutSize& size);
+                     const std::vector<Eigen::Vector3d>& points, const FacetSize& size);
 
 /// The smallest sine of the angles of a counter-clockwise quadrilateral (its scaled Jacobian): 1
 /// for a rectangle, <= 0 for a quadrilateral that is not convex.

@@ -5,6 +5,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "mesh/facets/graded_cells.h"
 #include "mesh/facets/graded_points.h"
 #include "mesh/facets/inner_points.h"
 #include "mesh/geometry/cross.h"
@@ -159,21 +160,25 @@ void grade(const LocalLines& lines, double element_size, PlanarTriangulation& tr
 }  // namespace
 
 FacetTriangulation triangulate_facet(const FacetPlane& plane, const FacetOutline& outline,
-                                     const std::vector<Vector3d>& points, const CutSize& size) {
+                                     const std::vector<Vector3d>& points, const FacetSize& size) {
   FacetTriangulation facet{.lines = local_lines(plane, outline, points)};
   const LocalLines& lines = facet.lines;
   std::vector<Vector2d> xy = lines.xy;
-  const auto inner = inner_points(cell_grid(lines.box, size), lines.xy, lines.boundary,
-                                  {lines.all.begin(), lines.all.begin() + lines.hard_count},
-                                  {lines.all.begin() + lines.hard_count, lines.all.end()});
+  const std::vector<Pair> hard(lines.all.begin(), lines.all.begin() + lines.hard_count),
+      creases(lines.all.begin() + lines.hard_count, lines.all.end());
+  const double element_size = size.cut.element_size();
+  const auto inner =
+      size.graded
+          ? graded_inner_points({plane, lines.box, *size.graded}, plane, lines.xy, hard, creases)
+          : inner_points(cell_grid(lines.box, size.cut), lines.xy, lines.boundary, hard, creases);
   xy.insert(xy.end(), inner.begin(), inner.end());
   PlanarTriangulation& t = facet.triangulation;
-  t = triangulate_places(xy, lines, size.element_size());
+  t = triangulate_places(xy, lines, element_size);
   const bool by_parity = t.is_as_given && !outline.crosses_itself;
   facet.inside = by_parity ? inside_by_parity(t, lines.boundary) : inside_by_place(plane, t);
   if (outline.crosses_itself) drop_flat(t, facet.inside);
   // Creases are meant to be divided finely.
-  if (by_parity && lines.creases.empty()) grade(lines, size.element_size(), t, facet.inside);
+  if (by_parity && lines.creases.empty()) grade(lines, element_size, t, facet.inside);
   return facet;
 }
 

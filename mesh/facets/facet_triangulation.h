@@ -33,6 +33,6 @@ struct FacetTriangulation {
 /// Triangulates a facet. The outline's numbers are indices into `points`.
 FacetTriangulation triangulate_facet(const FacetPlane& plane, const FacetOutline& outline,
                                      const std::vector<Eigen::Vector3d>& points,
-                                     const CutSize& size);
+                                     const FacetSize& size);
 
 }  // namespace lightwell

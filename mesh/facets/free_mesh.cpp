@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <set>
 
 #include "mesh/facets/facet_triangulation.h"
+#include "mesh/facets/graded_cells.h"
 #include "mesh/facets/group_patches.h"
 #include "mesh/facets/inner_points.h"
 #include "mesh/facets/pair_triangles.h"
@@ -17,9 +19,22 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Pair = std::array<int, 2>;
 
-CellGrid patch_grid(const Eigen::AlignedBox2d& box, const CutSize& size) {
-  return {box, size.patches(box.sizes().x()), size.patches(box.sizes().y())};
-}
+// The cells of a facet's patches: an even grid, or graded cells.
+class PatchCells {
+ public:
+  PatchCells(const FacetPlane& plane, const Eigen::AlignedBox2d& box, const FacetSize& size)
+      : even_{box, size.cut.patches(box.sizes().x()), size.cut.patches(box.sizes().y())} {
+    if (size.graded) graded_.emplace(plane, box, *size.graded);
+  }
+  int cell(const Vector2d& q) const { return graded_ ? graded_->cell(q) : even_.cell(q); }
+  Vector2d size(int cell) const {
+    return graded_ ? Vector2d::Constant(graded_->length(cell)) : Vector2d(even_.dx(), even_.dy());
+  }
+
+ private:
+  CellGrid even_;
+  std::optional<GradedCells> graded_{};
+};
 
 // The triangles inside the facet, with split vertices: only triangles connected without crossing a
 // contact line share a vertex.
@@ -86,7 +101,7 @@ SplitTriangles split_at_lines(const PlanarTriangulation& t, const std::vector<ch
 
 // Pairs the triangles into elements, groups these into patches, and orders them by patch.
 FacetMesh assemble(const FacetPlane& plane, const SplitTriangles& split, const LocalLines& lines,
-                   const std::vector<Vector3d>& points, const CellGrid& patches) {
+                   const std::vector<Vector3d>& points, const PatchCells& patches) {
   const std::vector<int> partner = pair_triangles(split.xy, split.triangles, split.partner);
   const int triangle_count = static_cast<int>(split.triangles.size());
   std::vector<std::array<int, 4>> corners;
@@ -114,6 +129,7 @@ FacetMesh assemble(const FacetPlane& plane, const SplitTriangles& split, const L
       e.area += 0.5 * (p.x() * q.y() - q.x() * p.y());
     }
     e.cell = patches.cell(center);
+    e.cell_size = patches.size(e.cell);
   }
   std::vector<ElementContact> contacts;
   for (int t = 0; t < triangle_count; ++t) {
@@ -125,8 +141,7 @@ FacetMesh assemble(const FacetPlane& plane, const SplitTriangles& split, const L
                           (split.xy[tri[(c + 1) % 3]] - split.xy[tri[(c + 2) % 3]]).norm()});
     }
   }
-  const std::vector<int> patch =
-      group_patches(placed, contacts, Vector2d(patches.dx(), patches.dy()));
+  const std::vector<int> patch = group_patches(placed, contacts);
 
   FacetMesh mesh;
   std::vector<int> order(corners.size());
@@ -160,13 +175,13 @@ FacetMesh assemble(const FacetPlane& plane, const SplitTriangles& split, const L
 }  // namespace
 
 FacetMesh free_mesh(const FacetPlane& plane, const FacetOutline& outline,
-                    const std::vector<Vector3d>& points, const CutSize& size) {
+                    const std::vector<Vector3d>& points, const FacetSize& size) {
   const auto [lines, triangulation, inside] = triangulate_facet(plane, outline, points, size);
   // A crease that was cut is not found by its ends.
   if (!triangulation.is_as_given && !lines.creases.empty()) return {};
   const SplitTriangles split = split_at_lines(triangulation, inside, lines.creases);
   if (split.triangles.empty()) return {};
-  FacetMesh mesh = assemble(plane, split, lines, points, patch_grid(lines.box, size));
+  FacetMesh mesh = assemble(plane, split, lines, points, {plane, lines.box, size});
   mesh.has_cut_lines = !triangulation.is_as_given;
   return mesh;
 }

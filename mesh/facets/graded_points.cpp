@@ -5,7 +5,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "mesh/geometry/box_tree.h"
+#include "mesh/facets/flat_box.h"
 #include "mesh/geometry/cross.h"
 #include "mesh/geometry/facet_plane.h"
 
@@ -25,12 +25,6 @@ struct Candidate {
   double edge = 0.0;  // s, the length of that edge, metres
   Vector2d at = Vector2d::Zero();
 };
-
-BoxTree::Box box_about(const Vector2d& a, const Vector2d& b, double by) {
-  const auto lifted = [](const Vector2d& q) { return Eigen::Vector3d(q.x(), q.y(), 0.0); };
-  BoxTree::Box box(lifted(a.cwiseMin(b).array() - by));
-  return box.extend(lifted(a.cwiseMax(b).array() + by));
-}
 
 class Grading {
  public:
@@ -56,7 +50,7 @@ class Grading {
 
   std::vector<BoxTree::Box> boxes() const {
     std::vector<BoxTree::Box> boxes;
-    for (const auto& [a, b] : lines_) boxes.push_back(box_about(t_.points[a], t_.points[b], 0.0));
+    for (const auto& [a, b] : lines_) boxes.push_back(flat_box(t_.points[a], t_.points[b], 0.0));
     return boxes;
   }
 
@@ -105,7 +99,7 @@ class Grading {
     constexpr double of_edge = 0.5, of_line = 0.3;
     std::vector<int> near;
     // No piece of a line is much longer than an element, which bounds the search.
-    tree_.find_overlaps(box_about(at, at, std::max(of_edge * edge, of_line * element_size_)), near);
+    tree_.find_overlaps(flat_box(at, at, std::max(of_edge * edge, of_line * element_size_)), near);
     return std::none_of(near.begin(), near.end(), [&](int i) {
       const Vector2d &a = t_.points[lines_[i][0]], &b = t_.points[lines_[i][1]];
       return segment_distance(at, a, b) < std::max(of_edge * edge, of_line * (b - a).norm());
@@ -126,7 +120,7 @@ std::vector<Vector2d> graded_points(const PlanarTriangulation& triangulation,
                                     double element_size, std::size_t most) {
   const auto candidates = Grading(triangulation, lines, element_size).candidates(inside);
   std::vector<BoxTree::Box> boxes;
-  for (const Candidate& c : candidates) boxes.push_back(box_about(c.at, c.at, 0.0));
+  for (const Candidate& c : candidates) boxes.push_back(flat_box(c.at, c.at, 0.0));
   const BoxTree tree(std::move(boxes));
   constexpr double apart = 1.5;  // times the edge's length
   std::vector<char> is_taken(candidates.size(), 0);
@@ -135,7 +129,7 @@ std::vector<Vector2d> graded_points(const PlanarTriangulation& triangulation,
   for (std::size_t k = 0; k < candidates.size() && points.size() < most; ++k) {
     const Candidate& c = candidates[k];
     const double least = apart * c.edge;
-    tree.find_overlaps(box_about(c.at, c.at, least), near);
+    tree.find_overlaps(flat_box(c.at, c.at, least), near);
     if (std::any_of(near.begin(), near.end(), [&](int i) {
           return is_taken[i] && (candidates[i].at - c.at).norm() < least;
         })) {

@@ -8,14 +8,20 @@
 namespace lightwell {
 namespace {
 
+// Share of a cell's area below which a group joins a neighbour. The value matters little: shares
+// of 0, 0.05, 0.15 and 0.3 give 1778, 1778, 1756 and 1750 front patches of the Cornell box, and
+// 8272, 8228, 8219 and 8213 of a furnished room.
+constexpr double least_cell_share = 0.15;
+
 class Groups {
  public:
-  Groups(const std::vector<PlacedElement>& elements, const Eigen::Vector2d& cell_size)
-      : parent_(elements.size()), area_(elements.size()), cell_size_(cell_size) {
+  explicit Groups(const std::vector<PlacedElement>& elements)
+      : parent_(elements.size()), area_(elements.size()) {
     std::iota(parent_.begin(), parent_.end(), 0);
     for (std::size_t i = 0; i < elements.size(); ++i) {
       area_[i] = elements[i].area;
       box_.push_back(elements[i].box);
+      cell_size_.push_back(elements[i].cell_size);
     }
   }
   int root(int i) {
@@ -30,36 +36,33 @@ class Groups {
     parent_[b] = a;
     area_[a] += area_[b];
     box_[a].extend(box_[b]);
+    cell_size_[a] = cell_size_[a].cwiseMax(cell_size_[b]);
   }
   double area(int root) const { return area_[root]; }
+  double cell_area(int root) const { return cell_size_[root].prod(); }
+  bool is_small(int root) const { return area(root) < least_cell_share * cell_area(root); }
   bool fit_together(int a, int b) const {
     constexpr double outgrown = 1.5;
     const Eigen::Vector2d extent = box_[a].merged(box_[b]).sizes();
-    return (extent.array() <= outgrown * cell_size_.array()).all();
+    return (extent.array() <= outgrown * cell_size_[a].cwiseMax(cell_size_[b]).array()).all();
   }
 
  private:
   std::vector<int> parent_;
   std::vector<double> area_;
   std::vector<Eigen::AlignedBox2d> box_;
-  Eigen::Vector2d cell_size_;
+  std::vector<Eigen::Vector2d> cell_size_;  // the largest of each group
 };
 
 }  // namespace
 
 std::vector<int> group_patches(const std::vector<PlacedElement>& elements,
-                               const std::vector<ElementContact>& contacts,
-                               const Eigen::Vector2d& cell_size) {
+                               const std::vector<ElementContact>& contacts) {
   const int count = static_cast<int>(elements.size());
-  Groups groups(elements, cell_size);
+  Groups groups(elements);
   for (const ElementContact& c : contacts) {
     if (elements[c.one].cell == elements[c.other].cell) groups.join(c.one, c.other);
   }
-  // Share of a cell's area below which a group joins a neighbour. The value matters little: shares
-  // of 0, 0.05, 0.15 and 0.3 give 1778, 1778, 1756 and 1750 front patches of the Cornell box, and
-  // 8272, 8228, 8219 and 8213 of a furnished room.
-  constexpr double least_share = 0.15;
-  const double least = least_share * cell_size.prod();
   // Border lengths of every group, by the root of the group across.
   std::vector<std::map<int, double>> border(count);
   for (const ElementContact& c : contacts) {
@@ -69,17 +72,17 @@ std::vector<int> group_patches(const std::vector<PlacedElement>& elements,
     border[b][a] += c.length;
   }
   const auto share_of_cell = [&](int i) {
-    return std::round(1e6 * groups.area(i) / cell_size.prod());
+    return std::round(1e6 * groups.area(i) / groups.cell_area(i));
   };
   std::vector<int> small;
   for (int i = 0; i < count; ++i) {
-    if (groups.root(i) == i && groups.area(i) < least) small.push_back(i);
+    if (groups.root(i) == i && groups.is_small(i)) small.push_back(i);
   }
   std::stable_sort(small.begin(), small.end(),
                    [&](int a, int b) { return share_of_cell(a) < share_of_cell(b); });
   for (int i : small) {
     const int group = groups.root(i);
-    if (group != i || !(groups.area(group) < least)) continue;
+    if (group != i || !groups.is_small(group)) continue;
     int best = -1;
     double longest = 0.0;
     constexpr double clearly = 1.0 + 1e-6;  // the first of equals wins, in every unit of length

@@ -26,12 +26,6 @@ std::vector<Vector2d> inner_points(const CellGrid& grid, const std::vector<Vecto
     return Vector2d(low.x() + dx * (i + 1), low.y() + dy * (j + 1));
   };
 
-  // Nearer points than half a spacing make slivers against the line; leaving out farther ones makes
-  // elements up to one and a half spacings long. The bound is slightly less, so that a line midway
-  // between two rows leaves both.
-  constexpr double half = 0.5 - 1e-6;
-  // Strips between creases, 1 to 2 spacings wide, would otherwise often have no row in the middle.
-  constexpr double near_crease = 0.3;
   std::vector<char> is_near(static_cast<std::size_t>(columns) * rows, 0);
   const auto keep_clear = [&](const std::array<int, 2>& line, double reach) {
     const auto& [a, b] = line;
@@ -46,8 +40,8 @@ std::vector<Vector2d> inner_points(const CellGrid& grid, const std::vector<Vecto
       }
     }
   };
-  for (const auto& line : lines) keep_clear(line, half * std::min(dx, dy));
-  for (const auto& line : creases) keep_clear(line, near_crease * std::min(dx, dy));
+  for (const auto& line : lines) keep_clear(line, clear_of_line * std::min(dx, dy));
+  for (const auto& line : creases) keep_clear(line, clear_of_crease * std::min(dx, dy));
   std::vector<std::vector<double>> crossings(rows);
   for (const auto& [a, b] : boundary) {
     const Vector2d &p = xy[a], &q = xy[b];

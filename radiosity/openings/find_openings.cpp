@@ -13,13 +13,14 @@
 #include "radiosity/openings/nearest_surface.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
 
 using Eigen::Vector3d;
 
-// Shares of the scene's diagonal.
+// Shares of scenery_length().
 constexpr double widest_opening = 0.1, narrowest_opening = 1e-6, shortest_edge = 0.002;
 constexpr std::size_t most_edges = 4096, most_openings = 4096;
 constexpr int directions = 16;  // of balls about an edge
@@ -73,8 +74,7 @@ std::vector<Edge> long_edges(const Scene& scene, double least) {
 
 class OpeningSearch {
  public:
-  explicit OpeningSearch(const Scene& scene)
-      : surfaces_(scene), diagonal_(scene_bounds(scene).diagonal()) {}
+  explicit OpeningSearch(const Scene& scene) : surfaces_(scene), diagonal_(scenery_length(scene)) {}
 
   void search(const Edge& edge, std::vector<Opening>& found) const {
     // Most edges are concave or far from all others, which three points tell.
@@ -213,7 +213,7 @@ std::vector<Opening> openings_of(const std::vector<OpeningNumbers>& all) {
 
 std::vector<Opening> find_openings(const Scene& scene, const RunControl& run) {
   if (scene.surfaces.empty()) return {};
-  const std::vector<Edge> edges = long_edges(scene, shortest_edge * scene_bounds(scene).diagonal());
+  const std::vector<Edge> edges = long_edges(scene, shortest_edge * scenery_length(scene));
   const OpeningSearch search(scene);
   std::vector<std::vector<Opening>> beside(edges.size());
   const int count = static_cast<int>(edges.size());

@@ -6,6 +6,7 @@
 #include <functional>
 #include <vector>
 
+#include "mesh/patches/mesh_bounds.h"
 #include "scene/errors.h"
 
 namespace lightwell {
@@ -45,7 +46,10 @@ bool is_memory_short(const RefinedElements& elements, const RefineOptions& optio
 double typical_leaf_area(const RefinedElements& elements) {
   std::vector<double> areas;
   double total = 0.0;
+  const std::vector<char> is_near = near_facets(elements.base());
   for (const int cell : elements.leaves()) {
+    const auto element = static_cast<std::size_t>(elements.element(cell, 0));
+    if (is_near[static_cast<std::size_t>(elements.base().facet[element])] == 0) continue;
     areas.push_back(elements.area(cell));
     total += elements.area(cell);
   }

@@ -11,6 +11,7 @@ namespace lightwell {
 void require_room(const PatchMesh& mesh, const RefineOptions& options);
 
 /// The least area of the leaves that make up the larger half of all area, m^2, one side counted.
+/// Leaves of near_facets() alone count: those of a ground of kilometres would let none be split.
 double typical_leaf_area(const RefinedElements& elements);
 
 /// RefineOptions::max_elements, or its default for `elements` where none are given; no more than

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "mesh/patches/mesh_bounds.h"
 #include "mesh/patches/patch_outline.h"
 #include "mesh/patches/round_grid.h"
 #include "scene/facet_textures.h"
@@ -160,10 +161,8 @@ std::vector<ConvexPolygon> pieces_of(const PatchMesh& mesh, const std::vector<in
 }  // namespace
 
 Occluders::Occluders(const PatchMesh& mesh) {
-  Eigen::AlignedBox3d bounds;
-  for (int v = 0; v < mesh.vertex_count(); ++v) bounds.extend(mesh.position(v));
   constexpr double touching = 1e-7;
-  tolerance = touching * bounds.diagonal().norm();
+  tolerance = touching * scenery_bounds(mesh).diagonal();
   for (const RoundGrid& grid : mesh.round_grids) round_shapes.push_back(grid.shape);
 
   const Sheets sheets(mesh, tolerance);

@@ -4,6 +4,7 @@
 
 #include "scene/disjoint_sets.h"
 #include "scene/sampling.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
@@ -30,7 +31,7 @@ std::vector<int> smooth_surfaces(const PatchMesh& mesh, int facet_count) {
 // same; so have all facets of a curved surface.
 std::uint64_t chain_key(bool is_curved, int surface, const Eigen::Vector3d& normal,
                         const Eigen::Vector3d& point, double diagonal) {
-  constexpr double steps = 1e5;  // of directions, and of distances to the scene's diagonal
+  constexpr double steps = 1e5;  // of directions, and of distances to scenery_length()
   if (is_curved) return random_key(static_cast<std::uint64_t>(surface), 1);
   const auto rounded = [](double x) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::llround(steps * x)));
@@ -57,7 +58,7 @@ FacetShapes::FacetShapes(const Scene& scene, const PatchMesh& mesh, const FacetN
     facets_.push_back(shape);
   }
   const auto joined = smooth_surfaces(mesh, static_cast<int>(facets_.size()));
-  const double diagonal = scene_bounds(scene).diagonal();
+  const double diagonal = scenery_length(scene);
   for (std::size_t f = 0; f < facets_.size(); ++f) {
     FacetShape& shape = facets_[f];
     shape.smooth_surface = joined[f];

@@ -11,6 +11,7 @@
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
+#include "scene/scenery_box.h"
 
 namespace lightwell {
 namespace {
@@ -44,8 +45,8 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
       bases_(scene.materials),
       facets_(scene, caster.mesh(), normals_) {
   if (textures_->is_empty()) textures_ = nullptr;
-  constexpr double rounding = 1e-6;  // share of the scene's diagonal
-  if (!normals_.is_empty()) least_lift_ = rounding * scene_bounds(scene).diagonal();
+  constexpr double rounding = 1e-6;  // share of scenery_length()
+  if (!normals_.is_empty()) least_lift_ = rounding * scenery_length(scene);
   if (options.pass == Pass::gather) {
     gather_.emplace(scene, caster, direct_light, solution, options.gather_rays, options.max_depth);
   }

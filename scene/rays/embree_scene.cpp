@@ -115,7 +115,7 @@ void EmbreeScene::find_roundings(const CastGeometry& source) {
   if (known.empty()) return;
   Eigen::AlignedBox3d all;
   for (const Eigen::AlignedBox3d& box : known) all.extend(box);
-  const Eigen::AlignedBox3d scenery = scenery_box(std::move(known));
+  const Eigen::AlignedBox3d scenery = scenery_box(known);
   center = scenery.center();
   rounding = ray_rounding(scenery.diagonal().norm());
   if (scenery.contains(all)) return;

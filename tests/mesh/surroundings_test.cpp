@@ -1,6 +1,10 @@
 // A small scene amid a ground or a dome of kilometres.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
 #include "mesh/build_patches.h"
 #include "mesh/patches/mesh_bounds.h"
 #include "tests/mesh/mesh_scenes.h"
@@ -10,31 +14,86 @@ namespace {
 
 using namespace lightwell::test;
 
-// A cube of 1 m on a ground of the given length.
-PatchMesh cube_on_ground(double length) {
+// A cube of 1 m without a bottom that stands on a ground of the given length, or on none: facets 0
+// to 4, and 5.
+Scene cube_on_ground(double length) {
   Scene scene = empty_scene();
+  add_polygon(scene, "top", {{0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}});
   for (const double z : {0.0, 1.0}) {
-    add_polygon(scene, "level", {{0, 0, z}, {1, 0, z}, {1, 1, z}, {0, 1, z}});
     add_polygon(scene, "wall", {{0, z, 0}, {1, z, 0}, {1, z, 1}, {0, z, 1}});
     add_polygon(scene, "side", {{z, 0, 0}, {z, 1, 0}, {z, 1, 1}, {z, 0, 1}});
   }
+  add_polygon(scene, "shelf", {{0.1, 0.1, 0.4}, {0.9, 0.1, 0.4}, {0.9, 0.9, 0.4}, {0.1, 0.9, 0.4}});
   const double h = 0.5 * length;
-  add_polygon(scene, "ground", {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}});
-  return build_patches(scene);
+  if (h > 0.0) add_polygon(scene, "ground", {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}});
+  return scene;
 }
 
-TEST(Surroundings, ANoteSaysThatPatchesAreTooCoarseForWhatTheySurround) {
-  EXPECT_TRUE(cube_on_ground(20.0).notes.empty());
-  const PatchMesh mesh = cube_on_ground(6000.0);
+// The corners of all elements of the first `facets` facets, with the number of each one's patch.
+std::vector<std::vector<double>> elements_of(const PatchMesh& mesh, int facets) {
+  std::vector<std::vector<double>> elements;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (mesh.facet[e] >= facets) continue;
+    std::vector<double>& element = elements.emplace_back();
+    element.push_back(mesh.patch[e]);
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const Eigen::Vector3d at = mesh.position(mesh.corners[e][c]);
+      element.insert(element.end(), {at.x(), at.y(), at.z()});
+    }
+  }
+  return elements;
+}
+
+TEST(Surroundings, LeaveTheMeshOfWhatIsNearAsItIsAlone) {
+  const auto alone = elements_of(build_patches(cube_on_ground(0.0)), 6);
+  for (const double length : {300.0, 6000.0}) {
+    EXPECT_EQ(elements_of(build_patches(cube_on_ground(length)), 6), alone) << length;
+  }
+}
+
+// No element of a ground is longer than a diagonal of one and a half cells, the most that leaving
+// out points near lines makes of a cell's half; elements that cells of two sizes share count as the
+// larger's, so that twice that is allowed.
+TEST(Surroundings, GroundIsFineNearTheSceneryAndConforms) {
+  const Scene scene = cube_on_ground(600.0);
+  const PatchMesh mesh = build_patches(scene);
+  expect_consistent(mesh);
+  EXPECT_EQ(hanging_vertices(mesh), 0);
+  // Rounding of a sum of some ten thousand areas: 1e-12.
+  EXPECT_NEAR(side_area(mesh, 6, false), 3.6e5, 1e-12 * 3.6e5);
+  const double near = cut_size(scene, {}).patch_size;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (mesh.facet[e] != 6) continue;
+    Eigen::AlignedBox3d box;
+    for (int c = 0; c < mesh.corner_count(e); ++c) box.extend(mesh.position(mesh.corners[e][c]));
+    const Eigen::AlignedBox3d cube(Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1));
+    const double cell = std::max(near, 0.5 * std::sqrt(cube.squaredExteriorDistance(box.center())));
+    EXPECT_LE(box.diagonal().norm(), 2.0 * 1.5 * 0.5 * std::sqrt(2.0) * cell) << box.center();
+  }
+}
+
+// The ground of 6 km alone has 1600 patches, or up to twice as many where rounding to a power of
+// two makes them shorter. Rings of 1 to 2, 2 to 4, ... 2048 to 4096 m, twelve on each side, add
+// some 3 pi d^2 / (d / 4)^2 = 150 patches each, and twice as many at most.
+TEST(Surroundings, AddFewPatchesHoweverLargeTheyAre) {
+  const int alone = build_patches(cube_on_ground(0.0)).patch_count();
+  EXPECT_LT(build_patches(cube_on_ground(6000.0)).patch_count(),
+            alone + 2 * 1600 + 12 * 2 * 2 * 150);
+}
+
+TEST(Surroundings, ANoteSaysThatGivenPatchesAreTooCoarseForWhatTheySurround) {
+  EXPECT_TRUE(build_patches(cube_on_ground(6000.0)).notes.empty());
+  EXPECT_TRUE(build_patches(cube_on_ground(20.0), {.max_patch_size = 5.0}).notes.empty());
+  const PatchMesh mesh = build_patches(cube_on_ground(6000.0), {.max_patch_size = 150.0});
   ASSERT_EQ(mesh.notes.size(), 1u);
   EXPECT_EQ(mesh.notes[0].find("the surroundings are 8485 m long"), 0u) << mesh.notes[0];
 }
 
 TEST(Surroundings, SceneryBoundsLeaveThemOut) {
-  const Bounds near = scenery_bounds(cube_on_ground(6000.0));
+  const Bounds near = scenery_bounds(build_patches(cube_on_ground(6000.0)));
   EXPECT_EQ(near.low, Eigen::Vector3d(0, 0, 0));
   EXPECT_EQ(near.high, Eigen::Vector3d(1, 1, 1));
-  EXPECT_EQ(scenery_bounds(cube_on_ground(20.0)).high, Eigen::Vector3d(10, 10, 1));
+  EXPECT_EQ(scenery_bounds(build_patches(cube_on_ground(20.0))).high, Eigen::Vector3d(10, 10, 1));
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ TEST(FacetMesh, NeedlesThinnerThanTheWeldingToleranceKeepTheirArea) {
   ASSERT_EQ(p.size(), 3u);
   const FacetOutline outline{.loops = {{p[0], p[1], p[2], p[1]}}};
   const CutSize cut{.patch_size = 0.5, .elements_per_edge = 2};
-  const FacetMesh mesh = mesh_facet(planes[0], outline, points.all(), cut);
+  const FacetMesh mesh = mesh_facet(planes[0], outline, points.all(), {.cut = cut});
   ASSERT_FALSE(mesh.corners.empty());
   EXPECT_TRUE(mesh.is_flawed);
   double area = 0.0;

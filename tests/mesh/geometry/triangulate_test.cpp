@@ -113,11 +113,11 @@ TEST(GroupPatches, LeftoversJoinTheirNeighbourAndPartsStayApart) {
   // inside cell 1.
   const std::vector<PlacedElement> elements{element(0, 0, 1), element(1, 1, 0.4),
                                             element(1, 1.4, 0.6), element(2, 2, 0.1)};
-  const auto patch = group_patches(elements, {{0, 1, 1.0}, {2, 3, 1.0}}, Vector2d(1, 1));
+  const auto patch = group_patches(elements, {{0, 1, 1.0}, {2, 3, 1.0}});
   EXPECT_EQ(patch, (std::vector<int>{0, 1, 2, 2}));
   // The leftover stays if the two together would be wider than 1.5 cells.
   const std::vector<PlacedElement> wide{element(0, 0, 1.45), element(1, 1.45, 0.1)};
-  EXPECT_EQ(group_patches(wide, {{0, 1, 1.0}}, Vector2d(1, 1)), (std::vector<int>{0, 1}));
+  EXPECT_EQ(group_patches(wide, {{0, 1, 1.0}}), (std::vector<int>{0, 1}));
 }
 
 }  // namespace
