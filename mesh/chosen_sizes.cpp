@@ -164,7 +164,7 @@ PatchSizes patch_sizes(const Scene& scene, const MeshOptions& options) {
   CutSize even = near;
   even.patch_size = even_patch_size(scene, all_near(scene), options.auto_patch_count);
   PatchSizes sizes(near, even.patch_size, std::move(scenery));
-  constexpr double most_times = 16.0;  // the elements of even sizes
+  constexpr double most_times = 64.0;  // the elements of even sizes
   const double most = most_times * predicted_elements(scene, PatchSizes(even));
   return predicted_elements(scene, sizes) <= most ? sizes : PatchSizes(even);
 }

@@ -50,7 +50,12 @@ double PatchSizes::within(const Vector3d& center, double radius) const {
 
 FacetSize PatchSizes::of_facet(int facet, const Eigen::AlignedBox3d& box) const {
   if (is_near(facet)) return {.cut = near_};
-  const auto [low, high] = levels_within(box.center(), 0.5 * box.diagonal().norm());
+  double farthest = 0.0;
+  for (int c = 0; c < 8; ++c) {
+    const Vector3d corner = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(c));
+    farthest = std::max(farthest, scenery_.box.exteriorDistance(corner));
+  }
+  const int low = level_at(scenery_.box.exteriorDistance(box)), high = level_at(farthest);
   return {.cut = at_level(low), .graded = high > low + even_levels ? this : nullptr};
 }
 

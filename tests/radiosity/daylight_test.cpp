@@ -52,6 +52,34 @@ void expect_balance(const SolvedScene& solved) {
               2e-7 * energy.emitted);
 }
 
+// Walls of a dome of 3 km that emit what an even sky of radiance L would send, M = pi L, light a
+// room through its window as the sky does, brighter near it: a floor of one patch would have its
+// mean everywhere. The quarter of the floor that is farthest away has the noise of some 70 rows of
+// 256 rays: of the order of 1 / sqrt(256 x 70) = 0.75 % for each of the scenes; five times the
+// noise of both is 5 %.
+TEST(Daylight, DomeOfKilometresStandsForTheSky) {
+  const auto far_radiosity = [](const Scene& scene) {
+    const SolvedScene solved = solve_scene(scene, quick());
+    double sum = 0.0, area = 0.0;
+    for (int e = 0; e < solved.mesh.element_count(); ++e) {
+      const int p = solved.mesh.patch[e];
+      if (solved.mesh.surface[p] != 4 || solved.mesh.is_back[p] != 0) continue;
+      if (element_center(solved.mesh, e).position.x() > 1.0) continue;
+      sum += solved.mesh.element_area[e] * solved.solution.patch_radiosity(p, 0);
+      area += solved.mesh.element_area[e];
+    }
+    return sum / area;
+  };
+  Scene under_sky = room(0.6f), within_dome = room(0.6f);
+  under_sky.sky = test::even_sky(under_sky.bands, 2.0f, 2.0f);
+  Material light = test::diffuse(within_dome.bands, 0.0f);
+  light.emission.setConstant(2.0f * static_cast<float>(pi));
+  const int m = test::add_material(within_dome, light);
+  test::add_box(within_dome, {-3000, -3000, -3000}, {3000, 3000, 3000}, {m, m, m, m, m, m}, true);
+  const double expected = far_radiosity(under_sky);
+  EXPECT_NEAR(far_radiosity(within_dome), expected, 0.05 * expected);
+}
+
 // A body alone in light of the same radiance L from all around receives pi L: B = rho pi L.
 TEST(Daylight, ConvexBodyUnderAnEvenSkyIsAFurnace) {
   Scene scene;
