@@ -16,10 +16,10 @@ int rays_per_patch_for_parts(int patches);
 /// windows, the insides of large cabinets.
 ///
 /// 1. Cosine-distributed rays from each patch estimate the exchange A_i F_ij; mirrors and glass
-///    pass the rays on. Patches of which 70 % of the rays leave the scene count as one, the
-///    outside. Rays that end on a backdrop leave the scene: a surface ten times as large as the box
-///    of all that is less than a tenth as large, and far around this box but for one side, such as
-///    a dome that stands for the sky.
+///    pass the rays on. Patches of which 70 % of the rays leave the scene, or 40 % and those of the
+///    facet as a whole, count as one, the outside. Rays that end on a backdrop leave the scene: a
+///    surface ten times as large as the box of all that is less than a tenth as large, and far
+///    around this box but for one side, such as a dome that stands for the sky.
 /// 2. cut_graph() parts the patches where the exchange is less than 5 % of the smaller side's area
 ///    and where the passage is a bottleneck.
 /// 3. These join the part that they exchange most with; without such, the largest:
