@@ -137,7 +137,7 @@ void HemisphereGather::aim_at_bright(const Place& place, Sums& sum) const {
       const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
       const double share = bright_.share(place.bright, at.normal.dot(ray[r].direction), place.rays,
                                          ray[r], hit[r], aimed_density(place, ray[r], hit[r]));
-      radiosity_.add(hit[r], share * paths_.base_factor(ray[r], hit[r]), sum[is_first ? 0 : 1]);
+      add_straight(place, ray[r], hit[r], share, sum[is_first ? 0 : 1]);
     }
   }
 }
@@ -223,11 +223,21 @@ void HemisphereGather::add(const Place& place, const Ray& ray, const ElementHit&
                                 ? share
                                 : bright_.share(place.bright, at.normal.dot(ray.direction),
                                                 place.rays, ray, hit, aimed);
-    radiosity_.add(hit, straight * paths_.base_factor(ray, hit), sum);
+    add_straight(place, ray, hit, straight, sum);
   }
   if (paths_.is_specular(hit.facet)) {
     add_path(ray, hit, random_key(place.key, RandomPurpose::gather_paths, index), share, sum);
   }
+}
+
+// Adds `share` of the light that arrives straight from where a ray ends. The rays of all kinds have
+// the density cos / (pi share) times their number, and each stands for the inverse.
+void HemisphereGather::add_straight(const Place& place, const Ray& ray, const ElementHit& hit,
+                                    double share, Eigen::ArrayXd& sum) const {
+  const double cosine = place.at.normal.dot(ray.direction);
+  if (!(cosine > 0.0)) return;
+  radiosity_.add_seen(ray, hit, std::numbers::pi * share / (place.rays * cosine),
+                      share * paths_.base_factor(ray, hit), sum);
 }
 
 void HemisphereGather::add_of_gap(const Place& place, const Ray& ray, const ElementHit& hit,

@@ -63,6 +63,9 @@ class HemisphereGather {
   void add(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t index,
            double aimed, Eigen::ArrayXd& sum) const;
 
+  void add_straight(const Place& place, const Ray& ray, const ElementHit& hit, double share,
+                    Eigen::ArrayXd& sum) const;
+
   void add_of_gap(const Place& place, const Ray& ray, const ElementHit& hit, std::uint64_t key,
                   double share, Eigen::ArrayXd& sum) const;
 

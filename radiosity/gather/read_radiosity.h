@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
 #include "mesh/elements/element_caster.h"
+#include "mesh/elements/pictured_reflectance.h"
 #include "radiosity/solution/solution.h"
 
 namespace lightwell {
@@ -13,10 +15,16 @@ class ReadRadiosity {
  public:
   /// `values` are vertices x columns, W/m^2; keeps references.
   ReadRadiosity(const PatchMesh& mesh, const BandArray& values)
-      : mesh_(mesh), values_(&values), columns_(values.cols()) {}
+      : mesh_(mesh),
+        values_(&values),
+        columns_(values.cols()),
+        pictures_(std::make_shared<const PicturedReflectance>(mesh)) {}
   /// A column for each vertex and band, the bands of a vertex side by side. Keeps a reference.
   ReadRadiosity(const PatchMesh& mesh, Eigen::Index bands)
-      : mesh_(mesh), columns_(mesh.vertex_count() * bands), bands_(bands) {}
+      : mesh_(mesh),
+        columns_(mesh.vertex_count() * bands),
+        bands_(bands),
+        pictures_(std::make_shared<const PicturedReflectance>(mesh)) {}
 
   Eigen::Index columns() const { return columns_; }
 
@@ -33,6 +41,14 @@ class ReadRadiosity {
         sum[k] += share * static_cast<double>(hit.weights[c] * B[k]);
       }
     }
+  }
+
+  /// Adds `share` times the radiosity where a ray ends that stands for `solid_angle`, sr. Pictures
+  /// count as they are there (see PicturedReflectance).
+  void add_seen(const Ray& ray, const ElementHit& hit, double solid_angle, double share,
+                Eigen::ArrayXd& sum) const {
+    if (!pictures_->varies(hit.element)) return add(hit, share, sum);
+    add(hit, Spectrum(static_cast<float>(share) * pictures_->factor(ray, hit, solid_angle)), sum);
   }
 
   /// Adds the radiosity at an element's point times the share of each band.
@@ -59,6 +75,7 @@ class ReadRadiosity {
   const PatchMesh& mesh_;
   const BandArray* values_ = nullptr;  // null: 1 at a single vertex
   Eigen::Index columns_ = 0, bands_ = 0;
+  std::shared_ptr<const PicturedReflectance> pictures_;
 };
 
 }  // namespace lightwell

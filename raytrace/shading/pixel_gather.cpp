@@ -42,6 +42,7 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
     : paths_(scene, caster, max_specular_depth),
       radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution)),
       bright_(scene, caster, radiosity_),
+      pictures_(caster.mesh()),
       gaps_({scene, caster, direct_light}, {caster.mesh(), radiosity_}, paths_),
       aims_(std::max(BrightPatches::aimed(most_rays), Portals::aimed(most_rays))),
       exit_aims_(GapExits::aimed(most_rays)),
@@ -156,9 +157,9 @@ void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
     if (!place.portals.is_empty() && gaps_.is_near_portal(*portals_, ray, hit)) continue;
     double share =
         bright_.share(place.bright, cosine, place.rays, ray, hit, aimed_density(place, ray, hit));
+    const double solid_angle = std::numbers::pi * share / (place.rays * cosine);
     if (at.relief) share *= at.relief->gain(ray.direction);
-    sum += share * paths_.base_factor(place.caster, ray, hit) *
-           interpolate(place.caster.mesh(), radiosity_, hit).cast<double>();
+    sum += share * straight_radiosity(place.caster, ray, hit, solid_angle).cast<double>();
   }
 }
 
@@ -243,7 +244,16 @@ void PixelGather::add_flat(const Place& place, const Ray& ray, const ElementHit&
   if (!place.bright.is_empty()) {
     shares.straight = bright_.share(place.bright, cosine, place.rays, ray, hit, aimed);
   }
+  shares.solid_angle = std::numbers::pi * shares.straight / (place.rays * cosine);
   sum += arriving(place.caster, ray, hit, key, shares).cast<double>();
+}
+
+// Radiosity B that a ray finds straight where it ends, for a ray that stands for `solid_angle`.
+Spectrum PixelGather::straight_radiosity(const ElementCaster& caster, const Ray& ray,
+                                         const ElementHit& hit, double solid_angle) const {
+  const Spectrum B = static_cast<float>(paths_.base_factor(caster, ray, hit)) *
+                     interpolate(caster.mesh(), radiosity_, hit);
+  return pictures_.varies(hit.element) ? Spectrum(B * pictures_.factor(ray, hit, solid_angle)) : B;
 }
 
 // Radiosity B at the end of a ray, weighted by `shares`.
@@ -252,8 +262,8 @@ Spectrum PixelGather::arriving(const ElementCaster& caster, const Ray& ray, cons
   const PatchMesh& mesh = caster.mesh();
   Spectrum B = Spectrum::Zero(radiosity_.cols());
   if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
-    B = static_cast<float>(shares.straight * paths_.base_factor(caster, ray, hit)) *
-        interpolate(mesh, radiosity_, hit);
+    B = static_cast<float>(shares.straight) *
+        straight_radiosity(caster, ray, hit, shares.solid_angle);
   }
   if (!paths_.is_specular(hit.facet)) return B;
   const auto by_way = static_cast<float>(shares.by_way);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
+#include "mesh/elements/pictured_reflectance.h"
 #include "radiosity/direct_light/direct_light.h"
 #include "radiosity/gather/bright_patches.h"
 #include "radiosity/gather/gap_light.h"
@@ -58,9 +59,10 @@ class PixelGather {
                         std::uint64_t key) const;
 
  private:
-  // Balance-heuristic weights of light straight from a hit, and of light through mirrors and glass.
+  // Balance-heuristic weights of light straight from a hit, and of light through mirrors and glass,
+  // and the solid angle, sr, that a ray of the former stands for.
   struct Shares {
-    double straight = 1.0, by_way = 1.0;
+    double straight = 1.0, by_way = 1.0, solid_angle = 0.0;
   };
   // A point, and the bright patches, portals and exits of a gap that are seen from there.
   struct Place {
@@ -83,12 +85,15 @@ class PixelGather {
                 double aimed, Eigen::ArrayXd& sum) const;
   Spectrum arriving(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                     std::uint64_t key, const Shares& shares) const;
+  Spectrum straight_radiosity(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                              double solid_angle) const;
 
   LightPaths paths_;
   BandArray radiosity_{};               // vertices x bands, W/m^2
   Spectrum dome_{};                     // irradiance factor of the sky's dome; empty: no dome
   std::vector<HemisphereSets> sets_{};  // each with half the rays of the set before
   BrightPatches bright_;
+  PicturedReflectance pictures_;
   GapLight gaps_;
   SobolPoints aims_;                        // Sobol points of the rays towards bright_ and portals_
   SobolPoints exit_aims_;                   // and out of gaps

@@ -5,7 +5,9 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
+#include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/form_factors/form_factors.h"
+#include "radiosity/gather/final_gather.h"
 #include "radiosity/solve.h"
 #include "scene/parallel.h"
 #include "tests/pictures.h"
@@ -136,6 +138,37 @@ TEST(Textures, HolesLetLightThroughAndEnergyBalances) {
     EXPECT_EQ(e.escaped, 0.0);
     EXPECT_LT(half.solution.patch_radiosity.row(0)[0], 2.0) << "the screen takes some";
   }
+}
+
+// A point 0.1 m above a floor of one patch, whose picture is dark on one half and bright on the
+// other, beside the line between the two. With an irradiance of 1 the floor sends rho to the point,
+// so E = dark F_dark + bright F_bright. About 4 sqrt(4096) of the 4096 strata cross the line, each
+// with a standard deviation of (bright - dark) / 2 at most, and as many the floor's edge, where
+// rays are worth less by their cosine; the tolerance is four standard deviations.
+TEST(Textures, LightNearAPictureIsThatOfThePicture) {
+  constexpr float dark = 0.1f, bright = 0.8f;
+  constexpr double h = 0.1;
+  Scene scene;
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  test::add_polygon(scene, "floor", grey, {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
+  put_picture(scene, 0, picture_of(2, 1, {dark, bright}));
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 4.0});
+  ASSERT_EQ(mesh.patch_count(), 1);
+  const ElementCaster caster(mesh);
+  const DirectLight light(scene, mesh);
+  const BandArray ones = BandArray::Ones(mesh.vertex_count(), scene.bands.count());
+  const Eigen::Vector3d at(1.0 + h, 1.0, h), down(0, 0, -1);
+  const std::vector<GatherPoint> points = {{.position = at, .normal = down}};
+  const double E =
+      gather_irradiance({scene, caster, light}, gatherable_radiosity(mesh, light, ones), points,
+                        {.rays = 4096})
+          .indirect(0, 0);
+  const auto form_factor = [&](double from, double to) {
+    return point_to_polygon(at, down, Loop{{from, 0, 0}, {to, 0, 0}, {to, 2, 0}, {from, 2, 0}});
+  };
+  const double expected = dark * form_factor(0, 1) + bright * form_factor(1, 2);
+  constexpr double deviation = 0.5 * static_cast<double>(bright - dark);
+  EXPECT_NEAR(E, expected, 4.0 * deviation * std::sqrt(2.0 * 4.0 * 64.0) / 4096.0);
 }
 
 // A lamp so small and far that its shadows are sharp, over a plate with holes in two columns of

@@ -4,8 +4,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/solve.h"
+#include "tests/pictures.h"
 #include "tests/raytrace/lit_scene.h"
 
 namespace lightwell::gather_test {
@@ -39,6 +42,32 @@ TEST(PixelGather, ReadsTheSolutionWhereItsRaysEnd) {
     sum += static_cast<double>(gather.indirect_irradiance(lit.caster, at, key, 1.0f / 16.0f)[0]);
   }
   EXPECT_NEAR(sum / 64, 3.0 * F, 4 * 3.0 * 0.5 / 64);
+}
+
+// A point 0.4 m above a floor of one patch, too high for a gap, beside the line between the dark
+// and the bright half of its picture: E = dark F_dark + bright F_bright for an irradiance of 1.
+// About 4 sqrt(4096) of the 4096 strata cross the line, each with a standard deviation of (bright -
+// dark) / 2 at most, and as many the floor's edge, where rays are worth less by their cosine; the
+// tolerance is four standard deviations.
+TEST(PixelGather, ReadsPicturesNearBy) {
+  constexpr float dark = 0.1f, bright = 0.8f;
+  constexpr double h = 0.4;
+  Scene scene = SceneBuilder()
+                    .polygon({.reflectance = 0.5f}, {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}})
+                    .build();
+  put_picture(scene, 0, picture_of(2, 1, {dark, bright}));
+  TracedScene lit(std::move(scene), 4.0);
+  lit.set_indirect([](const Eigen::Vector3d&) { return 1.0f; });
+  const PixelGather gather(lit.scene, lit.caster, lit.direct_light, lit.solution, 4096, 4);
+  const Eigen::Vector3d from(1.0 + h, 1.0, h);
+  const ShadingPoint at{.position = from, .normal = -up, .smooth_normal = -up};
+  const auto form_factor = [&](double low, double high) {
+    return point_to_polygon(from, -up, Loop{{low, 0, 0}, {high, 0, 0}, {high, 2, 0}, {low, 2, 0}});
+  };
+  constexpr double deviation = 0.5 * static_cast<double>(bright - dark);
+  EXPECT_NEAR(gather.indirect_irradiance(lit.caster, at, 3, 1.0f)[0],
+              dark * form_factor(0, 1) + bright * form_factor(1, 2),
+              4.0 * deviation * std::sqrt(2.0 * 4.0 * 64.0) / 4096.0);
 }
 
 TEST(PixelGather, AMirrorDoublesWhatIsBesideIt) {
