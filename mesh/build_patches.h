@@ -10,7 +10,9 @@ struct MeshOptions {
   /// Longest patch edge, metres. 0: chosen so that the diffuse surfaces make about
   /// `auto_patch_count` patches, or up to 2.5 times as many in a scene with much area in little
   /// space: of 1600 patches, no edge is longer than a quarter of the mean free path, 4 V / A
-  /// with the volume V of the scene's box and the area A within.
+  /// with the volume V of the scene's box and the area A within. In a scene with surroundings, such
+  /// as a ground of kilometres, this size is that of what is near, and the surroundings' patches
+  /// grow with the distance from it (PatchSizes).
   double max_patch_size = 0.0;
   int auto_patch_count = 1600;
   /// Elements along a patch edge, 1 to 1000. A larger number follows shadows more closely, at
