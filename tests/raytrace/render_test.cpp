@@ -105,6 +105,16 @@ TEST(Render, PixelsAreMeansOverTheirSquares) {
   EXPECT_LT(std::abs(sum) / (24 * 24), 1e-3);
 }
 
+// A camera 8 m above the plane z = 0 that shows 1.6 m in 16 pixels.
+Camera camera_above() {
+  return {.position = {0, 0, 8},
+          .direction = {0, 0, -1},
+          .up = {0, 1, 0},
+          .fov_degrees = 2 * std::atan(0.1) * 180 / std::numbers::pi,
+          .width = 16,
+          .height = 16};
+}
+
 TEST(Render, StripThinnerThanAPixelIsNotLost) {
   // A strip of 0.4 pixels runs through the middle of a column of pixels, between all their corners.
   const double pixel = 0.1;
@@ -115,13 +125,7 @@ TEST(Render, StripThinnerThanAPixelIsNotLost) {
                                                           {middle + half, 5, 0},
                                                           {middle - half, 5, 0}})
                             .build());
-  const Camera camera{.position = {0, 0, 8},
-                      .direction = {0, 0, -1},
-                      .up = {0, 1, 0},
-                      .fov_degrees = 2 * std::atan(0.1) * 180 / std::numbers::pi,  // 1.6 m wide
-                      .width = 16,
-                      .height = 16};
-  const Image image = lit.render(camera, {.max_subdivision = 4});
+  const Image image = lit.render(camera_above(), {.max_subdivision = 4});
   EXPECT_NEAR(image.radiance.col(0).mean(), 0.4 / 16, 0.1 / 16);  // 16 cells: error below 1/16
   for (int y = 0; y < 16; ++y) EXPECT_GT(image.radiance(16 * y + 8, 0), 0.3f);
 }
@@ -139,13 +143,7 @@ TEST(Render, StripAlongAnEdgeIsNotLost) {
                             .polygon({}, plate(edge - 0.01, 5, -0.01))
                             .polygon({.exitance = pi_f}, plate(left, right, 0.01))
                             .build());
-  const Camera camera{.position = {0, 0, 8},
-                      .direction = {0, 0, -1},
-                      .up = {0, 1, 0},
-                      .fov_degrees = 2 * std::atan(0.1) * 180 / std::numbers::pi,  // 1.6 m wide
-                      .width = 16,
-                      .height = 16};
-  const Image image = lit.render(camera, {.max_subdivision = 2});
+  const Image image = lit.render(camera_above(), {.max_subdivision = 2});
   // The strip covers an eighth of the pixel. Of the 16 rays through each of the four cells, one
   // lies in each of 16 columns, so the strip's share of a cell is right within a 16th.
   for (int y = 0; y < 16; ++y) {
