@@ -187,8 +187,7 @@ void note_surroundings(const Scene& scene, const CutSize& cut, std::vector<std::
       "the surroundings are {:.4g} m long, and what they surround {:.3g} m: patches of {:.3g} m "
       "are too coarse for its light, and the error estimate may not show that; give no size of "
       "patches, make the surroundings smaller, up to {:g} times as long, or use a [sky] in place "
-      "of "
-      "a dome",
+      "of a dome",
       all, scenery, cut.patch_size, longest));
 }
 

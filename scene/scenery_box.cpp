@@ -16,8 +16,8 @@ double reach(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& center) {
   return low.cwiseMax((box.max() - center).cwiseAbs()).norm();
 }
 
-// How far surroundings reach from the middle of what is near, as shares of its length: each facet,
-// and the farthest.
+// Least reach of surroundings from the middle of what is near, as shares of its length: of each
+// facet, and of the farthest.
 struct Reach {
   double each = 0.0, farthest = 0.0;
 };
@@ -79,7 +79,7 @@ Parted parted(std::span<const Eigen::AlignedBox3d> boxes, const Reach& reach) {
 
 constexpr Reach near_reach{.each = 2.0, .farthest = 16.0};
 
-// By box, 1 if it is near.
+// Flags of the boxes: 1 for a box that is near.
 std::vector<char> near_of(const Parted& parts) {
   std::vector<char> is_near(parts.order.size(), 0);
   for (std::size_t k = 0; k < parts.near_count; ++k) is_near[parts.order[k]] = 1;

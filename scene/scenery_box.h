@@ -18,7 +18,7 @@ Eigen::AlignedBox3d scenery_box(const std::vector<Eigen::AlignedBox3d>& boxes);
 /// The same for the facets and round shapes of a scene.
 Eigen::AlignedBox3d scenery_box(const Scene& scene);
 
-/// What a scene shows from near, and what only surrounds it.
+/// The facets that a scene shows from near, and those that only surround it.
 struct Scenery {
   Eigen::AlignedBox3d box{};      ///< of what is near, m
   std::vector<char> is_near{};    ///< by facet of the scene
@@ -40,7 +40,7 @@ double scenery_length(const Scene& scene);
 /// The same, or the distance of the box from the origin if that is more, but no more than the
 /// length of the scene: what distances are shares of that stand for the rounding of coordinates.
 double coordinate_length(const Scene& scene);
-/// By box, 1 if it is near as facets of near_scenery() are.
+/// Flags of `boxes` (m, none empty): 1 for a box that is near as facets of near_scenery() are.
 std::vector<char> are_near(const std::vector<Eigen::AlignedBox3d>& boxes);
 
 }  // namespace lightwell

@@ -234,8 +234,9 @@ void ContactGraph::count_pieces() {
     if (!atoms_[i].cuts.empty()) continue;
     const int wanted = most[opposite.root(static_cast<int>(i))];
     // Limits the effect of a long chain of ever longer edges on its short end.
-    if (wanted <= 1.25 * atoms_[i].pieces + sizes_.near().elements_per_edge)
+    if (wanted <= 1.25 * atoms_[i].pieces + sizes_.near().elements_per_edge) {
       atoms_[i].pieces = wanted;
+    }
   }
 }
 

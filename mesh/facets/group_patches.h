@@ -19,10 +19,10 @@ struct ElementContact {
   double length = 0.0;  ///< of the edge, metres
 };
 
-/// Groups the elements of a facet into patches: connected elements of one cell of a grid. A
-/// group that the boundary leaves smaller than 15 % of a cell joins the
-/// neighbour with which it shares the longest border, unless the two together would be longer or
-/// wider than 1.5 of the larger cells. Returns the patch of each element; patches are numbered by
+/// Groups the elements of a facet into patches: connected elements of one cell of a grid. A group
+/// that the boundary leaves smaller than 15 % of a cell joins the neighbour with which it shares
+/// the longest border, unless the two together would be longer or wider than 1.5 of the larger
+/// cells. Returns the patch of each element; patches are numbered by
 /// cell, then by first element.
 std::vector<int> group_patches(const std::vector<PlacedElement>& elements,
                                const std::vector<ElementContact>& contacts);

@@ -9,7 +9,7 @@ namespace lightwell {
 Bounds mesh_bounds(const PatchMesh& mesh);
 /// The same without facets of a backdrop, see scenery_box().
 Bounds scenery_bounds(const PatchMesh& mesh);
-/// By facet of the scene that a mesh is of, 1 if it has elements and is near, see near_scenery().
+/// Flags of the scene's facets: 1 for a facet that has elements and is near, see near_scenery().
 std::vector<char> near_facets(const PatchMesh& mesh);
 
 }  // namespace lightwell

@@ -90,9 +90,12 @@ TEST(SceneryBox, RoundingGrowsWithTheDistanceFromTheOrigin) {
     scene.surfaces.push_back({.shape = land});
     return scene;
   };
-  EXPECT_NEAR(scenery_length(scene_at(2000.0)), room.diagonal().norm(), 1e-9);
-  EXPECT_NEAR(coordinate_length(scene_at(0.0)), room.diagonal().norm(), 1e-9);
-  EXPECT_NEAR(coordinate_length(scene_at(2000.0)), Vector3d(2005, 4, 3).norm(), 1e-9);
+  // Coordinates and lengths of 2 km are multiples of 2^-42 m; four operations round by half of
+  // that.
+  constexpr double rounding = 4.0 * 0x1p-43;
+  EXPECT_NEAR(scenery_length(scene_at(2000.0)), room.diagonal().norm(), rounding);
+  EXPECT_NEAR(coordinate_length(scene_at(0.0)), room.diagonal().norm(), rounding);
+  EXPECT_NEAR(coordinate_length(scene_at(2000.0)), Vector3d(2005, 4, 3).norm(), rounding);
 }
 
 // Houses all over a town are scenery, however small each is.
