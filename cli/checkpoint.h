@@ -50,12 +50,12 @@ class Checkpoint {
   /// `progress` with one warning on the console if writing the checkpoint fails.
   Progress watched(Progress progress);
 
-  /// To be called while an exception of the work is handled. Closes the checkpoint, names its file
-  /// on the console and rethrows the exception; an Interrupted becomes an InterruptedWith that
-  /// holds the command to resume.
+  /// Closes the checkpoint while an exception of the work is handled, names its file on the console
+  /// and rethrows the exception. An Interrupted becomes an InterruptedWith that holds the command
+  /// to resume.
   [[noreturn]] void rethrow_stopped();
-  /// To be called once the result is written; adds the size of the checkpoint to the report under
-  /// `key`. Removes the checkpoint of a whole result, unless --keep-checkpoint was given; keeps
+  /// Ends the checkpoint once the result is written, and adds its size to the report under `key`.
+  /// Removes the checkpoint of a whole result, unless --keep-checkpoint was given; keeps
   /// that of a result that was ended early, and prints the command to resume.
   void finish(Report& report, bool is_whole, const std::string& key = "checkpoint");
 

@@ -104,7 +104,7 @@ void note_depth_cut(const std::string& label, const RenderReport& rendered, int 
   }
 }
 
-// Whether the picture is as asked for; warns of one that is not.
+// True if the picture is as asked for; warns of one that is not.
 bool is_as_asked(const std::string& label, const RenderArguments& asked,
                  const PictureInTime& picture, const Feedback& feedback) {
   const bool is_whole = picture.rows == picture.image.height;

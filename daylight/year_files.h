@@ -37,7 +37,7 @@ class NumpyRows {
 /// lx.
 class HourlyFiles {
  public:
-  /// For the first `sensors` of each block. Throws as NumpyRows does.
+  /// Files of the first `sensors` of each block. Throws as NumpyRows does.
   HourlyFiles(const std::filesystem::path& folder, int sensors);
 
   void append(const HourBlock& block);

@@ -63,8 +63,8 @@ class PilotGathers {
   /// more elements than allowed, Interrupted when progress says stop.
   PilotGather gather(const SolveOptions& options);
 
-  /// In place of gather() for want of time: a gather of few rays at one point of each patch, which
-  /// the vertices of the base share. Caustics are left out. Throws Interrupted when progress says
+  /// Gather of few rays at one point of each patch, which the vertices of the base share: for want
+  /// of time, in place of gather(). Caustics are left out. Throws Interrupted when progress says
   /// stop.
   PilotGather gather_at_patches(const SolveOptions& options);
 

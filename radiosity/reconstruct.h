@@ -22,7 +22,7 @@ namespace lightwell {
 void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGather& pilot,
                  RadiositySolution& solution, KeptGathers* kept = nullptr);
 
-/// In place of reconstruct() for want of time: fills in the irradiances of `solution` with the
+/// Fills in the irradiances of `solution` for want of time, in place of reconstruct(): with the
 /// light of the pilot gather, and of the final gathers in `kept` at the vertices that have any
 /// (null: none). Vertices that the pilot gather left out share a gather of few rays on each patch.
 /// Errors are left to the error estimate: gather noise is 0, and the interpolation error is empty.

@@ -61,7 +61,7 @@ struct SolveReport {
   CutSizes cuts{};        ///< lights that points ask, where there are many
   double accuracy = 0.0;  ///< the requested share of the mean irradiance; 0: none was requested
   int gather_rays = 0;    ///< rays of the last final gather
-  /// In limited time, the error that the last finished stage was to reach, relative to the mean
+  /// Error that the last finished stage was to reach in limited time, relative to the mean
   /// irradiance; 0 without a limit.
   double stage = 0.0;
 };

@@ -33,7 +33,7 @@ class PixelMean {
 
   /// Returns the mean over the pixel of column `x` and row `y` with these corners.
   PixelValue operator()(int x, int y, const Corners& corners);
-  /// Whether a sample of the last pixel, beside its corners, met a rough surface.
+  /// True if a sample of the last pixel, beside its corners, met a rough surface.
   bool met_gloss() const { return met_gloss_; }
 
  private:

@@ -32,7 +32,7 @@ struct Dielectric {
   /// A pane without thickness stands for both of its faces, and light goes straight through. `tint`
   /// then applies once to the light that crosses the pane, and there is no absorption.
   bool thin = false;
-  /// Of a thin pane: share of light, [0,1], that crosses its body once along the normal. Inclined
+  /// Share of light, [0,1], that crosses the body of a thin pane once along the normal. Inclined
   /// light crosses more of the body (see pane_shares); empty: all.
   Spectrum transmissivity{};
 };
@@ -94,8 +94,8 @@ struct Material {
   /// incidence. `reflectance` is that of base and coat together for even light, without the light
   /// that the coat mirrors.
   std::optional<Coat> coat{};
-  /// If set, the surface mirrors Fresnel's share of the metal times `specular`, by the angle of
-  /// incidence.
+  /// The metal of the surface, which mirrors Fresnel's share times `specular` by the angle of
+  /// incidence; empty: `specular` alone.
   std::optional<Conductor> metal{};
   std::optional<Dielectric> dielectric{};  ///< if set, the surface is clear; rho and specular are 0
   /// Exitance M = pi L of a Lambertian emitter, W/m^2, >= 0; with a picture of it: of facets
@@ -203,8 +203,8 @@ struct Scene {
   std::vector<RigidMotion> motions{};
   /// Assumptions, repairs and omissions of the reader, one sentence each.
   std::vector<std::string> notes{};
-  /// What the reader left out, approximated or did not find, one sentence for each kind with all
-  /// names; `notes` has each of them with a few names. Empty: nothing of the file is lost.
+  /// Things that the reader left out, approximated or did not find, one sentence for each kind with
+  /// all names; `notes` has each of them with a few names. Empty: nothing of the file is lost.
   std::vector<std::string> losses{};
   int dropped_polygons = 0;  ///< polygons left out for having no area
   /// True if the unit of emission is unknown: values of light are then meaningful only relative to

@@ -47,7 +47,7 @@ inline std::string content_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// Whether a message says `part`; shows the message if not.
+/// True if a message says `part`; shows the message if not.
 inline testing::AssertionResult says(const std::string& message, const std::string& part) {
   if (message.find(part) != std::string::npos) return testing::AssertionSuccess();
   return testing::AssertionFailure() << "'" << message << "' does not say '" << part << "'";

@@ -158,7 +158,7 @@ ElementTree::ElementPoint ElementTree::in_quad(int base_element, const QuadShape
   Vector2d at = place;
   double size = 1.0;  // edge of the node, in the base's s and t
   while (node.split_edges == is_split) {
-    // Without a branch, because the end points of rays are unpredictable.
+    // A branch would be costly, because the end points of rays are unpredictable.
     const int is_right = at.x() > 0.5 ? 1 : 0, is_above = at.y() > 0.5 ? 1 : 0;
     at = 2.0 * at - Vector2d(is_right, is_above);
     size *= 0.5;

@@ -74,14 +74,14 @@ struct LightQuery {
   /// of them, drawn in proportion to about what each would give, besides the sky's dome. The mean
   /// over keys is the same; a point costs one closed form and one set of shadow rays.
   bool one_stands_for_all = false;
-  /// If set, each light counts times CoatedBase::factor() at its angle: irradiance as the base
-  /// under a coat gets it. The light of the sky's dome is taken as even.
+  /// Base under a coat, by whose CoatedBase::factor() at its angle each light counts: irradiance as
+  /// the base gets it. The light of the sky's dome is taken as even. Null: no coat.
   const CoatedBase* base = nullptr;
-  /// If set, light counts times ReliefSlope::gain() of its direction: that of an emitter or a lamp
-  /// by the mean over some of its points, as if all of it were visible; the dome's by what its rays
-  /// find.
+  /// Relief by whose ReliefSlope::gain() of its direction light counts: that of an emitter or a
+  /// lamp by the mean over some of its points, as if all of it were visible; the dome's by what its
+  /// rays find. Null: no relief.
   const ReliefSlope* relief = nullptr;
-  /// If set, these lights are asked in place of a choice, each over its chance. Null: chosen.
+  /// Lights that are asked in place of a choice, each over its chance. Null: lights are chosen.
   const std::vector<LightSample>* asked = nullptr;
 };
 

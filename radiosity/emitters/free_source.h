@@ -30,7 +30,7 @@ struct SunLight {
 
 /// The dome of the sky, whose light arrives from all around: SkyLight computes it at a point, and
 /// rays that leave the scene through mirrors and glass read it. FreeSource::light are its factors.
-/// Of the functions below only is_distant() takes the dome; the others return nothing for it.
+/// Only is_distant() of the functions below takes the dome; the others return nothing for it.
 struct DomeLight {};
 
 /// A point of a surface that sends on diffuse light (Keller 1997, "Instant radiosity"). `light` of

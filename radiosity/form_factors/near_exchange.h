@@ -18,15 +18,15 @@ class Portals;
 /// Closed forms times fractional visibility for pairs that many rays of a row meet: near or large
 /// patches.
 ///
-/// Of the rays of a row, `all` cross the front of another patch's polygon, whatever stands between,
-/// and `first` of them meet it first. The ratio estimates the visible share, weighted by the kernel
-/// of the form factor:
+/// `all` of a row's rays cross the front of another patch's polygon, whatever stands between, and
+/// `first` of them meet that patch first. The ratio estimates the visible share, weighted by the
+/// kernel of the form factor:
 ///
 ///   F_ij = (closed form) first / all
 ///
 /// The estimate is exact without occluders, and never noisier than the plain count, first / rays.
-/// Where the noise exceeds a wanted accuracy and only few polygons stand between, the hidden part
-/// is clipped instead (visible_exchange).
+/// The hidden part is clipped instead (visible_exchange) where the noise exceeds a wanted accuracy
+/// and only few polygons stand between.
 class NearExchange {
  public:
   /// `target_error`: wanted standard error of F_ij; 0: as the rays give. Pairs on both sides of

@@ -94,8 +94,8 @@ class RowCaster {
   /// empty for patches that take no part in diffuse exchange. `count_hidden`: rays continue through
   /// all surfaces, to fill EstimatedRow::hidden.
   ///
-  /// Where portals are seen, a quarter as many rays more are aimed at them. Of both kinds those
-  /// that pass a portal and meet a diffuse surface, or nothing, have the weights of the balance
+  /// A quarter as many rays more are aimed at portals where any are seen. Rays of both kinds that
+  /// pass a portal and meet a diffuse surface, or nothing, have the weights of the balance
   /// heuristic.
   EstimatedRow cast(int patch, int rays, Scratch& scratch, bool count_hidden = false) const;
 
@@ -117,7 +117,7 @@ class RowCaster {
   SobolPoints aims_;  // of rays aimed at portals
 };
 
-/// How for_each_row() goes through patches.
+/// The way in which for_each_row() goes through patches.
 struct RowLoop {
   int rays_per_patch = 0;  ///< approximate rays of one call
   const Progress& progress;

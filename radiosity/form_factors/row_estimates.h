@@ -45,7 +45,7 @@ class RowEstimates {
   int bands_ = 0;
   RecordStore shares_, specular_shares_;
   Eigen::ArrayXd inverse_variance_, escaped_, specular_, rays_;
-  // On the heap, to make the class movable.
+  // A mutex on the heap makes the class movable.
   std::unique_ptr<std::mutex> specular_mutex_ = std::make_unique<std::mutex>();
   bool has_specular_ = false;
   Eigen::ArrayXXd specular_sum_;  // patches x bands, as the arrays below

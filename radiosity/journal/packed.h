@@ -102,7 +102,7 @@ class Unpacked {
   bool is_empty() const { return left_.empty(); }
 
  private:
-  // Whether an array whose type has `fixed` rows or columns, or at most `most`, can have `count`.
+  // True if an array whose type has `fixed` rows or columns, or at most `most`, can have `count`.
   static bool fits(Eigen::Index count, Eigen::Index fixed, Eigen::Index most) {
     return count >= 0 && (fixed == Eigen::Dynamic || count == fixed) &&
            (most == Eigen::Dynamic || count <= most);

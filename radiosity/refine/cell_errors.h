@@ -18,9 +18,9 @@ class CellErrors {
   /// smooth light, a half along the edge of a shadow, for which most cells (not all) are split.
   static constexpr double of_a_split = 0.4;
 
-  /// If refinement `may_go_on` later, children are expected to have of_a_split of their parent's
-  /// squared error. Otherwise they are taken to be as bad as their parent until they are measured,
-  /// and share_left() alone expects less.
+  /// Children are expected to have of_a_split of their parent's squared error, if refinement
+  /// `may_go_on` later. Otherwise they are taken to be as bad as their parent until they are
+  /// measured, and share_left() alone expects less.
   CellErrors(const RefinedElements& elements, const SceneParts& parts, bool may_go_on);
 
   /// Sets the squared errors that are expected of a cell of the start.

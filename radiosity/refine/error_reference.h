@@ -31,7 +31,7 @@ class PartMeans {
 
   /// Counts irradiance, W/m^2, of an area, m^2, of a patch.
   void add(int patch, double area, double irradiance);
-  /// To be called after the last add().
+  /// Forms the references, after the last add().
   void finish();
 
   /// The irradiance by which errors on a patch or in a part are judged, W/m^2.

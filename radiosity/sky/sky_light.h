@@ -21,8 +21,8 @@ namespace lightwell {
 struct SkyEffort {
   int first = 32;
   int most = 128;  ///< 1 to most_sky_rays
-  /// If set, the first rays estimate the noise, and as many follow as bring it there: half of
-  /// `first` to 16 `most`. Otherwise `most` rays follow.
+  /// Noise to reach, if set: the first rays estimate the noise, and as many follow as bring it
+  /// there, half of `first` to 16 `most`. Otherwise `most` rays follow.
   NoiseGoal goal{};
 };
 constexpr int most_sky_rays = 1 << 16;

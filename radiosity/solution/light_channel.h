@@ -22,7 +22,7 @@ struct LightChannel {
   std::vector<std::string> surfaces{};  ///< names of emitting surfaces, and of lamps
   Spectrum scale{};                     ///< s_c: factor of the channel's emission per band, >= 0
 
-  // As in RadiositySolution, with all scales 1.
+  // Light of this channel alone, with all scales 1; arrays as in RadiositySolution.
   BandArray patch_radiosity{};
   BandArray direct_irradiance{}, indirect_irradiance{}, caustic_irradiance{};
   BandEnergy energy{};

@@ -48,7 +48,7 @@ class PolyDataFile {
   std::vector<double> points();
   /// Numbers of points, of one polygon after another. No value is checked.
   std::vector<std::int64_t> corners();
-  /// For each polygon the place in corners() after its last corner. No value is checked.
+  /// Place in corners() after each polygon's last corner. No value is checked.
   std::vector<std::int64_t> ends();
 
  private:

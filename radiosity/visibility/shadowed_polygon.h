@@ -32,9 +32,9 @@ struct Blocker {
 bool make_blocker(const Occluder& occluder, int side, const ShaftEnd& from, const ShaftEnd& target,
                   double tolerance, Blocker& blocker);
 
-/// As make_blocker, for a single point at a known side of the occluder's plane, and without
-/// `reach`. `from` and `target`: half-spaces that the point and the target can see. `corners`: all
-/// corners of the target.
+/// Makes a blocker like make_blocker, for a single point at a known side of the occluder's plane,
+/// and without `reach`. `from` and `target`: half-spaces that the point and the target can see.
+/// `corners`: all corners of the target.
 bool make_point_blocker(const Occluder& occluder, int side, const HalfSpace& from,
                         const HalfSpace& target, std::span<const Eigen::Vector3d> corners,
                         double tolerance, Blocker& blocker);

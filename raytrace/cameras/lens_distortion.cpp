@@ -30,7 +30,7 @@ double bisect(double low, double high, Function&& f) {
   return 0.5 * (low + high);
 }
 
-// Whether the picture is nowhere mirrored on the way from its middle to a point before distortion.
+// True if the picture is nowhere mirrored on the way from its middle to a point before distortion.
 bool is_unfolded(const LensDistortion& lens, const Eigen::Vector2d& p) {
   constexpr int places = 16;
   for (int i = 1; i <= places; ++i) {

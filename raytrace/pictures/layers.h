@@ -16,8 +16,8 @@ namespace lightwell {
 enum class Layer {
   albedo,  ///< diffuse reflectance, as RGB under equal-energy light, white = 1
   normal,  ///< towards the eye, in the scene's axes; smoothed like the shading
-  /// At the pixel's centre, m along the camera's direction, or from its position if the picture is
-  /// not flat; infinity: nothing is there.
+  /// Depth at the pixel's centre, m along the camera's direction, or from its position if the
+  /// picture is not flat; infinity: nothing is there.
   depth,
   direct,     ///< rho E_direct / pi, W/(m^2 sr), as linear RGB
   indirect,   ///< rho E_indirect / pi, the same

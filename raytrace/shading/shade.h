@@ -254,7 +254,7 @@ class RayTree {
   /// angle (see LightQuery::base).
   struct Arriving {
     Spectrum direct{}, indirect{};
-    /// On the facet, before coat and relief, for layers; empty: as `direct`.
+    /// Direct light on the facet, before coat and relief, for layers; empty: as `direct`.
     Spectrum direct_on_facet{};
   };
   /// Diffuse radiosity towards a ray without emission, W/m^2, of direct and of indirect light.

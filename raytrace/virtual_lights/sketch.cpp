@@ -48,8 +48,9 @@ std::vector<int> sending_vertices(const PatchMesh& mesh) {
   return vertices;
 }
 
-// For each of `vertices`, the first that lies in the same cell of a grid and faces alike. Furniture
-// of small facets has many vertices in a cell, which even indirect light need not tell apart.
+// The first vertex, for each of `vertices`, that lies in the same cell of a grid and faces alike.
+// Furniture of small facets has many vertices in a cell, which even indirect light need not tell
+// apart.
 std::vector<int> first_in_cell(const VertexGatherPoints& points, std::span<const int> vertices,
                                double cell) {
   if (!(cell > 0.0)) return {vertices.begin(), vertices.end()};

@@ -51,7 +51,7 @@ class FilesRead {
   FilesRead(const FilesRead&) = delete;
   FilesRead& operator=(const FilesRead&) = delete;
 
-  /// In the order of reading, once each.
+  /// Files in the order of reading, once each.
   const std::vector<std::filesystem::path>& files() const { return files_; }
   static void add(const std::filesystem::path& path);
   /// Throws LimitError for a file that an object of this thread refuses.

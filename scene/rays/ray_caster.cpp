@@ -333,7 +333,7 @@ struct RayCaster::Impl : EmbreeScene {
     packet.flags[i] = ray.flags;
   }
 
-  // In place: a copy would wait for the parts just stored one by one.
+  // Sets the hit in place: a copy would wait for the parts just stored one by one.
   void set_hit(const Ray& ray, const RTCRayHit& query, Hit& hit) const {
     const int p = primitive(query.hit);
     hit.primitive = p;

@@ -60,7 +60,7 @@ inline PdfText read_pdf(const std::string& bytes) {
   return pdf;
 }
 
-/// Whether every word lies within the margins of an A4 page: 13 mm at the sides, 16 mm above, and
+/// True if every word lies within the margins of an A4 page: 13 mm at the sides, 16 mm above, and
 /// 10 mm below the footer.
 inline testing::AssertionResult is_within_margins(const PdfText& pdf) {
   constexpr double mm = 72.0 / 25.4;

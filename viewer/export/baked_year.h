@@ -26,7 +26,7 @@ struct BakedYear {
   Eigen::Array3f white{};  ///< light of a sun of 1 lx
   double ground_reflectance = 0.2;
   Eigen::Vector3d up = Eigen::Vector3d::UnitZ(), north = Eigen::Vector3d::UnitY();
-  // Of the weather.
+  // Place and calendar of the weather.
   std::string place{};
   double latitude = 0.0, longitude = 0.0, hours_east = 0.0;
   bool is_leap_year = false;

@@ -205,7 +205,7 @@ int sphere_of(const PatchMesh& mesh, int element) {
   return is_sphere ? static_cast<int>(grid - mesh.round_grids.data()) : -1;
 }
 
-/// Whether other surfaces cover all faces of a chart.
+/// True if other surfaces cover all faces of a chart.
 bool is_covered(const BakedModel& model, const ElementCaster& caster, const LightmapChart& chart) {
   const PatchMesh& mesh = caster.mesh();
   return std::ranges::all_of(chart.faces, [&](int f) {

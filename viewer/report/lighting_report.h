@@ -50,7 +50,7 @@ struct CalculationSurface {
   LuxGrid grid{};
   /// All light. Electric light is maintained: the initial one times the maintenance factor.
   LuxField field{};
-  /// Its two parts, if LightContent::apart: maintained electric light, and daylight.
+  /// The two parts of `field`, if LightContent::apart: maintained electric light, and daylight.
   std::optional<LuxField> electric{}, daylight{};
   PlanLines lines{};  ///< of the room and of what stands in it, for the plan
 };

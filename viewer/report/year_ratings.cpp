@@ -24,7 +24,7 @@ struct FigureWords {
   int digits;
 };
 
-// In the order of DaylightFigure.
+// Names in the order of DaylightFigure.
 constexpr std::array figure_words = {
     FigureWords{"sDA300_50", "sDA<sub>300/50%</sub>", "%", 1},
     FigureWords{"ASE1000_250", "ASE<sub>1000,250h</sub>", "%", 1},

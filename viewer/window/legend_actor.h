@@ -30,7 +30,7 @@ class LegendActor {
   LegendActor(const LegendActor&) = delete;
   LegendActor& operator=(const LegendActor&) = delete;
 
-  /// To be called once; the renderer must not outlive the legend's last drawing.
+  /// Adds the legend to a renderer, once; the renderer must not outlive the legend's last drawing.
   void add_to(vtkRenderer* renderer);
   /// Shows a scale, or nothing.
   void set(const std::optional<LegendContent>& content);

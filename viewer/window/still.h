@@ -28,7 +28,7 @@ class Still {
   Still(const Still&) = delete;
   Still& operator=(const Still&) = delete;
 
-  /// To be called before the text is added, which is then drawn over the picture.
+  /// Adds the picture to a renderer. Text that is added later is drawn over the picture.
   void add_to(vtkRenderer* renderer) const;
   /// Begins to render the camera's picture, of the camera's size, with `scale` as the factors from
   /// linear RGB to display values. Copies the parts of the solution that rendering needs, again

@@ -83,7 +83,7 @@ bool is_preview(std::string_view value) {
   return width == 0 || height == 0 ? pixels == 0 : pixels % width == 0 && pixels / width == height;
 }
 
-// Whether OpenEXR reads as many bytes of a value as the file says, which it does not compare, and
+// True if OpenEXR reads as many bytes of a value as the file says, which it does not compare, and
 // takes no more memory than these.
 bool is_sound(std::string_view type, std::string_view value) {
   if (const auto size = bytes_of(type)) return value.size() == *size;

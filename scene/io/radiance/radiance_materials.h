@@ -93,7 +93,7 @@ class RadianceMaterials {
   std::map<int, std::optional<Material>> known_;
   // Means over each picture, of functions of its r, g and b.
   std::map<std::filesystem::path, std::optional<Spectrum>> means_;
-  // By definition; null for patterns that depend on more than direction.
+  // Patterns by definition; null for those that depend on more than direction.
   std::map<int, std::unique_ptr<const DirectionPattern>> by_direction_;
   NumberedNames names_;
   std::map<std::string, std::vector<int>, std::less<>> materials_of_name_;  // in the scene

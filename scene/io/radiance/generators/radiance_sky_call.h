@@ -37,7 +37,7 @@ class SkyCall {
   std::size_t next_ = 1;  // after the program
 };
 
-/// When and where, or the sun's angles themselves. Longitudes are west of Greenwich, as in both
+/// Time and place, or the sun's angles themselves. Longitudes are west of Greenwich, as in both
 /// programs, and the default is near San Francisco.
 struct SunGiven {
   int month = 0, day = 0;

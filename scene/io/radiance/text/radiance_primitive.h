@@ -34,8 +34,8 @@ struct RadiancePrimitive {
   std::vector<std::string> strings{};
   std::vector<double> reals{};
   RadianceLocation location{};
-  /// From the coordinates of a pattern's formulas to those of the scene: a rotation or mirroring, a
-  /// uniform scaling and a translation.
+  /// Map from the coordinates of a pattern's formulas to those of the scene: a rotation or
+  /// mirroring, a uniform scaling and a translation.
   Eigen::Affine3d frame = Eigen::Affine3d::Identity();
 
   RadianceKind kind() const { return radiance_kind(type); }
