@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "radiosity/gather/vertex_points.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -54,8 +55,8 @@ std::vector<int> sample_vertices(const PatchMesh& mesh, int samples, int checks)
 // The vertices as points that have the random numbers of their own.
 class VertexList {
  public:
-  VertexList(const PatchMesh& mesh, std::vector<int> vertices)
-      : points_(mesh), vertices_(std::move(vertices)) {}
+  VertexList(const ElementCaster& caster, std::vector<int> vertices)
+      : points_(vertex_points(caster)), vertices_(std::move(vertices)) {}
 
   int size() const { return static_cast<int>(vertices_.size()); }
   int vertex(int i) const { return vertices_[static_cast<std::size_t>(i)]; }
@@ -69,7 +70,7 @@ class VertexList {
   }
 
  private:
-  VertexGatherPoints points_;
+  GatherPoints points_;
   std::vector<int> vertices_;
 };
 
@@ -262,7 +263,7 @@ YearBasis find_year_basis(const DaylightModel& model, std::span<const SkyHour> h
       .sky = SkyPatches(options.sky_subdivision, model.sky().up(), model.sky().north()),
       .effort = options.view};
   const Eigen::Index bands = model.scene().bands.count();
-  const VertexList samples(mesh, sample_vertices(mesh, options.samples, options.checks));
+  const VertexList samples(model.caster(), sample_vertices(mesh, options.samples, options.checks));
   SampledYear year = light_of_year(model, seen, samples, hours, ground_reflectance);
   const Eigen::ArrayXd brightness = make_relative(year.samples);
   const Eigen::MatrixXd vectors = leading_vectors(year.samples.topRows(options.samples * bands),
@@ -290,7 +291,7 @@ YearBasis find_year_basis(const DaylightModel& model, std::span<const SkyHour> h
     report(model.options().progress, "vertices", static_cast<double>(first) / mesh.vertex_count());
     std::vector<int> numbers;
     for (int v = first; v < std::min(first + block, mesh.vertex_count()); ++v) numbers.push_back(v);
-    const VertexList vertices(mesh, std::move(numbers));
+    const VertexList vertices(model.caster(), std::move(numbers));
     basis.light.middleRows(first, vertices.size()) =
         model.gather(B, vertices.points(), options.rays) +
         dome_at(model, seen, vertices, luminance);

@@ -16,8 +16,6 @@ namespace lightwell {
 namespace {
 
 constexpr int point_count = 4;
-constexpr double widest_covered =
-    0.15;  // width of a gap as a share of gap_sizes(), as for GapLight
 constexpr int gap_rays = 64;
 constexpr std::uint64_t gap_replica = 4000;
 
@@ -78,7 +76,7 @@ bool lies_in_gap(const ElementCaster& caster, int element, double size) {
   for (int k = 0; k < point_count; ++k) {
     rays[static_cast<std::size_t>(k)] = {.origin = position(mesh, inner_point(mesh, element, k)),
                                          .direction = normal,
-                                         .t_max = widest_covered * size,
+                                         .t_max = widest_gap * size,
                                          .origin_group = mesh.facet[element]};
   }
   caster.closest_elements(rays, hits);

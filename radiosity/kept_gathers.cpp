@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "radiosity/gather/patch_power.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/refine/even_out_noise.h"
 #include "radiosity/refine/shared_gathers.h"
-#include "radiosity/vertex_points.h"
 
 namespace lightwell {
 namespace {

@@ -7,10 +7,11 @@
 #include "radiosity/accuracy.h"
 #include "radiosity/even_caustics.h"
 #include "radiosity/gather/patch_power.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/patch_light.h"
+#include "radiosity/point_lists.h"
 #include "radiosity/refine/refine_solution.h"
 #include "radiosity/refine/shared_gathers.h"
-#include "radiosity/vertex_points.h"
 
 namespace lightwell {
 namespace {

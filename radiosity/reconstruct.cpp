@@ -6,9 +6,9 @@
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/part_balance.h"
 #include "radiosity/patch_light.h"
+#include "radiosity/point_lists.h"
 #include "radiosity/refine/gather_noise.h"
 #include "radiosity/refine/shared_gathers.h"
-#include "radiosity/vertex_points.h"
 
 namespace lightwell {
 namespace {

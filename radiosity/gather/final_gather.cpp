@@ -6,14 +6,12 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "mesh/patches/inset.h"
 #include "mesh/patches/patch_patterns.h"
-#include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/patch_textures.h"
 #include "mesh/patches/pictured_emission.h"
-#include "mesh/patches/round_grid.h"
 #include "mesh/patches/translucency.h"
 #include "radiosity/gather/hemisphere_gather.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/journal/journal_phase.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
@@ -245,49 +243,6 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
                                const RadiositySolution& solution) {
   return gatherable_radiosity(mesh, direct_light, solution.irradiance(),
                               solution.direct_irradiance);
-}
-
-VertexGatherPoints::VertexGatherPoints(const PatchMesh& mesh)
-    : mesh_(mesh), element_(vertex_elements(mesh)) {}
-
-GatherPoint VertexGatherPoints::operator[](int vertex) const {
-  // Share of the way to the element's centre: far enough for the float rounding of a room-sized
-  // scene, and near enough to stand for the vertex.
-  constexpr double share = 0.02;
-  const int e = element_[vertex];
-  if (e < 0) return {};
-  const PatchPoint center = element_center(mesh_, e);
-  const Eigen::Vector3d p = mesh_.position(vertex),
-                        inwards = inset_share(mesh_, e, share) * (center.position - p);
-  // The element of a round shape is a chord of it, so the point is moved to the surface.
-  if (const RoundGrid* grid = round_grid_of(mesh_, mesh_.facet[e])) {
-    const Eigen::Vector3d at = nearest_on(grid->shape, p + inwards);
-    return {.position = at,
-            .normal = round_normal(mesh_, *grid, mesh_.patch[e], at),
-            .facet = mesh_.facet[e]};
-  }
-  // Facets that meet smoothly have a common normal. The point lies so far above them that no facet
-  // hides light from above its horizon. Lamps are left out: a point before one would receive the
-  // lamp's own light.
-  constexpr double flat = 1.0 - 4e-6;  // cosine of 0.16 degrees
-  const Eigen::Vector3d& of_all = mesh_.vertex_normal[vertex];
-  if (!(of_all.dot(center.normal) >= flat) && !(mesh_.emission.row(mesh_.patch[e]) > 0.0f).any()) {
-    return {.position = p + inwards + inwards.norm() * of_all, .normal = of_all};
-  }
-  return {.position = p + inwards, .normal = center.normal, .facet = mesh_.facet[e]};
-}
-
-Eigen::Vector3d VertexGatherPoints::center(int vertex) const {
-  const int e = element_[vertex];
-  return e < 0 ? mesh_.position(vertex) : element_center(mesh_, e).position;
-}
-
-std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
-  const VertexGatherPoints at(mesh);
-  std::vector<GatherPoint> points;
-  points.reserve(static_cast<std::size_t>(mesh.vertex_count()));
-  for (int v = 0; v < mesh.vertex_count(); ++v) points.push_back(at[v]);
-  return points;
 }
 
 }  // namespace lightwell

@@ -121,24 +121,4 @@ BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
                                const RadiositySolution& solution);
 
-/// A gather point for every vertex: 2 % of the way from the vertex to the centre of one of its
-/// elements, or more (see inset_share), so that the point lies on no edge, with the facet and the
-/// normal of that element. On round shapes the point lies on the surface. If the vertex is shared
-/// by facets that meet smoothly, the point lies as far above them as well, with their common normal
-/// and no facet.
-std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
-
-/// The points of vertex_gather_points, each made on demand. Keeps a reference to the mesh.
-class VertexGatherPoints {
- public:
-  explicit VertexGatherPoints(const PatchMesh& mesh);
-  GatherPoint operator[](int vertex) const;
-  /// The centre of the element that the point of the vertex lies in; the vertex itself without one.
-  Eigen::Vector3d center(int vertex) const;
-
- private:
-  const PatchMesh& mesh_;
-  std::vector<int> element_;  // vertex_elements()
-};
-
 }  // namespace lightwell

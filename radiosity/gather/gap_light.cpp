@@ -13,11 +13,6 @@
 namespace lightwell {
 namespace {
 
-// Greatest width of a gap as a share of gap_sizes(). (Elements that were refined in a gap
-// are small, and still larger than the width over which light falls off.)
-constexpr double widest_gap = 0.15;
-// Greatest cosine between the normals of surfaces that face each other.
-constexpr double facing = -0.5;
 // A path that is still in the gap after so many bounces reads the mesh. Of surfaces that reflect 90
 // % one path in a thousand is, and of white ones, between which light is alike everywhere, many.
 constexpr int most_bounces = 64;
@@ -60,27 +55,6 @@ float share_aimed(float reflectance) {
 }
 
 }  // namespace
-
-GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex,
-                           const Eigen::Vector3d& center, const GatherPoint& point) {
-  if (point.facet < 0) return point;
-  const Eigen::Vector3d way = point.position - vertex;
-  const double to_center = (center - vertex).norm();
-  constexpr double narrow = 0.3, nearest = 1e-4;  // shares of the way to the element's centre
-  if (!(to_center > 0.0 && way.norm() > 0.0)) return point;
-  const Ray ray{.origin = point.position,
-                .direction = point.normal,
-                .t_max = narrow * to_center,
-                .origin_group = point.facet};
-  ElementHit hit;
-  caster.closest_elements({&ray, 1}, {&hit, 1});
-  if (hit.element < 0 || !(hit.t > nearest * to_center)) return point;
-  const Eigen::Vector3d normal = element_center(caster.mesh(), hit.element).normal;
-  if (std::abs(normal.dot(point.normal)) < -facing) return point;
-  GatherPoint moved = point;
-  moved.position = vertex + std::max(1.0, hit.t / way.norm()) * way;
-  return moved;
-}
 
 Eigen::Vector3d GapLight::normal_towards(const Ray& ray, const ElementHit& hit) const {
   const Eigen::Vector3d normal = element_center(lit_.mesh(), hit.element).normal;

@@ -19,13 +19,6 @@
 
 namespace lightwell {
 
-/// The gather point of a vertex, a little way from `vertex` towards the `center` of an element.
-/// The point is moved further inside, to as far from the vertex as a gap is wide, if another
-/// surface is above the point, nearer than 0.3 of the whole way: light falls off steeply where a
-/// gap begins, and light at its brink would be interpolated far inside.
-GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex,
-                           const Eigen::Vector3d& center, const GatherPoint& point);
-
 /// Aims of the rays of paths in a gap, beside cosine-distributed ones.
 struct GapAims {
   const GapExits* exits = nullptr;   ///< of the point that the path begins at; null: not known

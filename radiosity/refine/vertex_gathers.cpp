@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "radiosity/gather/gap_light.h"
 #include "radiosity/gather/patch_power.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/refine/channel_light.h"
 #include "radiosity/refine/error_reference.h"
 #include "radiosity/refine/gather_noise.h"
@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t first_pilot_replica = 1000;
 
 // Distance of vertices from their elements' corners, as a share of the way to the centre of an
-// element of the deepest level (see vertex_gather_points).
+// element of the deepest level (see VertexGatherPoints).
 constexpr double finest_inset = 0.02;
 
 std::vector<int> vertices_of(const PatchMesh& mesh) {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mesh/build_patches.h"
-#include "radiosity/gather/final_gather.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/refine/even_out_noise.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
@@ -17,7 +17,7 @@ namespace lightwell {
 namespace {
 
 // Light of caustics at vertices; 0 for none.
-BandArray caustic_light(const PatchMesh& mesh, const VertexGatherPoints& points,
+BandArray caustic_light(const PatchMesh& mesh, const GatherPoints& points,
                         const CausticMap* caustics) {
   BandArray light = BandArray::Zero(mesh.vertex_count(), mesh.reflectance.cols());
   if (!caustics) return light;
@@ -51,7 +51,7 @@ std::vector<int> sending_vertices(const PatchMesh& mesh) {
 // The first vertex, for each of `vertices`, that lies in the same cell of a grid and faces alike.
 // Furniture of small facets has many vertices in a cell, which even indirect light need not tell
 // apart.
-std::vector<int> first_in_cell(const VertexGatherPoints& points, std::span<const int> vertices,
+std::vector<int> first_in_cell(const GatherPoints& points, std::span<const int> vertices,
                                double cell) {
   if (!(cell > 0.0)) return {vertices.begin(), vertices.end()};
   constexpr double turn = 0.5;  // of a coordinate of the normal: about 30 degrees
@@ -76,7 +76,7 @@ class Sketcher {
       : lit_(lit),
         lights_(lights),
         progress_(progress),
-        points_(lit.mesh()),
+        points_(vertex_points(lit.caster)),
         vertices_(sending_vertices(lit.mesh())),
         first_(first_in_cell(points_, vertices_, cell)),
         direct_(BandArray::Zero(lit.mesh().vertex_count(), lit.scene.bands.count())),
@@ -100,7 +100,7 @@ class Sketcher {
   const LitScene& lit_;
   const VirtualLights& lights_;
   const Progress& progress_;
-  VertexGatherPoints points_;
+  GatherPoints points_;
   std::vector<int> vertices_;
   std::vector<int> first_;  // for each of vertices_, the one whose indirect light holds for it
   BandArray direct_, from_lights_, from_rays_, caustics_;

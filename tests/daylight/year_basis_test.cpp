@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "daylight/year.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/refine/interpolated_vertices.h"
 #include "scene/errors.h"
 #include "tests/daylight/daylight_rooms.h"

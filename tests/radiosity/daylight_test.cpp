@@ -10,6 +10,7 @@
 #include "mesh/build_patches.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/solve.h"
 #include "scene/parallel.h"
 #include "tests/radiosity/test_scenes.h"

@@ -2,6 +2,7 @@
 
 #include "mesh/build_patches.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/patch_light.h"
 #include "tests/radiosity/test_scenes.h"
 

@@ -10,6 +10,7 @@
 #include "mesh/build_patches.h"
 #include "radiosity/gather/caustic_irradiance.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/paths/caustic_photons.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solve.h"

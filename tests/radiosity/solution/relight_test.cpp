@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "radiosity/gather/vertex_points.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"

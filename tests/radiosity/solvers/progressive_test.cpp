@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "mesh/build_patches.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/solve.h"
 #include "radiosity/solvers/solve_channels.h"
 #include "radiosity/solvers/solve_radiosity.h"

@@ -8,10 +8,6 @@
 
 namespace lightwell {
 
-/// The gather points of all vertices of a caster's mesh (see VertexGatherPoints), within the gap
-/// where a vertex lies in one. Keeps a reference to `caster`.
-GatherPoints vertex_points(const ElementCaster& caster);
-
 /// The points of some vertices, with the random numbers that they have among `all`. Keeps
 /// references to both.
 GatherPoints points_of_vertices(const GatherPoints& all, const std::vector<int>& vertices);

@@ -1,18 +1,9 @@
-#include "radiosity/vertex_points.h"
-
-#include <memory>
+#include "radiosity/point_lists.h"
 
 #include "mesh/patches/patch_sampler.h"
-#include "radiosity/gather/gap_light.h"
+#include "radiosity/gather/vertex_points.h"
 
 namespace lightwell {
-
-GatherPoints vertex_points(const ElementCaster& caster) {
-  const auto all = std::make_shared<VertexGatherPoints>(caster.mesh());
-  return {caster.mesh().vertex_count(), [all, &caster](int v) {
-            return moved_into_gap(caster, caster.mesh().position(v), all->center(v), (*all)[v]);
-          }};
-}
 
 GatherPoints points_of_vertices(const GatherPoints& all, const std::vector<int>& vertices) {
   return {static_cast<int>(vertices.size()), [&all, &vertices](int i) {
