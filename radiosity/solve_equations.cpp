@@ -97,6 +97,8 @@ SolvedEquations solve_equations(const EquationTask& task, const SolveOptions& op
   FormFactorOptions form_factor_options = options.form_factors;
   form_factor_options.run.progress = options.run.progress;
   form_factor_options.rays_per_patch = rays_per_patch(options);
+  // Gathers at vertices read the light of many patches at once.
+  form_factor_options.has_rays_by_area = true;
   if (options.run.journal) form_factor_options.run.journal = options.run.journal;
   form_factor_options.run.processes = options.run.processes;
   const int bands = scene.bands.count();

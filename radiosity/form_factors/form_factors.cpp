@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 
+#include "mesh/patches/area_shares.h"
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/form_factors/analytic_exchange.h"
 #include "radiosity/form_factors/emitter_exchange.h"
@@ -69,12 +71,13 @@ void add_form_factor_inputs(Fingerprint& print, const Scene& scene, const Direct
     print.add(transmissivity);
   }
   // Memory and the run decide no bit of a result.
-  const auto& [method, rays_per_patch, target_error, most_rays_per_patch, rays_per_emitter,
-               max_specular_depth, emitter_points, shadows, portals, hemicube_resolution,
-               enforce_closure, memory, run] = options;
+  const auto& [method, rays_per_patch, has_rays_by_area, target_error, most_rays_per_patch,
+               rays_per_emitter, max_specular_depth, emitter_points, shadows, portals,
+               hemicube_resolution, enforce_closure, memory, run] = options;
   const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share, many_lights] = shadows;
   print.add(method);
   print.add(rays_per_patch);
+  print.add(has_rays_by_area);
   print.add(target_error);
   print.add(most_rays_per_patch);
   print.add(rays_per_emitter);
@@ -155,9 +158,15 @@ class Estimator {
                                        : patch_rays;
   }
 
-  // Rays per patch: more for emitters in scenes with mirrors or glass.
+  // Rays per patch: `base`, or fewer by area, and more for emitters in scenes with mirrors or
+  // glass.
   std::vector<int> rays_of(const EmitterExchange& emitters, int base) const {
+    constexpr int most_times = 16;  // fewer
     std::vector<int> counts(static_cast<std::size_t>(mesh_.patch_count()), base);
+    if (options_.has_rays_by_area && !(options_.target_error > 0.0)) {
+      const std::span area(mesh_.area.data(), static_cast<std::size_t>(mesh_.area.size()));
+      counts = samples_by_area(area, base, most_times);
+    }
     if (!paths_.has_specular()) return counts;
     for (int i = 0; i < mesh_.patch_count(); ++i) {
       const int e = emitters.emitter_of(i);
@@ -165,7 +174,7 @@ class Estimator {
       const double share = mesh_.area[i] / direct_light_.emitters()[e].area;
       const auto wanted = static_cast<unsigned>(std::ceil(share * options_.rays_per_emitter));
       const auto even = static_cast<int>(std::bit_ceil(std::max(1u, wanted)));
-      counts[i] = std::max(base, even);
+      counts[i] = std::max(counts[i], even);
     }
     return counts;
   }

@@ -9,6 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "mesh/patches/area_shares.h"
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/paths/mirrored_shares_of_patches.h"
 #include "scene/coat.h"
@@ -220,14 +221,18 @@ class Collector {
     }
   }
 
-  // Light of sky and sun at points all over each patch, straight or through clear panes. The
-  // emitted power includes all of it but mirrored light, which counts where it arrives.
+  // Light of sky and sun at points all over each patch, straight or through clear panes; at fewer
+  // points of small patches, whose light counts for less. The emitted power includes all of it but
+  // mirrored light, which counts where it arrives.
   void receive(const Scene& scene, const DirectLight& direct_light, const Progress& progress) {
     const PatchMesh& mesh = caster_.mesh();
     const FreeSource* dome = direct_light.dome();
     const bool has_specular = paths_.has_specular() && dome && dome->is_on();
-    constexpr int slice = 256, points = 16, rays = 128;
-    const SobolPoints at_points(points), at_rays(rays);
+    constexpr int slice = 256, most_points = 16, fewest_points = 2, rays = 128;
+    const SobolPoints at_points(most_points), at_rays(rays);
+    const std::vector<int> points_of =
+        samples_by_area({mesh.area.data(), static_cast<std::size_t>(mesh.area.size())}, most_points,
+                        most_points / fewest_points);
     BandArray E = BandArray::Zero(mesh.patch_count(), from_afar_.rows());
     for (int first = 0; first < mesh.patch_count(); first += slice) {
       report(progress, "daylight", static_cast<double>(first) / mesh.patch_count());
@@ -239,6 +244,7 @@ class Collector {
           const PatchSampler sampler(mesh, i);
           const auto key =
               random_key(static_cast<std::uint64_t>(i), RandomPurpose::free_source_points);
+          const int points = points_of[static_cast<std::size_t>(i)];
           for (int p = 0; p < points; ++p) {
             const Eigen::Array4f u = at_points.point(p, key);
             const PatchPoint at = sampler.point(u[0], u[1]);

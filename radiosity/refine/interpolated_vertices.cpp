@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <numeric>
 
+#include "mesh/patches/area_shares.h"
 #include "radiosity/gather/patch_power.h"
 
 namespace lightwell {
@@ -125,20 +124,6 @@ std::vector<double> vertex_areas(const PatchMesh& mesh) {
     for (int c = 0; c < n; ++c) area[mesh.corners[e][c]] += mesh.element_area[e] / n;
   }
   return area;
-}
-
-double typical_area(std::span<const double> area) {
-  std::vector<double> sorted(area.begin(), area.end());
-  std::sort(sorted.begin(), sorted.end(), std::greater<>());
-  const double total = std::accumulate(sorted.begin(), sorted.end(), 0.0);
-  double typical = 0.0, larger = 0.0;
-  // About half; elements of a regular grid do not add up to this share, so rounding cannot decide.
-  constexpr double about_half = 0.47;
-  for (std::size_t i = 0; i < sorted.size() && larger < about_half * total; ++i) {
-    typical = sorted[i];
-    larger += sorted[i];
-  }
-  return typical;
 }
 
 std::vector<int> share_rays(std::span<const double> area, int rays) {

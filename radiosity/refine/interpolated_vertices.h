@@ -64,10 +64,6 @@ BandArray spread_rows(const BandArray& values, std::span<const int> row, Eigen::
 /// corners.
 std::vector<double> vertex_areas(const PatchMesh& mesh);
 
-/// The area, m^2, of the vertices that are typical: the least area of the largest ones that stand
-/// for about half of all area. 0 without any area.
-double typical_area(std::span<const double> area);
-
 /// Rays of each vertex by the area that the vertex stands for. Rays proportional to the square root
 /// of the area make the mean noise over all area least for the work. Vertices of typical area, the
 /// large ones that make up about half of all area, take `rays`; others take `rays` times a power of

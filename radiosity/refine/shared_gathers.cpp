@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "mesh/patches/area_shares.h"
 #include "mesh/patches/translucency.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/refine/error_reference.h"

@@ -23,6 +23,11 @@ bool is_start_large(const RefinedElements& elements, const RefineOptions& refine
   return most_elements(elements, refine) < much_room * elements.element_count();
 }
 
+// The noise that a vertex of a `fewness` bears, over that of a typical one.
+int noise_multiple(double fewness) {
+  return fewness <= 3.0 ? 1 : fewness <= 6.0 ? 2 : fewness <= 12.0 ? 4 : 8;
+}
+
 }  // namespace
 
 VertexEffort::VertexEffort(const RefinedElements& elements, const GatherOptions& gather,
@@ -115,9 +120,9 @@ NoiseGoal VertexEffort::sky_noise(int vertex) const {
 
 // Small elements bear more noise of the sky, and a part's typical ones, on which it would be seen,
 // none: vertices at corners of a grid, with a quarter of the area of others, have a fineness of 2.
-// Twice and four times the noise begin where a vertex has a ninth and a 36th of the typical area: a
-// third and a sixth of the edge, so that the multiple times the edge stays below that of typical
-// ones.
+// Twice, four and eight times the noise begin where a vertex has a ninth, a 36th and a 144th of the
+// typical area: a third, a sixth and a twelfth of the edge, so that the multiple times the edge
+// stays below that of typical ones.
 void VertexEffort::make_room() {
   const int count = elements_.vertex_count();
   // A new vertex casts as many rays as the ends between which it lies: with fewer, noise would hide
@@ -136,7 +141,7 @@ void VertexEffort::make_room() {
   for (int v = static_cast<int>(sky_noise_multiple_.size()); v < count; ++v) {
     const double few = fewness(v);
     const bool is_noisy = has_noisy_sky_[static_cast<std::size_t>(part_of(v))] != 0;
-    sky_noise_multiple_.push_back(!is_noisy || few <= 3.0 ? 1 : few <= 6.0 ? 2 : 4);
+    sky_noise_multiple_.push_back(static_cast<std::uint8_t>(is_noisy ? noise_multiple(few) : 1));
   }
 }
 

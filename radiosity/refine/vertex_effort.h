@@ -59,7 +59,7 @@ class VertexEffort {
   int sky_noise_multiple(int vertex) const {
     return sky_noise_multiple_[static_cast<std::size_t>(vertex)];
   }
-  static constexpr int multiples[] = {1, 2, 4};
+  static constexpr int multiples[] = {1, 2, 4, 8};
   /// A vertex whose sky noise has a multiple of 1 now, and its multiple of before.
   struct Sharpened {
     int vertex = 0;

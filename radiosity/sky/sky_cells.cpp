@@ -55,15 +55,20 @@ Eigen::Vector3d dome_direction(int cell, double u, double v) {
           r * (sine * middle.x() + cosine * middle.y()), z};
 }
 
-// Directions of a grid of n x n squares in each cell, cell after cell: the middles of the squares,
-// or the corners of the cells for n = 2.
-std::vector<Eigen::Vector3f> dome_grid(int n) {
-  std::vector<Eigen::Vector3f> grid;
-  grid.reserve(SkyCells::count * static_cast<std::size_t>(n * n));
-  const auto at = [n](int i) { return n == 2 ? static_cast<double>(i) : (i + 0.5) / n; };
+// Directions of a grid of n x n squares in one cell, a row for each: the middles of the squares, or
+// the corners of the cell for n = 2.
+template <int n>
+using CellDirections = Eigen::Matrix<float, n * n, 3>;
+
+// The directions of all cells.
+template <int n>
+std::vector<CellDirections<n>> dome_grid() {
+  std::vector<CellDirections<n>> grid(SkyCells::count);
+  const auto at = [](int i) { return n == 2 ? static_cast<double>(i) : (i + 0.5) / n; };
   for (int c = 0; c < static_cast<int>(SkyCells::count); ++c) {
     for (int i = 0; i < n * n; ++i) {
-      grid.push_back(dome_direction(c, at(i % n), at(i / n)).cast<float>());
+      grid[static_cast<std::size_t>(c)].row(i) =
+          dome_direction(c, at(i % n), at(i / n)).template cast<float>().transpose();
     }
   }
   return grid;
@@ -133,6 +138,7 @@ void SkyCells::tabulate(const Sky& sky, int c) {
 
 SkyCells::Sample SkyCells::sample(int cell, double u, double v) const {
   // The entry of a running sum that x in [0,1) falls into; x becomes the place within the entry.
+  // Returns the entry and its step.
   const auto pick = [](const float* cdf, double& x) {
     const double wanted = x * static_cast<double>(cdf[fine - 1]);
     const auto limit = static_cast<float>(wanted);
@@ -141,14 +147,12 @@ SkyCells::Sample SkyCells::sample(int cell, double u, double v) const {
     const double low = at == 0 ? 0.0 : static_cast<double>(cdf[at - 1]);
     const double step = static_cast<double>(cdf[at]) - low;
     x = step > 0.0 ? std::clamp((wanted - low) / step, 0.0, 1.0) : 0.5;
-    return at;
+    return std::pair(at, step);
   };
   const auto c = static_cast<std::size_t>(cell);
-  const int row = pick(row_cdf_.data() + c * fine, v);
-  const std::size_t first = c * fine * fine;
-  const int column = pick(column_cdf_.data() + first + static_cast<std::size_t>(row * fine), u);
-  const double L =
-      static_cast<double>(radiance_[first + static_cast<std::size_t>(row * fine + column)]);
+  const int row = pick(row_cdf_.data() + c * fine, v).first;
+  const std::size_t first_of_row = (c * fine + static_cast<std::size_t>(row)) * fine;
+  const auto [column, L] = pick(column_cdf_.data() + first_of_row, u);
   return {.direction = direction(cell, (column + u) / fine, (row + v) / fine),
           .density = L / power_[c]};
 }
@@ -179,23 +183,17 @@ double SkyCells::density(int cell, const Eigen::Vector3d& direction) const {
 // int L cos dw over the part of a cell that the horizon may cut.
 float SkyCells::cut_irradiance(int c, const Eigen::Vector3f& normal, float whole) const {
   // Made once, for all points.
-  static const std::vector<Eigen::Vector3f> corners = dome_grid(2);
-  static const std::vector<Eigen::Vector3f> middles = dome_grid(fine);
+  static const std::vector<CellDirections<2>> corners = dome_grid<2>();
+  static const std::vector<CellDirections<fine>> middles = dome_grid<fine>();
+  const auto cell = static_cast<std::size_t>(c);
   const Eigen::Vector3f n = axes_.transpose().cast<float>() * normal;
   constexpr float rounding = 1e-6f;
-  const auto of_cell = corners.begin() + std::ptrdiff_t{4} * c;
-  const bool is_cut = std::any_of(of_cell, of_cell + 4, [&](const Eigen::Vector3f& corner) {
-    return corner.dot(n) < -rounding;
-  });
-  if (!is_cut) return whole;
+  if (!((corners[cell] * n).minCoeff() < -rounding)) return whole;
   constexpr double fine_angle = 4.0 * pi / (static_cast<double>(count) * fine * fine);
-  const std::size_t first = static_cast<std::size_t>(c) * fine * fine;
-  double sum = 0.0;
-  for (std::size_t i = first; i < first + fine * fine; ++i) {
-    const float cosine = middles[i].dot(n);
-    if (cosine > 0.0f) sum += static_cast<double>(cosine * radiance_[i]);
-  }
-  return static_cast<float>(sum * fine_angle);
+  const Eigen::Map<const Eigen::Array<float, fine * fine, 1>> L(radiance_.data() +
+                                                                cell * fine * fine);
+  const float sum = ((middles[cell] * n).array().max(0.0f) * L).sum();
+  return static_cast<float>(static_cast<double>(sum) * fine_angle);
 }
 
 Eigen::ArrayXf SkyCells::irradiances(const Eigen::Vector3f& normal) const {

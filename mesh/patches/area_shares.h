@@ -1,0 +1,18 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+namespace lightwell {
+
+/// The area, m^2, of the patches or vertices that are typical: the least area of the largest ones
+/// that stand for about half of all area. 0 without any area.
+double typical_area(std::span<const double> area);
+
+/// Number of samples of each patch, whose areas are given, where `samples` serve a typical one. The
+/// noise of a patch's power is proportional to area / sqrt(samples), so the noise of all power is
+/// least for the work with samples in proportion to area. Patches of a quarter of typical_area()
+/// and more take `samples`; others take `samples` over a power of two, `most_times` at most.
+std::vector<int> samples_by_area(std::span<const double> area, int samples, int most_times);
+
+}  // namespace lightwell
