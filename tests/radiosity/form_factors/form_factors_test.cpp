@@ -208,6 +208,25 @@ TEST(FormFactors, PerfectMirrorPassesEverythingOn) {
 }
 
 // Rows of few rays have contradictory targets; no factor may grow without bound.
+// Walls of four patches of 0.25 m^2 each, and a block of 5 cm, whose faces have a hundredth of that
+// area: 512 rays, and a sixteenth of them.
+TEST(FormFactors, SmallPatchesMayCastFewerRays) {
+  Scene scene;
+  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  const std::array all{grey, grey, grey, grey, grey, grey};
+  test::add_box(scene, {0, 0, 0}, {1, 1, 1}, all, true);
+  test::add_box(scene, {0.5, 0.5, 0.5}, {0.55, 0.55, 0.55}, all, false);
+  const Solved s = cast(
+      scene,
+      {.method = FormFactorMethod::ray_cast, .rays_per_patch = 512, .has_rays_by_area = true}, 0.5);
+  for (int i = 0; i < s.mesh.patch_count(); ++i) {
+    const float rays = s.mesh.area[i] > 0.1 ? 512.0f : 32.0f;
+    EXPECT_EQ(s.report.count_error[static_cast<std::size_t>(i)], 0.5f / std::sqrt(rays));
+  }
+  EXPECT_LT(worst_closure(s), 1e-6);      // some tens of float entries per row
+  EXPECT_LT(worst_reciprocity(s), 1e-6);  // two float roundings
+}
+
 TEST(FormFactors, FewRaysAmongMirrorsStayFiniteShares) {
   int m = 0;
   Scene scene = test::room_with_mirror(0.9f, &m);
