@@ -6,6 +6,8 @@
 #include <functional>
 #include <numeric>
 
+#include "scene/scenery_box.h"
+
 namespace lightwell {
 
 double typical_area(std::span<const double> area) {
@@ -35,6 +37,25 @@ std::vector<int> samples_by_area(std::span<const double> area, int samples, int 
     const double halvings = std::floor(std::log2(times) + between);
     const double power = std::min(std::exp2(halvings), static_cast<double>(most_times));
     counts[i] = std::max(1, samples / static_cast<int>(power));
+  }
+  return counts;
+}
+
+std::vector<int> samples_by_area(const Scene& scene, const PatchMesh& mesh, int samples,
+                                 int most_times) {
+  const std::vector<char> is_near = near_scenery(scene).is_near;
+  std::vector<int> near;
+  std::vector<double> area;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const auto facet = static_cast<std::size_t>(mesh.facet[mesh.first_element[p]]);
+    if (is_near[facet] == 0) continue;
+    near.push_back(p);
+    area.push_back(mesh.area[p]);
+  }
+  const std::vector<int> of_near = samples_by_area(area, samples, most_times);
+  std::vector<int> counts(static_cast<std::size_t>(mesh.patch_count()), samples);
+  for (std::size_t i = 0; i < near.size(); ++i) {
+    counts[static_cast<std::size_t>(near[i])] = of_near[i];
   }
   return counts;
 }

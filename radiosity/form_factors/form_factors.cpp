@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <span>
 #include <stdexcept>
 
 #include "mesh/patches/area_shares.h"
@@ -164,8 +163,7 @@ class Estimator {
     constexpr int most_times = 16;  // fewer
     std::vector<int> counts(static_cast<std::size_t>(mesh_.patch_count()), base);
     if (options_.has_rays_by_area && !(options_.target_error > 0.0)) {
-      const std::span area(mesh_.area.data(), static_cast<std::size_t>(mesh_.area.size()));
-      counts = samples_by_area(area, base, most_times);
+      counts = samples_by_area(scene_, mesh_, base, most_times);
     }
     if (!paths_.has_specular()) return counts;
     for (int i = 0; i < mesh_.patch_count(); ++i) {

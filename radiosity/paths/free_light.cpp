@@ -231,8 +231,7 @@ class Collector {
     constexpr int slice = 256, most_points = 16, fewest_points = 2, rays = 128;
     const SobolPoints at_points(most_points), at_rays(rays);
     const std::vector<int> points_of =
-        samples_by_area({mesh.area.data(), static_cast<std::size_t>(mesh.area.size())}, most_points,
-                        most_points / fewest_points);
+        samples_by_area(scene, mesh, most_points, most_points / fewest_points);
     BandArray E = BandArray::Zero(mesh.patch_count(), from_afar_.rows());
     for (int first = 0; first < mesh.patch_count(); first += slice) {
       report(progress, "daylight", static_cast<double>(first) / mesh.patch_count());
