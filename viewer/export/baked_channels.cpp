@@ -98,8 +98,12 @@ Spectrum factor_within(const RadiositySolution& solution, int channel) {
 
 }  // namespace
 
+Bands shown_bands(const Bands& bands) {
+  return bands.wavelengths_nm.empty() ? bands : rgb_bands(bands.lumens_per_watt);
+}
+
 RgbArray illuminance_shares(const BandArray& irradiance, const Bands& bands) {
-  const Bands primaries = rgb_bands(bands.lumens_per_watt);
+  const Bands primaries = shown_bands(bands);
   RgbArray shares(irradiance.rows(), 3);
   for (Eigen::Index i = 0; i < irradiance.rows(); ++i) {
     const Spectrum rgb = linear_rgb(bands, irradiance.row(i).transpose());

@@ -21,6 +21,10 @@ inline float finite_or_black(float value) {
 std::vector<ElementKind> kinds_with_all_on(const SolvedScene& solved,
                                            const std::vector<Material>& materials);
 
+/// Bands of the linear RGB that `bands` are shown in: RGB bands themselves, for wavelengths Rec.
+/// 709 with the same luminous efficacy.
+Bands shown_bands(const Bands& bands);
+
 /// Illuminance as lx of red, green and blue, whose sum is the illuminance: Y of each primary in the
 /// linear RGB of irradiance (rows x bands, W/m^2).
 RgbArray illuminance_shares(const BandArray& irradiance, const Bands& bands);

@@ -263,10 +263,10 @@ void add_cameras(const SolvedScene& solved, const Scene& scene, const ElementCas
 /// The largest channel of the radiance of each vertex that gets light and does not emit any.
 std::vector<float> reflected_radiances(const BakedModel& model, const Bands& bands) {
   constexpr double rounding = 1e-3;  // of sums of bands in floats
+  const Bands shown = shown_bands(bands);
   std::vector<float> largest;
   for (int v = 0; v < model.vertex_count(); ++v) {
-    const double exitance =
-        std::numbers::pi * bands.lumens_per_watt * luminance(model.radiance.row(v).transpose());
+    const double exitance = std::numbers::pi * luminous(shown, model.radiance.row(v).transpose());
     const auto arriving = static_cast<double>(model.illuminance[static_cast<std::size_t>(v)]);
     const bool is_reflected = exitance > 0.0 && exitance <= (1.0 + rounding) * arriving;
     if (is_reflected) largest.push_back(model.radiance.row(v).maxCoeff());

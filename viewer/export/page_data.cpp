@@ -228,6 +228,12 @@ Json scale_of(const LuxRange& range) {
   return {{"low", range.low}, {"high", range.high}};
 }
 
+// Y of red, green and blue, of which white has 1.
+Json luminance_weights(const Bands& bands) {
+  const auto weights = shown_bands(bands).xyz.row(1).eval();
+  return {weights[0], weights[1], weights[2]};
+}
+
 Json false_colors_of(const BakedModel& model, const LuxRange& range) {
   constexpr int entries = 256;
   std::string palette;
@@ -237,7 +243,7 @@ Json false_colors_of(const BakedModel& model, const LuxRange& range) {
     }
   }
   // The page's radiance is linear RGB for every set of bands.
-  const auto luminance = luminous_rows(model.radiance, rgb_bands(model.bands.lumens_per_watt));
+  const auto luminance = luminous_rows(model.radiance, shown_bands(model.bands));
   return {{"illuminance", scale_of(range)},
           {"luminance", scale_of(lux_range(luminance))},
           {"palette", std::move(palette)}};
@@ -271,6 +277,7 @@ PageData page_data(const BakedModel& model, const LuxRange& range, const WhitePo
                 {"metres_per_unit", model.metres_per_unit},
                 {"relative_units", model.relative_units},
                 {"lumens_per_watt", model.bands.lumens_per_watt},
+                {"luminance_weights", luminance_weights(model.bands)},
                 {"is_spectral", !model.bands.wavelengths_nm.empty()}};
   Json to_scene = Json::array();  // p_scene = to_scene (p_page + origin)
   for (int c = 0; c < 3; ++c) to_scene.push_back(vector_json(model.to_y_up.col(c)));

@@ -9,6 +9,7 @@
 #include "scene/io/honeybee/honeybee_modifiers.h"
 #include "scene/io/honeybee/honeybee_shapes.h"
 #include "scene/io/radiance/radiance_view.h"
+#include "scene/io/radiance/text/radiance_bands.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 #include "scene/io/sensor_grids.h"
@@ -85,7 +86,7 @@ Scene read_honeybee(const std::filesystem::path& path) {
   scene.file = path;
   scene.title = model.string_or("display_name", model.string_or("identifier", ""));
   scene.metres_per_unit = metres;
-  scene.bands = rgb_bands(radiance_lumens_per_watt);
+  scene.bands = radiance_bands();
   Remarks remarks;
   const auto radiance = radiance_properties(model);
   HoneybeeModifiers modifiers(scene.file, radiance, scene, remarks);

@@ -10,6 +10,7 @@
 
 #include "scene/degree.h"
 #include "scene/io/convex_cut.h"
+#include "scene/io/radiance/text/radiance_bands.h"
 
 namespace lightwell {
 namespace {

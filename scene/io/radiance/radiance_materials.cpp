@@ -13,6 +13,7 @@
 #include "scene/io/pictures/environment_file.h"
 #include "scene/io/radiance/files/radiance_loader.h"
 #include "scene/io/radiance/patterns/radiance_place.h"
+#include "scene/io/radiance/text/radiance_bands.h"
 #include "scene/io/radiance/text/radiance_expression.h"
 #include "scene/io/sheets.h"
 
@@ -50,12 +51,13 @@ bool is_constant(const RadiancePrimitive& p, RadiancePattern& result) {
 constexpr std::array<std::string_view, 8> picture_functions = {
     "red", "green", "blue", "clip_r", "clip_g", "clip_b", "grey", "clipgrey"};
 
-const Eigen::Vector3d luminance_weights(0.265, 0.670, 0.065);  // of RADIANCE's primaries
-
 // Means of these functions over the pixels of a picture.
 Spectrum means_of(const BandArray& pixels) {
   Eigen::ArrayXXd values(pixels.rows(), 4);
-  values << pixels.cast<double>(), (pixels.cast<double>().matrix() * luminance_weights).array();
+  values.leftCols(3) = pixels.cast<double>();
+  for (Eigen::Index i = 0; i < pixels.rows(); ++i) {
+    values(i, 3) = radiance_luminance(pixels.row(i).transpose());
+  }
   const Eigen::ArrayXd plain = values.colwise().mean(), cut = values.min(1.0).colwise().mean();
   Spectrum means(static_cast<Eigen::Index>(picture_functions.size()));
   means << plain.head(3).cast<float>(), cut.head(3).cast<float>(), static_cast<float>(plain[3]),
@@ -69,10 +71,6 @@ bool is_same(const RadiancePrimitive& a, const RadiancePrimitive& b) {
 }
 
 }  // namespace
-
-double radiance_luminance(const Spectrum& rgb) {
-  return luminance_weights.dot(rgb.matrix().cast<double>());
-}
 
 int RadianceMaterials::index_of(const std::string& name, const RadiancePrimitive& user) {
   if (name == radiance_void) return none;

@@ -27,9 +27,6 @@ struct RadiancePattern {
 std::optional<Material> read_radiance_material(const RadiancePrimitive& material,
                                                const RadiancePattern& pattern, Remarks& remarks);
 
-/// Luminance of r, g and b over that of white, by the weights of RADIANCE's primaries.
-double radiance_luminance(const Spectrum& rgb);
-
 /// Radiance of a light, glow, illum or spotlight, without its patterns, W/(sr m^2) of r, g and b.
 /// Throws InputError for arguments that are missing or out of range.
 Spectrum radiance_color(const RadiancePrimitive& light);

@@ -12,6 +12,7 @@
 #include "scene/io/radiance/files/radiance_project.h"
 #include "scene/io/radiance/radiance_shapes.h"
 #include "scene/io/radiance/radiance_view.h"
+#include "scene/io/radiance/text/radiance_bands.h"
 #include "scene/io/read_scene.h"
 #include "scene/io/remarks.h"
 
@@ -26,7 +27,7 @@ class RadianceReader {
       : path_(path), loader_(path.parent_path(), remarks_), shapes_(scene_, remarks_) {
     scene_.file = path;
     scene_.title = path.stem().string();
-    scene_.bands = rgb_bands(radiance_lumens_per_watt);
+    scene_.bands = radiance_bands();
     scene_.notes.emplace_back(
         "RADIANCE files name no unit of length: lengths were read as metres. One watt of white is "
         "179 lm.");

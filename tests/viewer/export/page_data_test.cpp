@@ -89,6 +89,22 @@ TEST_F(PageOf, LightIsKeptToElevenBits) {
   }
 }
 
+/// Bands whose primaries have other luminances than those of Rec. 709, as RADIANCE's do.
+TEST(PageOfOtherPrimaries, WeighsLightAsItsBandsDo) {
+  SolvedScene box = solved_box();
+  box.solution.bands.xyz.row(1) << 0.25f, 0.625f, 0.125f;
+  box.solution.direct_irradiance.col(0) *= 2.0f;  // not white
+  const BakedModel model = bake_model(box, box_scene());
+  const PageData page = page_data(model, {.low = 0.0, .high = 1000.0});
+  // Eighths are exact in floats.
+  EXPECT_EQ(page.about["luminance_weights"], (Json{0.25, 0.625, 0.125}));
+  const RgbArray shares = illuminance_shares(model.irradiance, model.bands);
+  for (int v = 0; v < model.vertex_count(); ++v) {  // single precision
+    const float lux = model.illuminance[static_cast<std::size_t>(v)];
+    EXPECT_NEAR(shares.row(v).sum(), lux, 1e-6 * lux);
+  }
+}
+
 TEST_F(PageOf, FacesAndTheirPartsAreAllThere) {
   const auto corners = values_at<std::int32_t>(page, page.about["corners"], 4 * model.faces.size());
   for (std::size_t f = 0; f < model.faces.size(); ++f) {

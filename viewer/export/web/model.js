@@ -189,7 +189,7 @@ class Model {
 
   /** White light of `lux` of red, green and blue, and what of it a surface shows. */
   shown_light(lux, reflectance) {
-    const {lumens_per_watt} = this.about;
+    const {lumens_per_watt, luminance_weights} = this.about;
     return {E: lux.map((x, k) => luminance_weights[k] * x), L: lux.map((x, k) => reflectance[k] * x / (Math.PI * lumens_per_watt))};
   }
 

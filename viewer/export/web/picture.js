@@ -10,15 +10,13 @@ vec3 srgb_encode(vec3 x) {
   return mix(1.055 * pow(x, vec3(1.0 / 2.4)) - 0.055, 12.92 * x, lessThanEqual(x, vec3(0.0031308)));
 }`;
 
-/** Y of the linear primaries. */
-const luminance_weights = [0.2126729, 0.7151522, 0.0721750];
-
 const vertex_program = `
 #ifdef OF_YEAR
 in vec3 reflectance;
 uniform sampler2D terms;   // of the light, four a texel, the texels of a vertex side by side
 uniform vec4 weights[OF_YEAR];
 uniform float lumens_per_watt;
+uniform vec3 luminance_weights;  // Y of red, green and blue
 out vec3 rho;
 out vec3 outwards;
 out vec3 in_page;
@@ -47,7 +45,7 @@ void main() {
   outwards = normal;
   in_page = on_face = position;
   L = rho * lux / (3.14159265 * lumens_per_watt);
-  E_rgb = lux * vec3(${luminance_weights});
+  E_rgb = lux * luminance_weights;
 #else
   L = radiance;
   E_rgb = illuminance;
@@ -74,6 +72,7 @@ uniform float levels[24];  // of isolux lines, lx
 uniform int level_count;
 uniform float line_width;  // pixels
 uniform float lumens_per_watt;
+uniform vec3 luminance_weights;
 uniform sampler2D palette;
 #ifdef WITH_PICTURE
 in vec2 at;
@@ -104,7 +103,7 @@ void main() {
 #ifdef OF_YEAR
   vec3 straight = sunlight(on_face, plane_of(in_page, normalize(outwards)), normalize(outwards));
   shown += rho * straight / (3.14159265 * lumens_per_watt);
-  lux += straight * vec3(${luminance_weights});
+  lux += straight * luminance_weights;
 #endif
   float E = lux.r + lux.g + lux.b;
   float slope = length(vec2(dFdx(E), dFdy(E)));
@@ -119,7 +118,7 @@ void main() {
   } else if (shows == 3) {
     pixel = vec4(lux, 1.0);
   } else if (shows != 0) {
-    float value = shows == 1 ? E : lumens_per_watt * dot(shown, vec3(${luminance_weights}));
+    float value = shows == 1 ? E : lumens_per_watt * dot(shown, luminance_weights);
     float place = !logarithmic ? (value - range.x) / (range.y - range.x)
                 : value > 0.0 ? log(value / range.x) / log(range.y / range.x) : 0.0;
     // Texel centres are the ends of the scale.
@@ -161,7 +160,7 @@ const metering_width = 160;
  * radiance for which white paper under that light shows white, and the light's colour, of luminance 1. Means are those of
  * the illuminances within a factor 10 of the median. Null without light.
  */
-function incident_light(pixels, lumens_per_watt) {
+function incident_light(pixels, lumens_per_watt, luminance_weights) {
   const lit = [];
   for (let i = 0; i < pixels.length; i += 4) {
     const E = pixels[i] + pixels[i + 1] + pixels[i + 2];
@@ -212,6 +211,7 @@ class Picture {
       level_count: {value: 0},
       line_width: {value: 1},
       lumens_per_watt: {value: model.about.lumens_per_watt},
+      luminance_weights: {value: model.about.luminance_weights},
       palette: {value: palette_texture(model.about.false_colors.palette)},
     };
     this.geometry = new Library.BufferGeometry();
@@ -440,7 +440,7 @@ class Picture {
   /** Exposure and colour of light for what the camera sees now; null if that is dark or cannot be measured. */
   meter() {
     const seen = this.incident_pixels(metering_width);
-    return seen && incident_light(seen.pixels, this.uniforms.lumens_per_watt.value);
+    return seen && incident_light(seen.pixels, this.model.about.lumens_per_watt, this.model.about.luminance_weights);
   }
 
   /** Illuminance of a coarse picture, rows from below; null if it cannot be measured. */

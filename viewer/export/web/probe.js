@@ -58,7 +58,7 @@ function light_at(model, face, point) {
   }
   // A patch has the mean of its picture; here it is what is seen.
   if (texel_at) texel_at(...place).forEach((rho, k) => { radiance[k] *= gain[k] * rho; });
-  const Y = luminance_weights.reduce((sum, weight, k) => sum + weight * radiance[k], 0);
+  const Y = model.about.luminance_weights.reduce((sum, weight, k) => sum + weight * radiance[k], 0);
   const within = model.within && model.is_as_solved() ? model.within[face] : null;
   return {illuminance, sunlight, within, luminance: model.about.lumens_per_watt * Y, radiosity: radiance.map((L) => Math.PI * L)};
 }

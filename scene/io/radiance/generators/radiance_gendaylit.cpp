@@ -5,6 +5,7 @@
 
 #include "scene/degree.h"
 #include "scene/io/radiance/generators/radiance_sky_call.h"
+#include "scene/io/radiance/text/radiance_bands.h"
 #include "scene/io/text_file.h"
 #include "scene/perez_sky.h"
 #include "scene/sun_position.h"

@@ -52,9 +52,6 @@ struct RadiancePrimitive {
 /// Receives a scene's primitives one by one, in file order.
 using RadianceSink = std::function<void(const RadiancePrimitive&)>;
 
-/// Luminous efficacy of white light in RADIANCE, lm/W (Ward & Shakespeare 1998).
-inline constexpr double radiance_lumens_per_watt = 179.0;
-
 /// Modifier of a primitive without one.
 inline constexpr std::string_view radiance_void = "void";
 

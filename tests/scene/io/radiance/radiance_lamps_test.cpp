@@ -59,6 +59,24 @@ TEST_F(RadianceLamps, BrightdataIsTheDistributionOfALamp) {
   EXPECT_EQ(green(lamp, {0.1, 0.0, 1.0}), 0.0);
 }
 
+// ies2rad scales the colour of a lamp to the luminance of white, so that candela are those of the
+// photometric file in any colour.
+TEST_F(RadianceLamps, ColoursOfIes2radKeepTheCandela) {
+  // Luminance by RADIANCE's primaries: 0.265 1.38244 + 0.670 0.911576 + 0.065 0.34969 = 0.9998.
+  const Scene scene = read(
+      "void brightdata dist 4 flatcorr half.dat source.cal src_theta 0 1 5\n"
+      "dist light shine 0 0 3 1.38244 .911576 .34969\n"
+      "shine polygon face 0 0 12 -.1 -.2 0 -.1 .2 0 .1 .2 0 .1 -.2 0\n");
+  ASSERT_EQ(scene.lamps.size(), 1u);
+  const Lamp& lamp = scene.lamps[0];
+  const double candela =
+      luminous(scene.bands, lamp.intensity) * relative_intensity(lamp, -Eigen::Vector3d::UnitZ());
+  // Below the lamp: multiplier table area, 179 lm/W. The weights have three decimals, and the sum
+  // misses 1 by 2e-4: 0.0005 (1.38 + 0.91 + 0.35) + 0.0002 = 0.0016 at most.
+  const double of_file = 179.0 * 5.0 * 2.0 * 0.08;
+  EXPECT_NEAR(candela, of_file, 0.0016 * of_file);
+}
+
 TEST_F(RadianceLamps, EachLampOfATurnedArrayHasItsOwnDistribution) {
   // Without the turn of the pattern, theta would still be measured from -z.
   const Scene scene = read("!xform -rx 90 -t 0 3 0 -a 4 -rz 90 lamp.rad");

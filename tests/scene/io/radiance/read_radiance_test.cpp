@@ -237,9 +237,23 @@ TEST_F(Radiance, LightIsPiTimesItsRadianceFromTheFrontAt179LumensPerWatt) {
   expect_rgb(light.emission / static_cast<float>(pi), {1, 2, 3});
   EXPECT_TRUE(light.one_sided && !light.emits_both_sides);
   expect_rgb(light.reflectance, {0, 0, 0});
-  // RADIANCE weights its primaries by 0.265, 0.670 and 0.065; the weights agree for white (1, 1,
-  // 1).
+  // Single precision.
   EXPECT_NEAR(luminous(scene.bands, Spectrum::Ones(3)), 179.0, 179e-6);
+}
+
+TEST_F(Radiance, ColoursHaveTheLuminanceOfRadiancesPrimaries) {
+  const Scene scene = read("void light m 0 0 3 1 2 3\nm " + square);
+  // The manual's weights 0.265, 0.670 and 0.065 have three decimals.
+  const Eigen::Array3d weights(0.265, 0.670, 0.065);
+  for (int k = 0; k < 3; ++k) {
+    Spectrum primary = Spectrum::Zero(3);
+    primary[k] = 1.0f;
+    EXPECT_NEAR(luminous(scene.bands, primary), 179.0 * weights[k], 179.0 * 0.0005);
+  }
+  // White is (0.3333, 0.3333): X = Y, Z = 3334 / 3333 Y. Single precision.
+  const Eigen::Array3f white = scene.bands.xyz.rowwise().sum();
+  EXPECT_NEAR(white[0], white[1], 1e-6f);
+  EXPECT_NEAR(white[2], 3334.0f / 3333.0f * white[1], 1e-6f);
 }
 
 TEST_F(Radiance, AGlowHasFourNumbersAndAConeThePowerOfItsSpotlightsBeam) {
@@ -386,7 +400,8 @@ TEST_F(Radiance, PicturesCountByTheirMeanColour) {
   expect_rgb(mean("red green blue", "print.hdr"), {red, green, blue});
   expect_rgb(mean("clip_r clip_g clip_b", "print.pic"),
              {0.5 * (128.5 / 256 + 1.0), 0.5 * (64.5 / 256 + 1.0), blue});
-  const double all = 0.265 * red + 0.670 * green + 0.065 * blue;
+  // grey() of rayinit.cal.
+  const double all = 0.265074126 * red + 0.670114631 * green + 0.064811243 * blue;
   expect_rgb(mean("grey grey grey", "print.hdr"), {all, all, all});
   expect_rgb(mean("fadered green blue", "print.hdr"), {0.5, 0.5, 0.5});
   folder.write("torn.hdr", "#?RADIANCE\n\n-Y 1 +X 2\n\x80");
