@@ -228,8 +228,9 @@ void require_light(const RadiancePrimitive& p) {
 
 Material shining(const Given& given, float scale) {
   Material material = opaque(zero());
+  const Spectrum radiance = radiance_color(given.p, given.remarks);
   material.emission =
-      scale * static_cast<float>(std::numbers::pi) * given.rgb(0) * given.pattern.factor;
+      scale * static_cast<float>(std::numbers::pi) * radiance * given.pattern.factor;
   if (!material.emission.isFinite().all()) given.p.fail("has a radiance that is too large");
   material.one_sided = true;
   if (!given.pattern.is_known) {
@@ -335,10 +336,18 @@ const std::map<std::string, Reader>& readers() {
 
 }  // namespace
 
-Spectrum radiance_color(const RadiancePrimitive& light) {
+bool is_only_seen(const RadiancePrimitive& light) {
   require_light(light);
-  Remarks unused;
-  return Given{light, {}, unused}.rgb(0);
+  return light.type == "glow" && light.reals[3] < 0.0;
+}
+
+Spectrum radiance_color(const RadiancePrimitive& light, Remarks& remarks) {
+  require_light(light);
+  const Given given{light, {}, remarks};
+  const Spectrum color = given.rgb(0);
+  if (!is_only_seen(light)) return color;
+  given.remark("Glows of a negative radius, which are seen but light nothing, were read as black");
+  return zero();
 }
 
 std::optional<Material> read_radiance_material(const RadiancePrimitive& material,

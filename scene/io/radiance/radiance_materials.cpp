@@ -208,7 +208,7 @@ std::optional<RadianceLight> RadianceMaterials::light_of(const RadiancePrimitive
       const bool shines =
           p.type == "light" || p.type == "glow" || p.type == "illum" || p.type == "spotlight";
       if (!shines) return std::nullopt;
-      light = RadianceLight{.material = p, .color = radiance_color(p)};
+      light = RadianceLight{.material = p, .color = radiance_color(p, remarks_)};
     } else if (light && p.kind() == RadianceKind::pattern) {
       RadiancePattern constant;
       if (is_constant(p, constant)) {

@@ -27,9 +27,14 @@ struct RadiancePattern {
 std::optional<Material> read_radiance_material(const RadiancePrimitive& material,
                                                const RadiancePattern& pattern, Remarks& remarks);
 
-/// Radiance of a light, glow, illum or spotlight, without its patterns, W/(sr m^2) of r, g and b.
-/// Throws InputError for arguments that are missing or out of range.
-Spectrum radiance_color(const RadiancePrimitive& light);
+/// Whether a light, glow, illum or spotlight is seen but lights nothing: a glow of a negative
+/// radius. Throws InputError for arguments that are missing.
+bool is_only_seen(const RadiancePrimitive& light);
+
+/// Radiance of a light, glow, illum or spotlight, without its patterns, W/(sr m^2) of r, g and b; 0
+/// with a remark for those that are only seen. Throws InputError for arguments that are missing or
+/// out of range.
+Spectrum radiance_color(const RadiancePrimitive& light, Remarks& remarks);
 
 /// Light of a luminous material by direction.
 struct RadianceLight {

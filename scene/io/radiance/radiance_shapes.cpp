@@ -64,6 +64,8 @@ void RadianceShapes::add_source(const RadiancePrimitive& source) {
   if (!light) {
     return remarks_.add("Distant sources whose light is not understood were left out", source.name);
   }
+  // A dark sky would still open windows of illums.
+  if (is_only_seen(light->material)) return;
   sky_.add(source, std::move(*light));
 }
 

@@ -256,6 +256,21 @@ TEST_F(Radiance, ColoursHaveTheLuminanceOfRadiancesPrimaries) {
   EXPECT_NEAR(white[2], 3334.0f / 3333.0f * white[1], 1e-6f);
 }
 
+TEST_F(Radiance, GlowsOfANegativeRadiusLightNothing) {
+  const std::string glow = "void glow m 0 0 4 1 2 3 -1\n";
+  const Scene panel = read(glow + "m " + square);
+  expect_rgb(panel.materials.at(0).emission, {0, 0, 0});
+  EXPECT_TRUE(has_loss(panel, "light nothing, were read as black: 'm'"));
+  // A source, and a surface whose pattern would make it a lamp.
+  const Scene sky =
+      read(glow + "m source s 0 0 4 0 0 1 180\nvoid plastic w 0 0 5 1 1 1 0 0\nw " + square);
+  EXPECT_FALSE(sky.sky.has_value());
+  EXPECT_TRUE(has_loss(sky, "light nothing, were read as black: 'm'"));
+  const Scene lamp = read("void brightfunc f 2 Dz*Dz . 0 0\nf glow m 0 0 4 1 2 3 -1\nm " + square +
+                          "\nvoid plastic w 0 0 5 1 1 1 0 0\nw " + square);
+  EXPECT_TRUE(lamp.lamps.empty());
+}
+
 TEST_F(Radiance, AGlowHasFourNumbersAndAConeThePowerOfItsSpotlightsBeam) {
   expect_rgb(material("void glow m 0 0 4 1 1 1 0").emission / static_cast<float>(pi), {1, 1, 1});
   // Half angle 30 degrees: sin^2 = 1/4.
