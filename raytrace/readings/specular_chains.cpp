@@ -2,8 +2,10 @@
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>
+#include <array>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "scene/sampling.h"
 
@@ -22,6 +24,13 @@ Eigen::Vector2d offset(const PathGoal& goal, const Eigen::Vector3d& origin,
   const double t = (goal.position - origin).dot(axes.col(2)) / along;
   const Eigen::Vector3d d = origin + t * exit - goal.position;
   return {d.dot(axes.col(0)), d.dot(axes.col(1))};
+}
+
+using RayDirection = std::array<double, 3>;
+
+// Seeds of one of the first rays have the same direction to the bit.
+RayDirection ray_direction(const SpecularSeed& seed) {
+  return {seed.direction.x(), seed.direction.y(), seed.direction.z()};
 }
 
 }  // namespace
@@ -123,22 +132,30 @@ double all_straight(const SpecularChains& chains, const PathGoal& goal,
                     const Eigen::Vector3d& towards, std::span<const std::uint64_t> found,
                     double clearance) {
   const double near = std::cos(std::numbers::pi / 18.0);
-  double all = 0.0, of_found = 0.0;
+  const auto counts = [&](const SpecularSeed& seed) {
+    if (seed.direction.dot(towards) < near) return false;
+    const double distance = (goal.position - seed.origin).dot(seed.exit);
+    return goal.is_direction ? !std::isfinite(seed.end)
+                             : distance > 0.0 && seed.end >= distance - clearance;
+  };
+  double of_found = 0.0, of_others = 0.0;
+  std::set<RayDirection> rays;
+  for (const std::uint64_t key : found) {
+    for (const SpecularSeed& seed : chains.at(key).seeds) {
+      if (!counts(seed)) continue;
+      of_found += seed.weight;
+      rays.insert(ray_direction(seed));
+    }
+  }
+  if (!(of_found > 0.0)) return 1.0;
   for (const auto& [key, chain] : chains) {
-    if (!chain.is_straight) continue;
-    const bool is_found = std::ranges::binary_search(found, key);
+    if (!chain.is_straight || std::ranges::binary_search(found, key)) continue;
     for (const SpecularSeed& seed : chain.seeds) {
-      if (seed.direction.dot(towards) < near) continue;
-      const double distance = (goal.position - seed.origin).dot(seed.exit);
-      const bool passes = goal.is_direction ? !std::isfinite(seed.end)
-                                            : distance > 0.0 && seed.end >= distance - clearance;
-      if (!passes) continue;
-      all += seed.weight;
-      if (is_found) of_found += seed.weight;
+      if (counts(seed) && rays.contains(ray_direction(seed))) of_others += seed.weight;
     }
   }
   constexpr double most = 2.0;
-  return of_found > 0.0 ? std::min(most, all / of_found) : 1.0;
+  return std::min(most, (of_found + of_others) / of_found);
 }
 
 }  // namespace lightwell

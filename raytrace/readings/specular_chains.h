@@ -85,8 +85,10 @@ class SpecularPaths {
 };
 
 /// Light of all straight chains over that of the chains in `found` (ascending), by the first rays
-/// within ten degrees of `towards` whose last part passes the goal: chains through parallel faces
-/// lead to the goal from nearly the same direction. At most 2.
+/// within ten degrees of `towards` that follow a found chain and whose last part passes the goal:
+/// one ray follows all chains that go to and fro between parallel faces of glass, and these lead to
+/// the goal from nearly the same direction. Chains that other rays follow, as by way of another
+/// pair of parallel mirrors, lead elsewhere. At most 2.
 double all_straight(const SpecularChains& chains, const PathGoal& goal,
                     const Eigen::Vector3d& towards, std::span<const std::uint64_t> found,
                     double clearance);

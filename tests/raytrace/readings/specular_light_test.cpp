@@ -152,9 +152,7 @@ TEST(SpecularLight, OfALampThatLiesInTwoStrataIsWhole) {
   }
 }
 
-TEST(SpecularLight, OfTheSunOffAMirrorIsItsIrradiance) {
-  Scene scene = over_a_mirror(0.9f).build();
-  const Vector3d sun = Vector3d(1.0, 2.0, 3.0).normalized();
+void shine(Scene& scene, const Vector3d& sun) {
   scene.sky =
       Sky{.up = up,
           .north = Vector3d::UnitY(),
@@ -162,9 +160,32 @@ TEST(SpecularLight, OfTheSunOffAMirrorIsItsIrradiance) {
           .ground = constant_spectrum(scene.bands, 0.0f),
           .sun = Sun{.direction = sun, .irradiance = constant_spectrum(scene.bands, 800.0f)}};
   validate(scene);
+}
+
+TEST(SpecularLight, OfTheSunOffAMirrorIsItsIrradiance) {
+  Scene scene = over_a_mirror(0.9f).build();
+  const Vector3d sun = Vector3d(1.0, 2.0, 3.0).normalized();
+  shine(scene, sun);
   const TracedScene lit(scene);
   const double expected = 0.9 * 800.0 * sun.z();
   EXPECT_NEAR(irradiance(lit, {0.1, 0.2, 0.7}, -up), expected, of_newton * expected);
+}
+
+// The sun at 45 degrees goes down 20 m between two mirrors 1 m apart in 20 reflections, after which
+// it goes on as it came. Rays nearby meet 18 or 22 mirrors and leave in their own direction, too,
+// but not towards the sun.
+TEST(SpecularLight, OfTheSunBetweenTwoMirrorsArrivesOnce) {
+  constexpr float rho = 0.95f;
+  Scene scene =
+      SceneBuilder()
+          .polygon({.specular = rho}, {{0, -99, 0}, {0, 99, 0}, {0, 99, 20}, {0, -99, 20}})
+          .polygon({.specular = rho}, {{1, -99, 0}, {1, -99, 20}, {1, 99, 20}, {1, 99, 0}})
+          .build();
+  const Vector3d sun = Vector3d(1.0, 0.0, 1.0).normalized();
+  shine(scene, sun);
+  const TracedScene lit(scene);
+  const double expected = std::pow(double{rho}, 20) * 800.0 * sun.z();
+  EXPECT_NEAR(irradiance(lit, {0.3, 0.1, 0.05}, up), expected, of_newton * expected);
 }
 
 // A lobe of roughness 0.02 is a few degrees wide, over which the image of a lamp of 1 m changes by
