@@ -386,7 +386,9 @@ void RenderArguments::add_to(CLI::App& command) {
       ->type_name("N")
       ->check(whole_number(0, most_photons))
       ->group(group);
-  command.add_option("--depth", depth, "most mirrors and glass surfaces along a path (default 10)")
+  command
+      .add_option("--depth", depth,
+                  "most mirrors and glass surfaces along a path, at least 128; 0: none")
       ->type_name("N")
       ->check(whole_number(0, deepest_tree))
       ->group(group);

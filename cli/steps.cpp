@@ -14,6 +14,7 @@
 #include "radiosity/solution/solution_file.h"
 #include "scene/errors.h"
 #include "scene/io/text_file.h"
+#include "scene/specular.h"
 
 namespace lightwell {
 namespace fs = std::filesystem;
@@ -314,7 +315,7 @@ bool render_step(RenderableScene& renderable, const PictureTask& task, Checkpoin
   }
   report.add_phase("render_" + label, watch.seconds());
   report.add("depth_cut_" + label, rendered.rendered.cut_share);
-  note_depth_cut(label, rendered.rendered, asked.depth, console);
+  note_depth_cut(label, rendered.rendered, deepest_path(asked.depth), console);
   return is_as_asked(label, asked, rendered, feedback);
 }
 

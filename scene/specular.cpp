@@ -357,9 +357,9 @@ ScatteringSample sample_lobe(const SurfaceInteraction& interaction, const Scatte
   return sample_smooth(interaction, first.component);
 }
 
-int deepest_path(int most, bool met_glass_or_rough) {
-  constexpr int by_chance = 128;
-  return met_glass_or_rough && most > 0 ? std::max(most, by_chance) : most;
+int deepest_path(int most) {
+  constexpr int least = 128;
+  return most > 0 ? std::max(most, least) : 0;
 }
 
 RoughLobe::RoughLobe(const Material& material, bool from_back) {

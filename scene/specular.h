@@ -89,11 +89,12 @@ ScatteringSample sample_lobe(const SurfaceInteraction& interaction, const Scatte
 /// light passes, by CoatedBase::factor(); holes (1 - specular) pass light of all angles.
 ScatteringSample straight_sample(const SurfaceInteraction& interaction);
 
-/// Most mirrors and clear surfaces along a path: `most`, or once the path has met glass or a rough
-/// surface at least 128 (0 if `most` is 0). Light in a rough ball is trapped beyond the critical
-/// angle and escapes by chance: after eight surfaces some percent of the light is still inside.
-/// Light through a stack of four slabs meets eight faces without any reflection.
-int deepest_path(int most, bool met_glass_or_rough);
+/// Most mirrors and clear surfaces along a path: `most`, but at least 128 (0 if `most` is 0). Light
+/// in a rough ball is trapped beyond the critical angle and escapes by chance: after eight surfaces
+/// some percent of the light is still inside. Light through a stack of four slabs meets eight faces
+/// without any reflection. A low sun meets the sides of a light pipe ten times as long as wide more
+/// than ten times.
+int deepest_path(int most);
 
 /// Density of sample_scattering's directions from one side of a rough surface, 1/sr: the density of
 /// single scattering over the share that single scattering keeps, which is tabulated.

@@ -177,12 +177,9 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
   Ray ray = first_ray;
   ElementHit hit = first_hit;
   absorb(ray, hit, light, losses);
-  bool goes_deep = false;
   for (int depth = 0;; ++depth) {
     const Material& met = scene_.materials[material_[hit.facet]];
-    goes_deep =
-        goes_deep || met.dielectric || met.passes_straight() || met.gloss_roughness() > 0.0f;
-    if (depth >= deepest_path(max_depth_, goes_deep)) {
+    if (depth >= deepest_path(max_depth_)) {
       losses.cut += throughput;
       return losses;
     }

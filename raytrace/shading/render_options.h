@@ -43,7 +43,8 @@ struct SampleOptions {
 
 struct RenderOptions {
   Pass pass = Pass::automatic;
-  /// Most mirror and glass events along one path of the ray tree (see deepest_path).
+  /// Most mirrors and clear surfaces along one path of the ray tree, at least 128 (see
+  /// deepest_path). Photons and gathers end by chance beyond this number where they are weak.
   int max_depth = 10;
   /// Branches of less weight do not fork, and end by chance below a tenth of it.
   float min_contribution = 1e-3f;

@@ -318,24 +318,28 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
     interaction.normal = visible_normal(branch.ray.direction, at.normal,
                                         bent_normal(branch, hit, at, smooth, state));
   }
-  Branch here = branch;
-  if (!goes_on_at_coat(interaction, here, state)) return;
+  Branch mirrored = branch;
+  const bool is_mirrored = goes_on_at_coat(interaction, mirrored, state);
   if (material.gloss_roughness() > 0.0f) {
     if (material.passes_straight() && !(state.turns && branch.depth >= state.turns->count)) {
       constexpr std::uint64_t straight = 1;
-      grow(here, child_node(here.node, straight), straight_sample(interaction), material, hit, at,
-           state);
+      grow(branch, child_node(branch.node, straight), straight_sample(interaction), material, hit,
+           at, state);
     }
-    return scatter(here, interaction, hit, at, state);
+    if (is_mirrored) scatter(mirrored, interaction, hit, at, state);
+    return;
   }
   if (state.turns && branch.depth >= state.turns->count) return;
   SmoothScattering lobes = smooth_scattering(interaction);
-  if (state.shades && here.weight.maxCoeff() < options_.min_contribution) {
-    choose_one(here, lobes, state);
+  if (state.shades && branch.weight.maxCoeff() < options_.min_contribution) {
+    choose_one(branch, lobes, state);
   }
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
-    if (state.turns && !state.turns->follows(here.depth, lobes.sample[i].crosses)) continue;
-    grow(here, child_node(here.node, i), lobes.sample[i], material, hit, at, state);
+    const ScatteringSample& lobe = lobes.sample[i];
+    if (state.turns && !state.turns->follows(branch.depth, lobe.crosses)) continue;
+    if (!lobe.crosses && !is_mirrored) continue;
+    grow(lobe.crosses ? branch : mirrored, child_node(branch.node, i), lobe, material, hit, at,
+         state);
   }
 }
 
@@ -344,11 +348,11 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                    TreeState& state) const {
   const int material = facets_[hit.facet].material;
   const bool off_lobe = sample.density > 0.0;
+  const bool is_behind_coat = parent.behind_coat > 0 || (what.mirrors_by_coat() && !sample.crosses);
   Branch branch{.weight = parent.weight * sample.weight,
                 .depth = parent.depth + 1,
                 .node = node,
                 .is_sharp = parent.is_sharp,
-                .met_glass = parent.met_glass || what.dielectric || what.passes_straight(),
                 .is_direct = parent.is_direct && sample.crosses && is_clear_pane(what),
                 .chain = random_key(parent.chain, facets_[hit.facet].chain, sample.crosses),
                 .turns = parent.turns,
@@ -359,15 +363,14 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                                                   !(sample.crosses && is_clear_pane(what))),
                 .sky = off_lobe || (sample.crosses && is_clear_pane(what)) ? parent.sky : nullptr,
                 .sky_lobe_density = off_lobe ? sample.density : parent.sky_lobe_density,
-                .behind_coat =
-                    parent.behind_coat + (parent.behind_coat > 0 || what.mirrors_by_coat() ? 1 : 0),
+                .behind_coat = parent.behind_coat + (is_behind_coat ? 1 : 0),
                 .cone = {.start = cone_width(parent, at), .spread = parent.cone.spread},
                 .blur = {.start = width_of(parent.blur, parent, at),
                          .spread = off_lobe ? spread_of_lobe(sample.density) : parent.blur.spread},
                 .media = parent.media,
                 .polarisation = sample.polarisation};
   if (!survives(branch, state)) return;
-  if (branch.depth > deepest_path(options_.max_depth, branch.met_glass || !branch.is_sharp)) {
+  if (branch.depth > deepest_path(options_.max_depth)) {
     ++state.result.depth_cut;
     state.result.cut_weight += branch.weight.maxCoeff();
     return;
@@ -385,61 +388,6 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
     branch.ray.direction = on_its_side(branch.ray.direction, at.normal, sample.crosses);
   }
   follow(branch, state);
-}
-
-// Largest share of any band that a surface mirrors of the interaction's light.
-float RayTree::mirrored_share(const SurfaceInteraction& interaction) {
-  return scattering_weight(interaction,
-                           {.direction = reflect(interaction.direction, interaction.normal)})
-      .maxCoeff();
-}
-
-// Ends most branches that meet a coat behind another, and strengthens the rest. One in six goes on
-// of those that meet the second coat steeply, with a quarter of the first coat's weight.
-bool RayTree::goes_on_at_coat(const SurfaceInteraction& interaction, Branch& branch,
-                              const TreeState& state) const {
-  if (!interaction.material.mirrors_by_coat() || branch.behind_coat == 0 || !state.shades)
-    return true;
-  constexpr float left_weight = 0.25f;
-  const float chance = mirrored_share(interaction) / left_weight;
-  if (chance >= 1.0f) return true;
-  if (!(roulette(branch, 1, state) < static_cast<double>(chance))) return false;
-  branch.weight /= chance;
-  return true;
-}
-
-// A number in [0,1) of a branch, `purpose` 0 or 1.
-double RayTree::roulette(const Branch& branch, int purpose, const TreeState& state) {
-  return random_uniform(random_key(state.key, branch.node, RandomPurpose::ray_tree_roulette,
-                                   static_cast<std::uint64_t>(2 * branch.depth + purpose)));
-}
-
-// Leaves one of two lobes, by their weights, with the weight of both: a branch of little weight
-// does not fork.
-void RayTree::choose_one(const Branch& branch, SmoothScattering& lobes,
-                         const TreeState& state) const {
-  const float first = lobes.sample[0].weight.maxCoeff(), second = lobes.sample[1].weight.maxCoeff();
-  if (lobes.count < 2 || !(first + second > 0.0f)) return;
-  const float chance = first / (first + second);
-  const bool is_first = roulette(branch, 1, state) < static_cast<double>(chance);
-  lobes.sample[is_first ? 0 : 1].weight /= is_first ? chance : 1.0f - chance;
-  lobes.sample[is_first ? 1 : 0].weight.setZero();
-}
-
-// Ends branches far below the least weight by Russian roulette (Arvo & Kirk 1990): a survivor
-// stands for those that end. A tree without light needs no branch of little weight, and a single
-// path has no other branch.
-bool RayTree::survives(Branch& branch, const TreeState& state) const {
-  const float weight = branch.weight.maxCoeff();
-  if (weight >= options_.min_contribution || state.turns) return weight > 0.0f;
-  if (!state.shades) return false;
-  constexpr float far_below = 0.1f;
-  const float least = far_below * options_.min_contribution;
-  if (weight >= least) return true;
-  const double chance = double{weight} / double{least};
-  if (!(roulette(branch, 0, state) < chance)) return false;
-  branch.weight *= static_cast<float>(1.0 / chance);
-  return true;
 }
 
 RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& hit,

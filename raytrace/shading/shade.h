@@ -224,7 +224,6 @@ class RayTree {
     /// branches off rough surfaces.
     std::uint64_t node = 1;
     bool is_sharp = true;     ///< no rough surface on the way
-    bool met_glass = false;   ///< a clear surface on the way
     bool is_direct = true;    ///< nothing but smooth thin panes on the way, straight through
     std::uint64_t chain = 0;  ///< see SpecularSegment
     ChainTurns turns{};       ///< see SpecularSegment

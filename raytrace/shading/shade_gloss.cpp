@@ -150,7 +150,7 @@ const RoughLobe& RayTree::lobe(int material, bool from_back) const {
 void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interaction,
                        const LobeView& view, const ElementHit& hit, const ShadingPoint& at,
                        const Eigen::Array4d& u, float share, TreeState& state) const {
-  if (branch.depth >= deepest_path(options_.max_depth, true)) return;
+  if (branch.depth >= deepest_path(options_.max_depth)) return;
   const auto lamp = lamps_.draw(view, hit.facet, u[0], u[1], u[2]);
   if (!lamp) return;
   if (crosses_facet_alone(lamp->direction, interaction.normal, at.normal)) return;
@@ -184,7 +184,7 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
 void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& interaction,
                               const LobeView& view, const ElementHit& hit, const ShadingPoint& at,
                               const Eigen::Array4d& u, float share, TreeState& state) const {
-  if (branch.depth >= deepest_path(options_.max_depth, true)) return;
+  if (branch.depth >= deepest_path(options_.max_depth)) return;
   const auto drawn = lamps_.draw_source(view, u[0]);
   if (!drawn) return;
   const SourceSample source_sample = sample_source(*drawn->source, at.position, u[1], u[2]);
@@ -233,7 +233,7 @@ const SkySites::Site* RayTree::sky_site(const Branch& branch, const SurfaceInter
 void RayTree::add_sky(const Branch& branch, const SurfaceInteraction& interaction,
                       const ElementHit& hit, const ShadingPoint& at, const SkySites::Site& site,
                       const Eigen::Array4d& u, float share, TreeState& state) const {
-  if (branch.depth >= deepest_path(options_.max_depth, true)) return;
+  if (branch.depth >= deepest_path(options_.max_depth)) return;
   const SkyLight::Aim aim = direct_light_.sky()->aim(site, u[0], u[1], u[2]);
   if (!(aim.density > 0.0) || !(aim.direction.dot(interaction.normal) > 0.0) ||
       !(aim.direction.dot(at.normal) > 0.0)) {
@@ -266,7 +266,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
                                const ElementHit& hit, const ShadingPoint& at,
                                const BrightPatches::View& view, const Eigen::Array4d& u,
                                float share, TreeState& state) const {
-  if (branch.depth >= deepest_path(options_.max_depth, true)) return;
+  if (branch.depth >= deepest_path(options_.max_depth)) return;
   const BrightPatches::Aim aim = bright_.draw(view, u[0], u[1], u[2]);
   if (!(aim.direction.dot(at.normal) > 0.0) || !(aim.direction.dot(interaction.normal) > 0.0))
     return;

@@ -168,7 +168,7 @@ TEST(Render, EveryPathBetweenTwoMirrorsIsCutOnce) {
   const Camera camera = camera_towards({0, 0, 0.5}, {1, 0, 0}, 30, 8);
   Camera tilted = camera_towards({0, 0, 0.5}, {1, 0.2, 1}, 30, 8);
   RenderReport report;
-  lit.render(tilted, {.max_depth = 5}, &report);
+  lit.render(tilted, {}, &report);
   EXPECT_GE(report.eye_rays, 81);
   EXPECT_EQ(report.depth_cut, report.eye_rays);
   EXPECT_DOUBLE_EQ(report.cut_share, 1.0);
@@ -177,7 +177,7 @@ TEST(Render, EveryPathBetweenTwoMirrorsIsCutOnce) {
                             .square({.specular = 0.1f}, {0, 0, 0}, {0, 0, 1}, 1000)
                             .square({.specular = 0.1f}, {0, 0, 1}, {0, 0, -1}, 1000)
                             .build());
-  dim.render(tilted, {.max_depth = 5, .min_contribution = 1e-3f}, &report);
+  dim.render(tilted, {.min_contribution = 1e-3f}, &report);
   EXPECT_EQ(report.depth_cut, 0);
   EXPECT_EQ(report.cut_share, 0.0);
 }

@@ -133,6 +133,29 @@ TEST(LightPaths, StackOfSlabsPassesTheSumOfAllItsReflections) {
   }
 }
 
+// Light that enters a square shaft of 0.98, 1 m wide and 40 m deep, at 45 degrees to its axis meets
+// its sides 40 times, and arrives at the floor with 0.98^40 = 0.446. A product of 40 floats rounds
+// by 40 * 6e-8.
+TEST(LightPaths, FollowLightDownAMirroredShaft) {
+  Scene scene;
+  const int sides = add_material(scene, test::mirror(scene.bands, 0.98f));
+  const int floor = add_material(scene, diffuse(scene.bands, 0.5f));
+  add_box(scene, {0, 0, 0}, {1, 1, 40}, {sides, sides, sides, sides, floor, sides}, true);
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 50.0});
+  const ElementCaster caster(mesh);
+  const LightPaths paths(scene, caster, 8);
+  const Ray ray{.origin = {0.3, 0.4, 39.9}, .direction = {1, 0, -1}};
+  ElementHit hit;
+  caster.closest_hits({&ray, 1}, {&hit, 1});
+  double arrived = 0.0;
+  const PathLosses losses = paths.follow(ray, hit, 1, [&](const ElementHit& at, const Spectrum& w) {
+    EXPECT_EQ(at.facet, 4);
+    arrived += static_cast<double>(w[0]);
+  });
+  EXPECT_NEAR(arrived / std::pow(0.98, 40), 1.0, 2.4e-6);
+  EXPECT_EQ(losses.cut[0], 0.0f);
+}
+
 /// Light from the floor of a closed box of brushed metal that reflects 0.7, to the floor again;
 /// mean of one path of each of `count`, its standard error, and the surfaces that are met.
 struct BrushedBox {
