@@ -17,7 +17,7 @@ class VertexGatherPoints {
  public:
   explicit VertexGatherPoints(const PatchMesh& mesh);
   GatherPoint operator[](int vertex) const;
-  /// The point of a vertex on its element's facet, below the one that facets in common have.
+  /// The point of a vertex on its element's facet, also where facets meet smoothly.
   GatherPoint on_facet(int vertex) const;
   /// The common normal of facets that meet smoothly at the vertex; empty elsewhere.
   std::optional<Eigen::Vector3d> common_normal(int vertex) const;

@@ -62,7 +62,6 @@ TEST_F(RadianceLamps, BrightdataIsTheDistributionOfALamp) {
 // ies2rad scales the colour of a lamp to the luminance of white, so that candela are those of the
 // photometric file in any colour.
 TEST_F(RadianceLamps, ColoursOfIes2radKeepTheCandela) {
-  // Luminance by RADIANCE's primaries: 0.265 1.38244 + 0.670 0.911576 + 0.065 0.34969 = 0.9998.
   const Scene scene = read(
       "void brightdata dist 4 flatcorr half.dat source.cal src_theta 0 1 5\n"
       "dist light shine 0 0 3 1.38244 .911576 .34969\n"
@@ -71,10 +70,12 @@ TEST_F(RadianceLamps, ColoursOfIes2radKeepTheCandela) {
   const Lamp& lamp = scene.lamps[0];
   const double candela =
       luminous(scene.bands, lamp.intensity) * relative_intensity(lamp, -Eigen::Vector3d::UnitZ());
-  // Below the lamp: multiplier table area, 179 lm/W. The weights have three decimals, and the sum
-  // misses 1 by 2e-4: 0.0005 (1.38 + 0.91 + 0.35) + 0.0002 = 0.0016 at most.
-  const double of_file = 179.0 * 5.0 * 2.0 * 0.08;
-  EXPECT_NEAR(candela, of_file, 0.0016 * of_file);
+  // Below the lamp: multiplier table area, 179 lm/W. The luminance of the colour is grey() of
+  // rayinit.cal. Floats are the table's factor, the colour, their product, the weight and its
+  // product.
+  const double of_white = 0.265074126 * 1.38244 + 0.670114631 * 0.911576 + 0.064811243 * 0.34969;
+  const double expected = 179.0 * 5.0 * 2.0 * 0.08 * of_white;
+  EXPECT_NEAR(candela, expected, 5 * 0x1p-24 * expected);
 }
 
 TEST_F(RadianceLamps, EachLampOfATurnedArrayHasItsOwnDistribution) {

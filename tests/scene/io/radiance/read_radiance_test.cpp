@@ -243,17 +243,21 @@ TEST_F(Radiance, LightIsPiTimesItsRadianceFromTheFrontAt179LumensPerWatt) {
 
 TEST_F(Radiance, ColoursHaveTheLuminanceOfRadiancesPrimaries) {
   const Scene scene = read("void light m 0 0 3 1 2 3\nm " + square);
-  // The manual's weights 0.265, 0.670 and 0.065 have three decimals.
-  const Eigen::Array3d weights(0.265, 0.670, 0.065);
+  // grey() of rayinit.cal, nine decimals. The weights are floats, off by 2^-24 of themselves.
+  const Eigen::Array3d weights(0.265074126, 0.670114631, 0.064811243);
   for (int k = 0; k < 3; ++k) {
     Spectrum primary = Spectrum::Zero(3);
     primary[k] = 1.0f;
-    EXPECT_NEAR(luminous(scene.bands, primary), 179.0 * weights[k], 179.0 * 0.0005);
+    EXPECT_NEAR(luminous(scene.bands, primary), 179.0 * weights[k],
+                179.0 * (0.5e-9 + 0x1p-24 * weights[k]));
   }
-  // White is (0.3333, 0.3333): X = Y, Z = 3334 / 3333 Y. Single precision.
+  // White is (0.3333, 0.3333): X = Y, Z = 3334 / 3333 Y. Floats below 1 are off by 2^-25 each,
+  // their first sum by as much and the second, which may exceed 1, by 2^-24: 3 times 2^-24 in each
+  // of two sums, and one more for the product.
+  constexpr float rounding = 7 * 0x1p-24f;
   const Eigen::Array3f white = scene.bands.xyz.rowwise().sum();
-  EXPECT_NEAR(white[0], white[1], 1e-6f);
-  EXPECT_NEAR(white[2], 3334.0f / 3333.0f * white[1], 1e-6f);
+  EXPECT_NEAR(white[0], white[1], rounding);
+  EXPECT_NEAR(white[2], 3334.0f / 3333.0f * white[1], rounding);
 }
 
 TEST_F(Radiance, GlowsOfANegativeRadiusLightNothing) {
