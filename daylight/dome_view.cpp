@@ -65,7 +65,8 @@ class RayBatch {
     if (hit.facet < 0 || !around_.paths->is_specular(hit.facet)) return std::nullopt;
     const PathLosses losses =
         around_.paths->follow(rays_[ray], hit, random_key(key, static_cast<std::uint64_t>(ray)),
-                              std::function<void(const LightArrival&)>([](const LightArrival&) {}));
+                              std::function<void(const LightArrival&)>([](const LightArrival&) {}),
+                              PathQuantity::radiance);
     if (losses.exit.isZero()) return std::nullopt;
     return Exit{losses.exit, losses.escaped};
   }

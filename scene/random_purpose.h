@@ -36,6 +36,7 @@ enum class RandomPurpose : std::uint64_t {
   hemicube_paths = 33,
   asymmetry = 34,
   caustic_source_rays = 35,
+  medium_walks = 36,  // (patch, purpose, walk)
   // Sets of hemisphere rays; (set, purpose).
   hemisphere_sets = 0x5e75,
   // Scattering at rough surfaces; (key of an interaction, purpose).
@@ -131,6 +132,7 @@ constexpr bool is_distinct_purpose(RandomPurpose purpose) {
     case RandomPurpose::hemicube_paths:
     case RandomPurpose::asymmetry:
     case RandomPurpose::caustic_source_rays:
+    case RandomPurpose::medium_walks:
     case RandomPurpose::hemisphere_sets:
     case RandomPurpose::microfacet_masking:
     case RandomPurpose::path_microfacets:

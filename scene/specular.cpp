@@ -284,6 +284,12 @@ Spectrum crossing_share(const Dielectric& glass) {
                                    : glass.tint;
 }
 
+double radiance_scale(const Material& material, bool crosses, bool from_back) {
+  if (!crosses || !material.dielectric || material.dielectric->thin) return 1.0;
+  const double n = relative_index(*material.dielectric, from_back);
+  return 1.0 / (n * n);
+}
+
 bool is_clear_pane(const Material& material) {
   const auto& glass = material.dielectric;
   return glass ? glass->thin && !(glass->roughness > 0.0f) : material.passes_straight();

@@ -50,6 +50,12 @@ Spectrum scattering_weight(const SurfaceInteraction& interaction, const Scatteri
 /// tint, times what the body of a thin pane leaves.
 Spectrum crossing_share(const Dielectric& glass);
 
+/// Factor of the radiance that a ray reads behind a surface, (n_1 / n_2)^2: n_1 is the index of
+/// refraction on the side that the ray comes from, n_2 on the side where the ray goes on.
+/// Refraction leaves L / n^2 as it is, while shares of power need no such factor (Veach 1997,
+/// section 5.2). 1 where the ray does not cross, at a thin pane and at a sheet.
+double radiance_scale(const Material& material, bool crosses, bool from_back);
+
 /// True if light that crosses continues straight on: a thin pane without roughness, or a sheet of
 /// regular transmittance.
 bool is_clear_pane(const Material& material);

@@ -34,6 +34,7 @@ class Assembly {
 
   std::unique_ptr<FormFactors> build(FormFactorReport* report) {
     auto result = std::make_unique<StoredFormFactors>(options_.budget, n_, rows_.bands());
+    result->squared_indices = options_.squared_index;
     FormFactorReport found;
     found.closed_forms = known_.S.record_count();
     join();

@@ -34,6 +34,7 @@ struct AssemblyOptions {
   /// Shares of even light, [0,1], that patches mirror or pass straight on besides what they
   /// diffuse, patches x bands; empty: no patch does both.
   BandArray mirrored{};
+  Eigen::ArrayXd squared_index{};  ///< of the result, see FormFactors
 };
 
 /// Joins the two estimates of every pair, replaces pairs by known exchange, closes the rows

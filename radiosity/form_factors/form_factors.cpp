@@ -22,6 +22,7 @@
 #include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/paths/mirrored_shares_of_patches.h"
+#include "radiosity/paths/squared_indices.h"
 #include "radiosity/visibility/pair_shafts.h"
 #include "scene/parallel.h"
 
@@ -360,7 +361,8 @@ std::unique_ptr<FormFactors> compute_form_factors(const LitScene& lit,
                                        .budget = budget,
                                        .progress = options.run.progress,
                                        .phase_of = phase_of,
-                                       .mirrored = estimator.mirrored()},
+                                       .mirrored = estimator.mirrored(),
+                                       .squared_index = squared_indices(lit.scene, lit.caster)},
                                       report);
   if (report) {
     report->row_error = std::move(estimate.row_error);

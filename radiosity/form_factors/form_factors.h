@@ -35,7 +35,8 @@ struct SpecularRow {
 ///
 /// Every implementation keeps
 ///   - 0 <= F_ij;
-///   - reciprocity, A_i F_ij = A_j F_ji;
+///   - reciprocity, A_i F_ij = A_j F_ji; by way of clear bodies n_i^2 A_i F_ij = n_j^2 A_j F_ji
+///     (see squared_index);
 ///   - closure: sum_j (F_ij + F^s_ij) (1 - s_j) + escaped(i) + absorbed_by_specular(i) = 1 in every
 ///     band. F^s_ij is specular_row(i), s_j the share of even light that patch j mirrors besides
 ///     what it scatters: such a patch counts in row(i), and passes its mirrored share on.
@@ -49,6 +50,9 @@ class FormFactors {
   virtual Spectrum escaped(int i) const = 0;
   /// Share per band that mirrors and glass absorb on the way.
   virtual Spectrum absorbed_by_specular(int i) const = 0;
+  /// n_i^2, squared index of refraction of the clear body around each patch, relative to the air
+  /// around all bodies; empty: 1 for all.
+  virtual Eigen::ArrayXd squared_index() const { return {}; }
   /// Gives up row i. The row may be empty afterwards.
   virtual void release([[maybe_unused]] int i) {}
 };

@@ -15,14 +15,26 @@ RecordValues values_of(const std::byte* record, int bands) {
   return {reinterpret_cast<const float*>(record + sizeof(int)), bands};
 }
 
+// n_i^2 A_i of each patch, in which exchange by way of clear bodies is symmetric.
+Eigen::ArrayXd etendue(const PatchMesh& mesh, const AssemblyOptions& options) {
+  if (options.squared_index.size() == 0) return mesh.area;
+  return options.squared_index * mesh.area;
+}
+
 // S_ij, j >= i, per band: the mean of both ends weighted by inverse variance.
 RecordStore joined_records(const PatchMesh& mesh, RowEstimates& rows,
-                           const std::shared_ptr<MemoryBudget>& budget) {
+                           const AssemblyOptions& options) {
   const int bands = rows.bands();
+  const Eigen::ArrayXd& squared_index = options.squared_index;
+  const auto inverse_variance = [&](int i) {
+    return squared_index.size() == 0 ? rows.inverse_variance(i)
+                                     : rows.inverse_variance(i) / squared_index[i];
+  };
+  // Of F_ij: the weight of S_ij times n_i^2 A_i.
   const auto weight = [&](int i) {
     return static_cast<float>(rows.inverse_variance(i) * mesh.area[i]);
   };
-  RecordStore S(budget, rows.patch_count(), rows.specular_shares().record_bytes(),
+  RecordStore S(options.budget, rows.patch_count(), rows.specular_shares().record_bytes(),
                 RecordStore::Count::above_diagonal);
   fold_symmetric(
       rows.specular_shares(),
@@ -33,7 +45,7 @@ RecordStore joined_records(const PatchMesh& mesh, RowEstimates& rows,
           Spectrum sum = Spectrum::Zero(bands);
           if (own) sum += values_of(own, bands).transpose() * weight(i);
           if (other) sum += values_of(other, bands).transpose() * weight(j);
-          sum /= static_cast<float>(rows.inverse_variance(i) + rows.inverse_variance(j));
+          sum /= static_cast<float>(inverse_variance(i) + inverse_variance(j));
           records.resize(++count * S.record_bytes());
           std::byte* const to = records.data() + records.size() - S.record_bytes();
           std::memcpy(to, &j, sizeof j);
@@ -103,10 +115,10 @@ RowLight row_light(RowEstimates& rows, const AssemblyOptions& options,
   return light;
 }
 
-Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowLight& light, const RecordStore& S,
+Eigen::ArrayXXd balance(const Eigen::ArrayXd& etendue, const RowLight& light, const RecordStore& S,
                         const PhaseOf& phase_of) {
   Eigen::ArrayXXd target = light.left * light.ratio * light.own;
-  target.colwise() *= mesh.area;
+  target.colwise() *= etendue;
   const auto scaled = [&](const Eigen::ArrayXXd& x) -> Eigen::ArrayXXd {
     return light.left * product(S, light.left * x);
   };
@@ -128,9 +140,10 @@ Eigen::ArrayXXd balance(const PatchMesh& mesh, const RowLight& light, const Reco
 void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, const AssemblyOptions& options,
                        const Eigen::ArrayXXd& entering, StoredFormFactors& result) {
   const RowLight light = row_light(rows, options, entering);
-  RecordStore S = joined_records(mesh, rows, options.budget);
+  const Eigen::ArrayXd G = etendue(mesh, options);
+  RecordStore S = joined_records(mesh, rows, options);
   Eigen::ArrayXXd d = Eigen::ArrayXXd::Ones(rows.patch_count(), rows.bands());
-  if (options.enforce_closure) d = balance(mesh, light, S, options.phase_of);
+  if (options.enforce_closure) d = balance(G, light, S, options.phase_of);
   Eigen::ArrayXXd kept = Eigen::ArrayXXd::Zero(rows.patch_count(), rows.bands());
   unfold_symmetric(S, [&](int i, RecordSpan below, RecordSpan upper) {
     std::vector<int> patches;
@@ -141,8 +154,7 @@ void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, const Assembly
         const RecordValues S_ij = values_of(part[k], rows.bands());
         patches.push_back(j);
         for (int band = 0; band < rows.bands(); ++band) {
-          values.push_back(
-              static_cast<float>(S_ij[band] * (d(i, band) * d(j, band)) / mesh.area[i]));
+          values.push_back(static_cast<float>(S_ij[band] * (d(i, band) * d(j, band)) / G[i]));
         }
       }
     }

@@ -10,12 +10,14 @@ namespace lightwell {
 /// exchange and its losses to `result`. With options.enforce_closure the exchange of each band is
 /// scaled symmetrically until every row keeps its light:
 ///
-///     sum_j S_ij (1 - s_j) / A_i + lost_i = c_i + sum_j F_ij s_j
+///     S_ij = n_i^2 A_i F^s_ij
+///     sum_j S_ij (1 - s_j) / (n_i^2 A_i) + lost_i = c_i + sum_j F_ij s_j
 ///
-/// s_j is the share that patch j mirrors of what arrives there (options.mirrored), c_i the share of
-/// row i that first meets a mirror or glass alone, and `entering` the sum on the right, patches x
-/// bands, of the F_ij that are stored; empty where no patch both mirrors and diffuses. Rays
-/// measured the shares of the left, in proportion.
+/// n_i is the index of refraction around patch i (options.squared_index), s_j is the share that
+/// patch j mirrors of what arrives there (options.mirrored), c_i the share of row i that first
+/// meets a mirror or glass alone, and `entering` the sum on the right, patches x bands, of the F_ij
+/// that are stored; empty where no patch both mirrors and diffuses. Rays measured the shares of the
+/// left, in proportion.
 void assemble_specular(const PatchMesh& mesh, RowEstimates& rows, const AssemblyOptions& options,
                        const Eigen::ArrayXXd& entering, StoredFormFactors& result);
 

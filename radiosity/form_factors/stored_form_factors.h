@@ -19,6 +19,7 @@ class StoredFormFactors final : public FormFactors {
   SpecularRow specular_row(int i) const override;
   Spectrum escaped(int i) const override { return escaped_share.row(i).transpose(); }
   Spectrum absorbed_by_specular(int i) const override { return absorbed_share.row(i).transpose(); }
+  Eigen::ArrayXd squared_index() const override { return squared_indices; }
   void release(int i) override;
 
   /// Adds row i: patches, then values with all bands of a patch together. Safe to call from many
@@ -28,6 +29,7 @@ class StoredFormFactors final : public FormFactors {
   RowStore<FormFactor> rows;
   RecordStore specular;
   BandArray escaped_share, absorbed_share;  ///< patches x bands
+  Eigen::ArrayXd squared_indices{};         ///< see squared_index()
 };
 
 }  // namespace lightwell

@@ -136,12 +136,15 @@ void GapLight::add_end(const ElementCaster& caster, const Ray& ray, const Elemen
                    sum);
   }
   if (!paths_.is_specular(hit.facet)) return;
-  paths_.follow(caster, ray, hit, key, [&](const LightArrival& arrival) {
-    if (arrival.hit.element < 0) return;
-    radiosity_.add(arrival.hit,
-                   Spectrum(static_cast<float>(arrival.base_factor) * share * arrival.throughput),
-                   sum);
-  });
+  paths_.follow(
+      caster, ray, hit, key,
+      [&](const LightArrival& arrival) {
+        if (arrival.hit.element < 0) return;
+        radiosity_.add(
+            arrival.hit,
+            Spectrum(static_cast<float>(arrival.base_factor) * share * arrival.throughput), sum);
+      },
+      PathQuantity::radiance);
 }
 
 // The gap that a point lies in, if few rays get out of it by themselves.

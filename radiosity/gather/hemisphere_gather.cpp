@@ -267,10 +267,12 @@ bool HemisphereGather::is_near_portal(const Place& place, const Ray& ray,
 void HemisphereGather::add_path(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                                 double share, Eigen::ArrayXd& sum) const {
   const auto weight = static_cast<float>(share);
-  const PathLosses losses =
-      paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
+  const PathLosses losses = paths_.follow(
+      ray, hit, key,
+      [&](const ElementHit& end, const Spectrum& throughput) {
         if (end.element >= 0) radiosity_.add(end, Spectrum(weight * throughput), sum);
-      });
+      },
+      PathQuantity::radiance);
   if (losses.sky.size() == 0 || dome_.size() == 0) return;
   sum.segment(dome_column_, bands_) +=
       (std::numbers::pi_v<float> * weight * dome_ * losses.sky).cast<double>();

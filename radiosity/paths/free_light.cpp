@@ -315,7 +315,7 @@ class Collector {
       const PathLosses losses = paths_.follow(
           ray, hit,
           random_key(key, RandomPurpose::free_source_paths, static_cast<std::uint64_t>(r)),
-          [](const LightArrival&) {});
+          [](const LightArrival&) {}, PathQuantity::radiance);
       if (losses.sky.size() > 0) sum += losses.sky;
     }
     return std::numbers::pi_v<float> / static_cast<float>(sobol.count()) * sum;

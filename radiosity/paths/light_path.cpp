@@ -124,6 +124,7 @@ bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const Elemen
                                                      .polarisation = light.polarisation},
                                                     random);
   light.media.cross(material_[hit.facet], material, sample, hit.from_back);
+  light.radiance_scale *= radiance_scale(material, sample.crosses, hit.from_back);
   light.polarisation = sample.polarisation;
   light.through_panes_only = light.through_panes_only && sample.crosses && is_clear_pane(material);
   // Light that a partly diffuse surface does not mirror arrives at its diffuse side, which the
@@ -163,13 +164,15 @@ bool LightPaths::survives(std::uint64_t key, float weak, PathLight& light,
 }
 
 PathLosses LightPaths::follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
-                              const std::function<void(const LightArrival&)>& arrive) const {
-  return follow(caster_, ray, hit, key, arrive);
+                              const std::function<void(const LightArrival&)>& arrive,
+                              PathQuantity quantity) const {
+  return follow(caster_, ray, hit, key, arrive, quantity);
 }
 
 PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
                               const ElementHit& first_hit, std::uint64_t key,
-                              const std::function<void(const LightArrival&)>& arrive) const {
+                              const std::function<void(const LightArrival&)>& arrive,
+                              PathQuantity quantity) const {
   const int bands = scene_.bands.count();
   PathLosses losses{Spectrum::Zero(bands), Spectrum::Zero(bands), Spectrum::Zero(bands), {}};
   PathLight light{.throughput = Spectrum::Ones(bands)};
@@ -197,17 +200,17 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
     absorb(ray, hit, light, losses);
     const bool leaves = hit.facet < 0 || (hit.element < 0 && !is_specular(hit.facet));
     if (leaves) {
-      losses.escaped += throughput;
+      losses.escaped += light.of(quantity);
       if (hit.facet < 0 && !light.through_panes_only) {
         losses.exit = ray.direction.normalized();
-        if (scene_.sky) losses.sky = throughput * sky_radiance(*scene_.sky, losses.exit);
+        if (scene_.sky) losses.sky = light.of(quantity) * sky_radiance(*scene_.sky, losses.exit);
       }
       return losses;
     }
     const bool arrives = is_diffuse(hit.facet) || arrivals_ == PathArrivals::all;
     if (arrives && hit.element >= 0) {
       arrive({.hit = hit,
-              .throughput = throughput,
+              .throughput = light.of(quantity),
               .base_factor = base_factor(caster, ray, hit),
               .position = ray.origin + hit.t * ray.direction,
               .through_panes_only = light.through_panes_only});
@@ -216,14 +219,14 @@ PathLosses LightPaths::follow(const ElementCaster& caster, const Ray& first_ray,
   }
 }
 
-PathLosses LightPaths::follow(
-    const Ray& ray, const ElementHit& hit, std::uint64_t key,
-    const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const {
+PathLosses LightPaths::follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
+                              const std::function<void(const ElementHit&, const Spectrum&)>& arrive,
+                              PathQuantity quantity) const {
   const auto without_place = [&](const LightArrival& at) {
     if (at.base_factor == 1.0) return arrive(at.hit, at.throughput);
     arrive(at.hit, static_cast<float>(at.base_factor) * at.throughput);
   };
-  return follow(ray, hit, key, std::function<void(const LightArrival&)>(without_place));
+  return follow(ray, hit, key, std::function<void(const LightArrival&)>(without_place), quantity);
 }
 
 }  // namespace lightwell

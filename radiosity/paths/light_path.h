@@ -16,7 +16,7 @@ namespace lightwell {
 
 /// The part of a ray's unit of light that arrived at no diffuse surface.
 struct PathLosses {
-  Spectrum escaped{};   ///< left the scene or met a black back
+  Spectrum escaped{};   ///< left the scene or met a black back, see PathQuantity
   Spectrum absorbed{};  ///< by mirrors, and by glass that is tinted or absorbs
   Spectrum cut{};       ///< left when the depth limit was reached
   /// Radiance of the sky's dome in the direction of escape times the throughput of the path,
@@ -55,6 +55,13 @@ enum class PathArrivals {
   all,      ///< mirrors and glass along the path, too, whose irradiance is to be measured
 };
 
+/// Quantity that a path weighs at its arrivals and where light escapes. Both are the same unless a
+/// path begins and ends in bodies of different indices of refraction.
+enum class PathQuantity {
+  power,    ///< the share of the power sent along the ray: form factors, photons
+  radiance  ///< the factor of the radiance that the ray reads, with radiance_scale(): gathers
+};
+
 /// Follows rays through mirrors and clear glass to diffuse surfaces (extended form factors, Sillion
 /// & Puech 1989). One scattering sample continues each ray: a branch of glass with Fresnel's
 /// probability, a direction of a rough surface's lobe (see sample_scattering). The mean is exact.
@@ -89,14 +96,16 @@ class LightPaths {
   /// Calls `arrive` for every arrival behind the specular facet at `hit` of `ray`. The
   /// facet's own diffuse share, if any, is left to the caller. `key` decides the branches.
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
-                    const std::function<void(const LightArrival&)>& arrive) const;
+                    const std::function<void(const LightArrival&)>& arrive,
+                    PathQuantity quantity = PathQuantity::power) const;
   /// The same; `arrive` gets the throughput times base_factor.
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
-                    const std::function<void(const ElementHit&, const Spectrum&)>& arrive) const;
+                    const std::function<void(const ElementHit&, const Spectrum&)>& arrive,
+                    PathQuantity quantity = PathQuantity::power) const;
   /// Follows rays of another caster of the same scene, such as ElementCaster::at().
   PathLosses follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                    std::uint64_t key,
-                    const std::function<void(const LightArrival&)>& arrive) const;
+                    std::uint64_t key, const std::function<void(const LightArrival&)>& arrive,
+                    PathQuantity quantity = PathQuantity::power) const;
 
  private:
   // Light along a path.
@@ -104,7 +113,14 @@ class LightPaths {
     Media media{};
     Spectrum throughput{};
     Polarisation polarisation{};
+    double radiance_scale = 1.0;  // product over the surfaces crossed
     bool through_panes_only = true;
+    // The throughput of a quantity.
+    Spectrum of(PathQuantity quantity) const {
+      return quantity == PathQuantity::power
+                 ? throughput
+                 : Spectrum(static_cast<float>(radiance_scale) * throughput);
+    }
   };
   // The material of a hit at `point`; `own` holds the numbers of a pattern.
   const Material& material_at(const ElementCaster& caster, const ElementHit& hit,

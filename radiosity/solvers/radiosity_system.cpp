@@ -28,16 +28,31 @@ LaneArray dot(const Weights& w, const LightVector& a, const LightVector& b) {
 RadiositySystem::RadiositySystem(const PatchMesh& mesh, const FormFactors& form_factors,
                                  std::function<void()> pause, const BandArray& arriving)
     : RowGather(form_factors, static_cast<int>(mesh.emission.cols()), std::move(pause)),
-      area(mesh.area),
-      M(with_lanes(mesh.emission)),
+      squared_index(form_factors.squared_index()),
+      area(squared_index.size() > 0 ? squared_index * mesh.area : mesh.area),
+      M(basic(mesh.emission)),
       rho(with_lanes(mesh.reflectance)),
       albedo(rho),
       behind_(mesh.behind) {
   if (!mesh.behind.empty()) {
     tau = with_lanes(mesh.transmittance);
+    for (int i = 0; squared_index.size() > 0 && i < patch_count(); ++i) {
+      if (behind(i) >= 0) tau.row(i) *= squared_index[behind(i)] / squared_index[i];
+    }
     albedo += tau;
   }
-  if (arriving.size() > 0) M += scattered(with_lanes(arriving));
+  if (arriving.size() > 0) M += scattered(basic(arriving));
+}
+
+LightVector RadiositySystem::basic(const BandArray& values) const {
+  LightVector result = with_lanes(values);
+  if (squared_index.size() > 0) result.colwise() /= squared_index;
+  return result;
+}
+
+BandArray RadiositySystem::without_index(LightVector values) const {
+  if (squared_index.size() > 0) values.colwise() *= squared_index;
+  return without_lanes(values);
 }
 
 LightVector RadiositySystem::scattered(const LightVector& E) const {

@@ -10,6 +10,9 @@ namespace lightwell {
 /// The linear system B = M + R F B of a mesh, all bands side by side. R scatters irradiance E to
 /// both sides of sheets, (R E)_i = rho_i E_i + tau_i E_behind(i), and is the diagonal of rho where
 /// nothing is translucent. With arriving light E0 from elsewhere, M is M + R E0.
+///
+/// Within a clear body of index n_i all of B, M and E are basic, over n_i^2 (see
+/// FormFactors::squared_index), and areas count n_i^2 times: the system is symmetric there, too.
 class RadiositySystem : public RowGather {
  public:
   /// Keeps references to mesh and form_factors; `pause` as in RowGather. `arriving` is E0, patches
@@ -19,15 +22,19 @@ class RadiositySystem : public RowGather {
 
   int patch_count() const { return static_cast<int>(area.size()); }
 
-  const Eigen::ArrayXd& area;  ///< A_i, m^2
-  LightVector M, rho;          ///< emission in W/m^2, reflectance
-  LightVector tau;             ///< diffuse transmittance; empty if nothing is translucent
-  LightVector albedo;          ///< rho + tau: what scatters of even light on both sides
+  const Eigen::ArrayXd squared_index;  ///< n_i^2; empty: 1
+  const Eigen::ArrayXd area;           ///< n_i^2 A_i, m^2
+  LightVector M, rho;                  ///< emission in W/m^2, reflectance
+  LightVector tau;                     ///< diffuse transmittance; empty if nothing is translucent
+  LightVector albedo;                  ///< rho + tau: what scatters of even light on both sides
 
   /// True if light passes sheets diffusely.
   bool is_translucent() const { return tau.size() > 0; }
   /// The patch whose irradiance passes to patch i; -1: none.
   int behind(int i) const { return behind_.empty() ? -1 : behind_[static_cast<std::size_t>(i)]; }
+  /// Values of patches, W/m^2, over n_i^2, and the reverse.
+  LightVector basic(const BandArray& values) const;
+  BandArray without_index(LightVector values) const;
   /// R E.
   LightVector scattered(const LightVector& E) const;
 

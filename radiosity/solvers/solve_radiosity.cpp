@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "radiosity/solvers/solvers.h"
@@ -92,7 +93,13 @@ std::string_view solver_name(SolverMethod method) {
 
 BandArray gather(const FormFactors& form_factors, const BandArray& radiosity) {
   const RowGather rows(form_factors, static_cast<int>(radiosity.cols()));
-  return rows.without_lanes(rows.all(rows.with_lanes(radiosity)));
+  const Eigen::ArrayXd squared_index = form_factors.squared_index();
+  const bool has_bodies = squared_index.size() > 0;
+  LightVector B = rows.with_lanes(radiosity);
+  if (has_bodies) B.colwise() /= squared_index;
+  LightVector E = rows.all(B);
+  if (has_bodies) E.colwise() *= squared_index;
+  return rows.without_lanes(E);
 }
 
 RadiositySolution solve_radiosity(SolverMethod method, const PatchMesh& mesh,
@@ -100,9 +107,9 @@ RadiositySolution solve_radiosity(SolverMethod method, const PatchMesh& mesh,
   SolverRun run(mesh, form_factors, options);
   method = chosen(run, method);
   run.keep_passes(method);
-  const LightVector B = solve(run, method);
+  LightVector B = solve(run, method);
   RadiositySolution solution;
-  solution.patch_radiosity = run.system.without_lanes(B);
+  solution.patch_radiosity = run.system.without_index(std::move(B));
   solution.solver = solver_name(method);
   solution.history = run.history();
   solution.residual = solution.history.back().residual;

@@ -85,7 +85,8 @@ struct SolverOptions {
   std::function<std::string(int patch)> name_of{};
 };
 
-/// E_i = sum_j F_ij B_j, extended form factors included: patches x bands, W/m^2.
+/// E_i = n_i^2 sum_j F_ij B_j / n_j^2, extended form factors included, with the indices of
+/// refraction of FormFactors::squared_index: patches x bands, W/m^2.
 BandArray gather(const FormFactors& form_factors, const BandArray& radiosity);
 
 /// Solves B = M + rho F B. Fills patch_radiosity, solver, history, residual and outcome of the

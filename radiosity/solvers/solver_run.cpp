@@ -122,7 +122,7 @@ void SolverRun::refuse_endless(int patch, int lane) const {
 
 LightVector SolverRun::start() const {
   if (options.start.size() == 0) return system.M;
-  LightVector B = system.with_lanes(options.start);
+  LightVector B = system.basic(options.start);
   for (int i = 0; i < system.patch_count(); ++i) {
     const auto is_lit = error_per_residual_.row(groups.group_of[i]) > 0.0;
     B.row(i) = is_lit.select((system.albedo.row(i) > 0.0).select(B.row(i), system.M.row(i)), 0.0);
@@ -158,7 +158,7 @@ bool SolverRun::should_continue(SolverMethod method, const LightVector& B,
     options.observer({.number = sweeps,
                       .method = method,
                       .record = history_.back(),
-                      .radiosity = system.without_lanes(B)});
+                      .radiosity = system.without_index(B)});
   }
   const bool is_done = excess <= 1.0;
   outcome_ = is_done ? Outcome::converged : Outcome::max_sweeps_reached;

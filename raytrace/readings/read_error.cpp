@@ -117,10 +117,13 @@ class ReadErrors {
     double sum = 0.0;
     if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) sum += share * reflected(hit.element);
     if (!paths_.is_specular(hit.facet)) return sum;
-    paths_.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
-      if (end.element < 0) return;
-      sum += share * static_cast<double>(throughput.mean()) * reflected(end.element);
-    });
+    paths_.follow(
+        ray, hit, key,
+        [&](const ElementHit& end, const Spectrum& throughput) {
+          if (end.element < 0) return;
+          sum += share * static_cast<double>(throughput.mean()) * reflected(end.element);
+        },
+        PathQuantity::radiance);
     return sum;
   }
 

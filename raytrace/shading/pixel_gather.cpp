@@ -267,10 +267,13 @@ Spectrum PixelGather::arriving(const ElementCaster& caster, const Ray& ray, cons
   }
   if (!paths_.is_specular(hit.facet)) return B;
   const auto by_way = static_cast<float>(shares.by_way);
-  const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
-    B += by_way * static_cast<float>(end.base_factor) * end.throughput *
-         interpolate(mesh, radiosity_, end.hit);
-  });
+  const PathLosses losses = paths_.follow(
+      caster, ray, hit, key,
+      [&](const LightArrival& end) {
+        B += by_way * static_cast<float>(end.base_factor) * end.throughput *
+             interpolate(mesh, radiosity_, end.hit);
+      },
+      PathQuantity::radiance);
   if (losses.sky.size() > 0 && dome_.size() > 0) {
     B += std::numbers::pi_v<float> * by_way * dome_ * losses.sky;
   }

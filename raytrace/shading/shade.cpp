@@ -168,7 +168,7 @@ void RayTree::follow(Branch branch, TreeState& state) const {
                     .turns = branch.turns});
   }
   if (!visible_lamps_->empty() && shows_lamp(branch, hit, state)) return;
-  if (!state.lamps_alone && branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
+  if (!state.lamps_alone && branch.is_sharp && branch.share() >= options_.contrast) {
     const int seen = hit.facet < 0 ? -1 : facets_[hit.facet].smooth_surface;
     result.fingerprint = random_key(result.fingerprint, branch.node,
                                     static_cast<std::uint64_t>(seen), hit.from_back);
@@ -205,7 +205,7 @@ bool RayTree::shows_lamp(const Branch& branch, const ElementHit& hit, TreeState&
   const auto seen =
       branch.is_sharp ? visible_lamps_->first(ray, end) : visible_lamps_->first_body(ray, end);
   if (!seen) return false;
-  if (branch.is_sharp && branch.weight.maxCoeff() >= options_.contrast) {
+  if (branch.is_sharp && branch.share() >= options_.contrast) {
     constexpr std::uint64_t of_lamps = std::uint64_t{1} << 32;  // beyond all smooth surfaces
     state.result.fingerprint = random_key(state.result.fingerprint, branch.node,
                                           of_lamps + static_cast<std::uint64_t>(seen->face), false);
@@ -331,7 +331,7 @@ void RayTree::split(const Branch& branch, const ElementHit& hit, const ShadingPo
   }
   if (state.turns && branch.depth >= state.turns->count) return;
   SmoothScattering lobes = smooth_scattering(interaction);
-  if (state.shades && branch.weight.maxCoeff() < options_.min_contribution) {
+  if (state.shades && branch.share() < options_.min_contribution) {
     choose_one(branch, lobes, state);
   }
   for (std::uint64_t i = 0; i < static_cast<std::uint64_t>(lobes.count); ++i) {
@@ -364,6 +364,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
                 .sky = off_lobe || (sample.crosses && is_clear_pane(what)) ? parent.sky : nullptr,
                 .sky_lobe_density = off_lobe ? sample.density : parent.sky_lobe_density,
                 .behind_coat = parent.behind_coat + (is_behind_coat ? 1 : 0),
+                .scale = parent.scale,
                 .cone = {.start = cone_width(parent, at), .spread = parent.cone.spread},
                 .blur = {.start = width_of(parent.blur, parent, at),
                          .spread = off_lobe ? spread_of_lobe(sample.density) : parent.blur.spread},
@@ -372,7 +373,7 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
   if (!survives(branch, state)) return;
   if (branch.depth > deepest_path(options_.max_depth)) {
     ++state.result.depth_cut;
-    state.result.cut_weight += branch.weight.maxCoeff();
+    state.result.cut_weight += branch.share();
     return;
   }
   if (parent.depth < ChainTurns::most) {
@@ -381,6 +382,9 @@ void RayTree::grow(const Branch& parent, std::uint64_t node, const ScatteringSam
   } else {
     branch.turns = {};
   }
+  const double scale = radiance_scale(what, sample.crosses, hit.from_back);
+  branch.weight *= static_cast<float>(scale);
+  branch.scale *= scale;
   branch.media.cross(material, what, sample, hit.from_back);
   branch.ray = {
       .origin = at.position, .direction = sample.direction.normalized(), .origin_group = hit.facet};

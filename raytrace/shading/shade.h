@@ -85,9 +85,9 @@ struct SpecularSegment {
 /// reflected or crosses by chance, with the weight of both, and ends by Russian roulette below a
 /// tenth of that. So many weak branches together lose nothing in the mean.
 ///
-/// Within an absorbing body L falls by the law of Beer and Lambert, see Media. L inside a
-/// dielectric is the basic radiance L/n^2, which refraction leaves unchanged; a path that ends
-/// outside again needs no factor n^2.
+/// Within an absorbing body L falls by the law of Beer and Lambert, see Media. Refraction leaves
+/// the basic radiance L / n^2 unchanged (see radiance_scale), so a path that ends outside again has
+/// no factor n^2.
 ///
 /// The *fingerprint* is equal for two rays whose trees see the same smooth surfaces from the same
 /// sides in the same order. Branches that weigh less than RenderOptions::contrast are left out,
@@ -242,12 +242,17 @@ class RayTree {
     const SkySites::Site* sky = nullptr;
     double sky_lobe_density = 0.0;  ///< lobe_density of that surface's direction
     int behind_coat = 0;  ///< surfaces on the way from the first coat on, that one included
+    double scale = 1.0;   ///< part of `weight` that is radiance_scale() of surfaces on the way
     PixelCone cone{};     ///< of the ray, from its origin on
     /// Width over which rough surfaces on the way spread the ray's light, from its origin on: about
     /// the square root of a lobe's solid angle for each metre behind it.
     PixelCone blur{};
     Media media{};
     Polarisation polarisation{};
+
+    /// Share of light that surfaces on the way leave, in the band where most is left. Decides which
+    /// branches are worth following: in glass all weights are smaller by n^2.
+    float share() const { return weight.maxCoeff() / static_cast<float>(scale); }
   };
   /// Irradiance at a point, W/m^2, direct and indirect. A coated base gets direct light by its
   /// angle (see LightQuery::base).
@@ -293,6 +298,8 @@ class RayTree {
                    const TreeState& state) const;
   void scatter(const Branch& branch, const SurfaceInteraction& interaction, const ElementHit& hit,
                const ShadingPoint& at, TreeState& state) const;
+  static Spectrum radiance_weight(const SurfaceInteraction& interaction,
+                                  const ScatteringSample& sample);
   void add_lamp(const Branch& branch, const SurfaceInteraction& interaction, const LobeView& view,
                 const ElementHit& hit, const ShadingPoint& at, const Eigen::Array4d& u, float share,
                 TreeState& state) const;

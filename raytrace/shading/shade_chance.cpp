@@ -52,7 +52,7 @@ void RayTree::choose_one(const Branch& branch, SmoothScattering& lobes,
 // stands for those that end. A tree without light needs no branch of little weight, and a single
 // path has no other branch.
 bool RayTree::survives(Branch& branch, const TreeState& state) const {
-  const float weight = branch.weight.maxCoeff();
+  const float weight = branch.share();
   if (weight >= options_.min_contribution || state.turns) return weight > 0.0f;
   if (!state.shades) return false;
   constexpr float far_below = 0.1f;

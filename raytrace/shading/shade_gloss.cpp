@@ -144,6 +144,14 @@ const RoughLobe& RayTree::lobe(int material, bool from_back) const {
   return *lobes_[static_cast<std::size_t>(material)][from_back ? 1 : 0];
 }
 
+// Factor, per band, of the radiance that a sample of a rough surface reads.
+Spectrum RayTree::radiance_weight(const SurfaceInteraction& interaction,
+                                  const ScatteringSample& sample) {
+  return scattering_weight(interaction, sample) *
+         static_cast<float>(
+             radiance_scale(interaction.material, sample.crosses, interaction.from_back));
+}
+
 // Adds light of a lamp off a rough surface, by a direction drawn towards the lamp. Directions of
 // the lobe that meet the lamp carry the rest of the weight (balance heuristic of Veach & Guibas
 // 1995).
@@ -160,7 +168,7 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
                                 .crosses = lamp->direction.dot(interaction.normal) < 0.0};
   const Eigen::Vector3d lit = at.position + lamp->distance * lamp->direction;
   const Spectrum L = exitance_at(*lamp->emitter, lit) * std::numbers::inv_pi_v<float>;
-  Spectrum seen = branch.weight * scattering_weight(interaction, sample) * L *
+  Spectrum seen = branch.weight * radiance_weight(interaction, sample) * L *
                   (share * static_cast<float>(density / (density + lamp->density)));
   if (!((branch.weight > 0.0f).any() && density > 0.0)) return;
   const Ray ray{.origin = at.position,
@@ -201,7 +209,7 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
                 .origin_group = hit.facet};
   // A lobe with density p averages radiance, int L p dw. A source of irradiance E and solid angle 0
   // contributes E p.
-  Spectrum seen = branch.weight * scattering_weight(interaction, sample) *
+  Spectrum seen = branch.weight * radiance_weight(interaction, sample) *
                   light_towards(*drawn->source, at.position) *
                   direct_light_.passed(*state.caster, ray) *
                   (share * static_cast<float>(density * source_sample.irradiance / drawn->chance));

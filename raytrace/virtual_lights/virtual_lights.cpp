@@ -124,20 +124,23 @@ Spectrum VirtualLights::by_way(const ElementCaster& caster, const Ray& ray, cons
                                const Query& query, std::uint64_t key) const {
   Spectrum B = Spectrum::Zero(lit_.scene.bands.count());
   std::uint64_t number = 0;  // of arrivals: weak ones go on by Russian roulette
-  const PathLosses losses = paths_.follow(caster, ray, hit, key, [&](const LightArrival& end) {
-    if (end.through_panes_only || end.hit.element < 0) return;
-    const Spectrum weight = static_cast<float>(end.base_factor) * end.throughput;
-    if (query.radiosity) {
-      B += weight * interpolate(lit_.mesh(), *query.radiosity, end.hit);
-      return;
-    }
-    const float chance = std::min(1.0f, weight.maxCoeff());
-    const auto own = random_key(key, 7, number++);
-    if (!(random_uniform(own) < static_cast<double>(chance))) return;
-    const Eigen::Vector3d normal = element_center(lit_.mesh(), end.hit.element).normal;
-    B += weight / chance *
-         radiosity(caster, {end.hit, end.position, normal, query.depth}, random_key(own, 1));
-  });
+  const PathLosses losses = paths_.follow(
+      caster, ray, hit, key,
+      [&](const LightArrival& end) {
+        if (end.through_panes_only || end.hit.element < 0) return;
+        const Spectrum weight = static_cast<float>(end.base_factor) * end.throughput;
+        if (query.radiosity) {
+          B += weight * interpolate(lit_.mesh(), *query.radiosity, end.hit);
+          return;
+        }
+        const float chance = std::min(1.0f, weight.maxCoeff());
+        const auto own = random_key(key, 7, number++);
+        if (!(random_uniform(own) < static_cast<double>(chance))) return;
+        const Eigen::Vector3d normal = element_center(lit_.mesh(), end.hit.element).normal;
+        B += weight / chance *
+             radiosity(caster, {end.hit, end.position, normal, query.depth}, random_key(own, 1));
+      },
+      PathQuantity::radiance);
   if (losses.sky.size() > 0 && dome_.size() > 0) {
     B += std::numbers::pi_v<float> * dome_ * losses.sky;
   }

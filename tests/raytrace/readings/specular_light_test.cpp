@@ -188,6 +188,31 @@ TEST(SpecularLight, OfTheSunBetweenTwoMirrorsArrivesOnce) {
   EXPECT_NEAR(irradiance(lit, {0.3, 0.1, 0.05}, up), expected, of_newton * expected);
 }
 
+// The sun lights a horizontal place under water with what passes the surface, however it bends.
+TEST(SpecularLight, OfTheSunUnderWaterIsWhatPassesTheSurface) {
+  constexpr double n = 1.33;
+  Scene scene =
+      SceneBuilder().square({.index_of_refraction = 1.33f}, Vector3d::Zero(), up, 20.0).build();
+  for (const double degrees : {0.0, 40.0, 70.0}) {
+    const double a = degrees * std::numbers::pi / 180.0;
+    shine(scene, {std::sin(a), 0.0, std::cos(a)});
+    const TracedScene lit(scene);
+    const double expected = 800.0 * std::cos(a) * (1.0 - fresnel_reflectance(std::cos(a), n));
+    EXPECT_NEAR(irradiance(lit, {0.1, 0.2, -0.7}, up), expected, of_newton * expected) << degrees;
+  }
+}
+
+// Under water, a lamp straight above is as bright as if the water between were d / n deep.
+TEST(SpecularLight, OfALampOverWaterIsThatOfItsApparentDistance) {
+  constexpr double n = 1.33, h = 2.0, d = 0.8;
+  Scene scene =
+      SceneBuilder().square({.index_of_refraction = 1.33f}, Vector3d::Zero(), up, 20.0).build();
+  scene.lamps.push_back(point_lamp(scene, {0.0, 0.0, h}, 5.0f));
+  const TracedScene lit(scene);
+  const double expected = 5.0 * (1.0 - fresnel_reflectance(1.0, n)) / std::pow(h + d / n, 2);
+  EXPECT_NEAR(irradiance(lit, {0.0, 0.0, -d}, up), expected, of_newton * expected);
+}
+
 // A lobe of roughness 0.02 is a few degrees wide, over which the image of a lamp of 1 m changes by
 // less than 2 %.
 TEST(SpecularLight, OffASlightlyRoughMirrorIsNearThatOfASmoothOne) {

@@ -59,8 +59,10 @@ TEST(RayTree, FresnelSharesOfAirToGlass) {
   for (const auto& [degrees, R] : closed_forms("fresnel_air_to_glass")["R"].items()) {
     const double r = R.get<double>();
     const Ray ray{.origin = {0, 0, 1}, .direction = downwards(std::stod(degrees))};
-    // Eye rays start at z = 1 in double precision; the float sum has 7 digits.
-    EXPECT_NEAR(radiance(glass_between_lamps(), ray), r + 100 * (1 - r), 1e-5 * 100) << degrees;
+    // Radiance in glass is n^2 times that before its surface. Eye rays start at z = 1 in double
+    // precision; the float sum has 7 digits.
+    const double seen = 100 / (1.5 * 1.5);
+    EXPECT_NEAR(radiance(glass_between_lamps(), ray), r + seen * (1 - r), 1e-5 * 100) << degrees;
   }
 }
 
@@ -68,7 +70,10 @@ TEST(RayTree, TotalInternalReflectionInGlass) {
   for (const auto& [degrees, R] : closed_forms("fresnel_glass_to_air")["R"].items()) {
     const double r = R.get<double>();
     const Ray ray{.origin = {0, 0, -1}, .direction = -downwards(std::stod(degrees))};
-    EXPECT_NEAR(radiance(glass_between_lamps(), ray), 100 * r + (1 - r), 1e-5 * 100) << degrees;
+    // Radiance that comes in from the air is n^2 times that outside.
+    const double seen = 1.5 * 1.5;
+    EXPECT_NEAR(radiance(glass_between_lamps(), ray), 100 * r + seen * (1 - r), 1e-5 * 100)
+        << degrees;
   }
 }
 
@@ -270,6 +275,41 @@ TEST(RayTree, GlassSphereInAUniformWorldIsInvisible) {
                 1.0 / (std::numbers::e * depth) + 1e-4)
         << off;
   }
+}
+
+// A bulb in the middle of a ball of glass: what is reflected at the ball ends at the black bulb, so
+// L = (1 - R) M / (pi n^2) along the radius. The bulb looks n times larger, and its flux stays.
+// Bodies within bodies multiply their relative indices.
+TEST(RayTree, GlassAroundALampSpreadsItsLight) {
+  constexpr double n = 1.5, water = 1.33;
+  const auto share = [](double relative) {
+    return 1.0 - std::pow((relative - 1.0) / (relative + 1.0), 2);
+  };
+  const Ray ray{.origin = {0, 0, 3}, .direction = -up};
+  const TracedScene ball(SceneBuilder()
+                             .sphere({.index_of_refraction = 1.5f}, {0, 0, 0}, 1.0)
+                             .square({.exitance = pi_f}, {0, 0, 0}, up, 0.1)
+                             .build());
+  EXPECT_NEAR(radiance(ball, ray), share(n) / (n * n), 1e-6);  // floats have 7 digits
+  const TracedScene filled(SceneBuilder()
+                               .sphere({.index_of_refraction = 1.5f}, {0, 0, 0}, 1.0)
+                               .sphere({.index_of_refraction = 1.33f / 1.5f}, {0, 0, 0}, 0.5)
+                               .square({.exitance = pi_f}, {0, 0, 0}, up, 0.1)
+                               .build());
+  // Between glass and water R1 R2 = 0.04 * 0.0036 of the light is reflected to the bulb once more.
+  EXPECT_NEAR(radiance(filled, ray), share(n) * share(water / n) / (water * water), 1.5e-4);
+}
+
+// Under water the sky is n^2 times as bright as above, and narrower.
+TEST(RayTree, AnEyeUnderWaterSeesTheWorldSquaredIndexTimesAsBright) {
+  constexpr double n = 1.33;
+  const TracedScene lit(SceneBuilder()
+                            .square({.index_of_refraction = 1.33f}, {0, 0, 0}, up, 5.0)
+                            .square({.exitance = pi_f}, {0, 0, 2}, -up, 5.0)
+                            .build());
+  const double R = std::pow((n - 1.0) / (n + 1.0), 2);
+  const Ray ray{.origin = {0, 0, -1}, .direction = up};
+  EXPECT_NEAR(radiance(lit, ray), n * n * (1.0 - R), 1e-6);  // floats have 7 digits
 }
 
 TEST(RayTree, DirectLightHasTheExactPenumbra) {
