@@ -353,10 +353,10 @@ void RenderArguments::add_to(CLI::App& command) {
   command
       .add_option(
           "--pass", pass,
-          "auto: light of lamps and sun anew at every pixel, that of the sky where the mesh "
-          "does not follow it (default); direct: all direct light anew; gather: indirect "
-          "light anew too; interpolate: all light from the solution; virtual-lights: no solution "
-          "needed")
+          "auto: light of lamps and sun anew at every pixel, that of the sky and indirect light "
+          "where the solution is coarse (default); direct: all direct light anew; gather: indirect "
+          "light anew at every pixel; interpolate: all light from the solution; virtual-lights: no "
+          "solution needed")
       ->type_name("PASS")
       ->check(one_of("pass", pass_names()))
       ->group(group);

@@ -20,6 +20,7 @@ FadePictures::FadePictures(const Scene& scene, SolvedScene solved, const Camera&
                            const RenderOptions& options)
     : scene_(scene), solved_(std::move(solved)), camera_(camera), options_(options) {
   options_.layers.clear();
+  options_.has_records = false;
 }
 
 const Image& FadePictures::picture(const std::vector<Spectrum>& scales) {

@@ -37,7 +37,7 @@ void add_picture_inputs(Fingerprint& print, const ElementCaster& caster,
                eye_separation] = camera;
   // Left out are `caustics`, `slant`, `found_virtual_lights` and `visible_lamps`, which follow from
   // the rest; `layers`, whose names render() adds; `run` and `rows_done`, which change no bit.
-  const auto& [pass, max_depth, min_contribution, shadows, gather_rays, virtual_lights,
+  const auto& [pass, max_depth, min_contribution, shadows, gather_rays, has_records, virtual_lights,
                found_virtual_lights, photons, caustics, slant, visible_lamps, glossy_rays, sampling,
                max_subdivision, contrast, layers, run, rows_done] = options;
   const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share, many_lights] = shadows;
@@ -72,6 +72,7 @@ void add_picture_inputs(Fingerprint& print, const ElementCaster& caster,
   print.add(circle_degrees);
   print.add(eye_separation);
   print.add(gather_rays);
+  print.add(has_records);
   print.add(virtual_lights);
   print.add(glossy_rays);
   print.add(photons);

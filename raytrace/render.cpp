@@ -14,6 +14,7 @@
 #include "raytrace/eye.h"
 #include "raytrace/layer_film.h"
 #include "raytrace/picture_fingerprint.h"
+#include "raytrace/picture_records.h"
 #include "raytrace/pixel_samples.h"
 #include "raytrace/shading/shade.h"
 #include "raytrace/tile_renderer.h"
@@ -97,7 +98,8 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   const auto start = std::chrono::steady_clock::now();
   validate(options);
   const CameraRays rays(camera);
-  const RayTree tree(scene, caster, direct_light, solution, options);
+  RayTree tree(scene, caster, direct_light, solution, options);
+  tree.set_records(find_records({scene, caster, direct_light}, solution, camera, rays, options));
   RayCounters counters;
   const Eye eye(rays, tree, counters);
   Image image{.width = camera.width, .height = camera.height};

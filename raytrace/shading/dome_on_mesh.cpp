@@ -46,13 +46,13 @@ double mean_over(const PatchMesh& mesh, const BandArray& E, int element) {
   return sum / n;
 }
 
-// RMS error of the light of a patch's part, relative to its mean irradiance, up to `most_error`.
-double error_of_part(const RadiositySolution& solution, int patch) {
+// RMS error of the light of a patch's part, relative to its mean irradiance, up to `most`.
+double error_of_part(const RadiositySolution& solution, int patch, double most) {
   const auto part = static_cast<std::size_t>(solution.parts.judged_with(patch));
   const double estimate = part < solution.parts.parts.size()
                               ? solution.parts.parts[part].error_estimate
                               : solution.error_estimate;
-  return std::clamp(estimate, 0.0, double{DomeOnMesh::most_error});
+  return std::clamp(estimate, 0.0, most);
 }
 
 /// Power that arrives on all elements, W, mean of the bands, of irradiance at the vertices.
@@ -81,7 +81,7 @@ float growth_of_error(const PatchMesh& mesh, const RadiositySolution& solution, 
 }  // namespace
 
 DomeOnMesh dome_on_mesh(const PatchMesh& mesh, const DirectLight& direct_light,
-                        const RadiositySolution& solution) {
+                        const RadiositySolution& solution, double indirect_error) {
   if (solution.interpolation_error.size() != mesh.element_count()) return {};
   DomeOnMesh dome{.irradiance = irradiance_of_dome(mesh, direct_light, solution)};
   if (dome.irradiance.size() == 0) return {};
@@ -91,7 +91,8 @@ DomeOnMesh dome_on_mesh(const PatchMesh& mesh, const DirectLight& direct_light,
   dome.excess.resize(static_cast<std::size_t>(mesh.element_count()));
   for (int e = 0; e < mesh.element_count(); ++e) {
     const double own = mean_over(mesh, irradiance, e);
-    const double as_good = error_of_part(solution, mesh.patch[e]) * own / reference[e];
+    const double as_good =
+        error_of_part(solution, mesh.patch[e], indirect_error) * own / reference[e];
     float allowed = std::max(DomeOnMesh::small_error, static_cast<float>(as_good));
     if (is_even_over(mesh, dome.irradiance, e)) allowed = std::max(allowed, DomeOnMesh::most_error);
     dome.excess[static_cast<std::size_t>(e)] = growth * solution.interpolation_error[e] / allowed;

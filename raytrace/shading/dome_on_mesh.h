@@ -17,7 +17,7 @@ struct DomeOnMesh {
   /// directly may have: at most 1 where interpolation is as good as shadow rays. The error may be
   /// - `small_error` of the reference that errors are relative to;
   /// - as great a share of the element's own light as the RMS error of the part's light is of the
-  ///   part's mean, up to `most_error`: indirect light at the same place is no better;
+  ///   part's mean, up to that of indirect light at the same place, which is no better;
   /// - `most_error` of the reference where the dome's light reaches the corners and hardly differs
   ///   between them, since the error is then mostly one of other light.
   /// The estimates are those of the light as solved. After relight() they are taken as errors of
@@ -39,8 +39,9 @@ struct DomeOnMesh {
 
 /// The dome's irradiance, if the dome is the only direct light of the scene or has a channel of its
 /// own (see channels_by_kind), and the solution knows the error of its interpolation. Otherwise
-/// empty.
+/// empty. `indirect_error` is a bound on the relative error of the indirect light of the picture.
 DomeOnMesh dome_on_mesh(const PatchMesh& mesh, const DirectLight& direct_light,
-                        const RadiositySolution& solution);
+                        const RadiositySolution& solution,
+                        double indirect_error = double{DomeOnMesh::most_error});
 
 }  // namespace lightwell

@@ -42,6 +42,15 @@ std::uint64_t chain_key(bool is_curved, int surface, const Eigen::Vector3d& norm
 
 }  // namespace
 
+Eigen::Vector3d mesh_normal(const PatchMesh& mesh, const ElementHit& hit,
+                            const Eigen::Vector3d& otherwise) {
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  for (int c = 0; c < mesh.corner_count(hit.element); ++c) {
+    normal += hit.weights[c] * mesh.vertex_normal[mesh.corners[hit.element][c]];
+  }
+  return normal.norm() > 0.0 ? Eigen::Vector3d(normal.normalized()) : otherwise;
+}
+
 FacetShapes::FacetShapes(const Scene& scene, const PatchMesh& mesh, const FacetNormals& normals) {
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];

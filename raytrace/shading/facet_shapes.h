@@ -4,12 +4,19 @@
 #include <cstdint>
 #include <vector>
 
+#include "mesh/elements/element_caster.h"
 #include "mesh/patches/patch_mesh.h"
 #include "scene/facet_normals.h"
 #include "scene/round_shape.h"
 #include "scene/scene.h"
 
 namespace lightwell {
+
+/// Normal of the mesh's vertices at a hit, unit, in the rest pose, which rounds off a tessellated
+/// surface and equals the facet's on a flat one; `otherwise` where they cancel. Precondition: the
+/// hit has an element, which is no round shape's.
+Eigen::Vector3d mesh_normal(const PatchMesh& mesh, const ElementHit& hit,
+                            const Eigen::Vector3d& otherwise);
 
 /// Geometry and material of a facet.
 struct FacetShape {

@@ -49,8 +49,12 @@ struct RenderOptions {
   /// Branches of less weight do not fork, and end by chance below a tenth of it.
   float min_contribution = 1e-3f;
   ShadowOptions shadows{};
-  /// Rays over the hemisphere of a hit, for Pass::gather; 1 to most_gather_rays.
+  /// Rays over the hemisphere of a hit for Pass::gather, and of a record for Pass::automatic; 1 to
+  /// most_gather_rays.
   int gather_rays = 256;
+  /// Pass::automatic: indirect light by IrradianceRecords where the solution's is coarse. A film
+  /// does without, since records differ from picture to picture by their noise.
+  bool has_records = true;
   /// VirtualLights, for Pass::virtual_lights; 1 to most_virtual_lights.
   int virtual_lights = 4096;
   /// The virtual lights of the scene, shared as `caustics` is. Null: found for this picture.

@@ -90,6 +90,12 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
   }
 }
 
+void RayTree::set_records(std::shared_ptr<const IrradianceRecords> records) {
+  records_ = std::move(records);
+  if (!records_) return;
+  dome_ = dome_on_mesh(caster_.mesh(), direct_light_, solution_, IrradianceRecords::usual_error);
+}
+
 RaySample RayTree::trace(const Ray& ray, std::uint64_t key, float effort,
                          const PixelCone& cone) const {
   const int bands = scene_.bands.count();

@@ -19,6 +19,7 @@
 #include "raytrace/product_cuts/gathered_light.h"
 #include "raytrace/shading/dome_on_mesh.h"
 #include "raytrace/shading/facet_shapes.h"
+#include "raytrace/shading/irradiance_records.h"
 #include "raytrace/shading/lamp_samples.h"
 #include "raytrace/shading/pixel_gather.h"
 #include "raytrace/shading/render_options.h"
@@ -194,6 +195,9 @@ class RayTree {
   }
   /// Returns RaySample::sees_gloss of a ray, without shadow rays.
   bool sees_gloss(const Ray& ray) const { return outline(ray, {}).sees_gloss; }
+  /// Takes indirect light from records where these serve, in place of the solution; null: nowhere.
+  /// Precondition: Pass::automatic.
+  void set_records(std::shared_ptr<const IrradianceRecords> records);
   /// The caster of everything at rest.
   const ElementCaster& caster() const { return caster_; }
   /// The luminaires that rays of the tree meet beside the surfaces.
@@ -403,8 +407,12 @@ class RayTree {
                                    const TreeState& state) const;
   Spectrum indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
                             const std::optional<ReliefSlope>& relief) const;
+  std::optional<Spectrum> indirect_of_records(const ElementHit& hit, const ShadingPoint& at,
+                                              const Eigen::Vector3d& normal,
+                                              const std::optional<ReliefSlope>& relief) const;
   bool has_photons(const ElementHit& hit) const;
-  void add_caustics(const ElementHit& hit, const ShadingPoint& at, Spectrum& indirect) const;
+  void add_caustics(const ElementHit& hit, const ShadingPoint& at, bool is_gathered,
+                    Spectrum& indirect) const;
   void note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
                    const Spectrum& rho, const Scattered& scattered, const Arriving& E,
                    TreeState& state) const;
@@ -424,8 +432,9 @@ class RayTree {
   bool with_layers_ = false;
   Eigen::Array3f white_rgb_;             ///< RGB of a reflectance of 1 under equal-energy light
   std::optional<PixelGather> gather_{};  ///< for Pass::gather
-  std::shared_ptr<const VirtualLights> virtual_{};  ///< for Pass::virtual_lights
-  DomeOnMesh dome_{};                               ///< for Pass::automatic
+  std::shared_ptr<const VirtualLights> virtual_{};      ///< for Pass::virtual_lights
+  DomeOnMesh dome_{};                                   ///< for Pass::automatic
+  std::shared_ptr<const IrradianceRecords> records_{};  ///< null: none
   std::shared_ptr<const CausticMap> caustics_{};  ///< replaces the solution's caustics; null: none
   static constexpr int gloss_point_count = 1024;
   SobolPoints gloss_points_;  ///< samples of one key; further samples use a new scrambling

@@ -28,19 +28,13 @@ ShadowOptions shadows_for(ShadowOptions shadows, float weight, int fewest) {
 
 }  // namespace
 
-// Normals of the file if given; else normals of the mesh's vertices, which round off a tessellated
-// surface and equal the facet's normal on a flat one.
+// Normals of the file if given; else those of the mesh's vertices.
 Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const ShadingPoint& at) const {
   if (facets_[hit.facet].round >= 0) return at.normal;
   if (normals_.is_given(hit.facet)) {
     return at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
   }
-  const PatchMesh& mesh = caster_.mesh();
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  for (int c = 0; c < mesh.corner_count(hit.element); ++c) {
-    normal += hit.weights[c] * mesh.vertex_normal[mesh.corners[hit.element][c]];
-  }
-  return normal.norm() > 0.0 ? at.turned(normal.normalized()) : at.normal;
+  return at.turned(mesh_normal(caster_.mesh(), hit, at.rest_normal));
 }
 
 RayTree::ShadowOrigin RayTree::shadow_origin(const ElementHit& hit, const ShadingPoint& at) const {
@@ -247,6 +241,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   query.base = base;
   query.relief = relief ? &*relief : nullptr;
   E.direct = direct();
+  bool is_gathered = gather_.has_value();
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
         *state.caster,
@@ -262,9 +257,11 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
         *state.caster,
         {.at = query.at, .key = key, .effort = std::min(1.0f, share), .relief = query.relief});
   } else {
-    E.indirect = indirect_of_mesh(hit, at, relief);
+    const auto recorded = indirect_of_records(hit, at, normal, relief);
+    E.indirect = recorded ? *recorded : indirect_of_mesh(hit, at, relief);
+    is_gathered = recorded.has_value();
   }
-  add_caustics(hit, at, E.indirect);
+  add_caustics(hit, at, is_gathered, E.indirect);
   return E;
 }
 
@@ -308,7 +305,7 @@ RayTree::Arriving RayTree::arriving_from_one_light(const ElementHit& hit, const 
   const auto key = random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers);
   E.indirect =
       virtual_->indirect_irradiance(*state.caster, {.at = query.at, .key = key, .effort = 0.0f});
-  add_caustics(hit, at, E.indirect);
+  add_caustics(hit, at, false, E.indirect);
   return E;
 }
 
@@ -336,12 +333,22 @@ Spectrum RayTree::indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at
   return indirect_gain(hit, at, relief) * E;
 }
 
+// Indirect light by records around, without caustics; empty where none serves.
+std::optional<Spectrum> RayTree::indirect_of_records(
+    const ElementHit& hit, const ShadingPoint& at, const Eigen::Vector3d& normal,
+    const std::optional<ReliefSlope>& relief) const {
+  if (!records_ || at.pose) return std::nullopt;
+  const auto fit = records_->fit(at.position, normal);
+  if (!fit) return std::nullopt;
+  return indirect_gain(hit, at, relief) * fit->irradiance;
+}
+
 // Adds caustics, which neither gathered light nor indirect_of_mesh() has.
-void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at,
+void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at, bool is_gathered,
                            Spectrum& indirect) const {
   if (solution_.caustic_irradiance.size() == 0) return;
   if (!has_photons(hit)) {
-    if (gather_) indirect += interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
+    if (is_gathered) indirect += interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
     return;
   }
   indirect += caustics_->irradiance(at.rest, at.rest_normal, hit.element);

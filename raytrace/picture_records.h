@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "radiosity/direct_light/lit_scene.h"
+#include "radiosity/solution/solution.h"
+#include "raytrace/cameras/camera_ray.h"
+#include "raytrace/shading/irradiance_records.h"
+#include "raytrace/shading/render_options.h"
+
+namespace lightwell {
+
+/// Records of the indirect light of what a camera sees, for Pass::automatic. Null where the
+/// solution's own light is as good: where its estimate says so, or says nothing.
+///
+/// Places are sought on grids of pixels, from wide to narrow ones: a place that no record covers
+/// gets a record, whose radius is a share of the harmonic mean of the distances to what the place
+/// sees (Ward, Rubinstein & Clear 1988), but at least the distance to the next place of the
+/// narrowest grid. What is seen by way of smooth mirrors and glass gets records as well. E is that
+/// of PixelGather with RenderOptions::gather_rays.
+std::shared_ptr<const IrradianceRecords> find_records(const LitScene& lit,
+                                                      const RadiositySolution& solution,
+                                                      const Camera& camera, const CameraRays& rays,
+                                                      const RenderOptions& options);
+
+}  // namespace lightwell

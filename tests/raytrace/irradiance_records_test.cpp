@@ -1,0 +1,162 @@
+#include "raytrace/shading/irradiance_records.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "radiosity/solve.h"
+#include "raytrace/scene_renderer.h"
+#include "scene/parallel.h"
+#include "scene/sampling.h"
+#include "tests/raytrace/lit_scene.h"
+
+namespace lightwell::irradiance_records_test {
+namespace {
+
+using Eigen::Vector3d;
+
+const Vector3d up = Vector3d::UnitZ();
+
+IrradianceRecord record(const Vector3d& at, float E, double radius) {
+  return {.position = at,
+          .normal = up,
+          .radius = radius,
+          .irradiance = constant_spectrum(rgb_bands(), E)};
+}
+
+// Records on a grid of steps of one over a square, E by place.
+template <class Light>
+std::vector<IrradianceRecord> grid(int half, double radius, Light E) {
+  std::vector<IrradianceRecord> records;
+  for (int x = -half; x <= half; ++x) {
+    for (int y = -half; y <= half; ++y) {
+      records.push_back(record(Vector3d(x, y, 0.0), static_cast<float>(E(x, y)), radius));
+    }
+  }
+  return records;
+}
+
+double at(const IrradianceRecords& records, double x, double y) {
+  return static_cast<double>(records.fit(Vector3d(x, y, 0.0), up).value().irradiance[0]);
+}
+
+// Places about which the grid is symmetric: there, the ridge draws no value towards the mean.
+TEST(IrradianceRecords, FollowAPlane) {
+  const auto E = [](double x, double y) { return 10.0 + 0.5 * x - 0.25 * y; };
+  const IrradianceRecords records(grid(4, 2.5, E));
+  const double roundings = std::ldexp(8.0, -24) * 13.0;  // of floats of up to 13
+  for (const double step : {0.0, 0.5}) {
+    EXPECT_NEAR(at(records, step, step), E(step, step), roundings);
+    EXPECT_NEAR(at(records, 1.0 + step, step), E(1.0 + step, step), roundings);
+  }
+}
+
+TEST(IrradianceRecords, ServeTheirOwnSurfaceAlone) {
+  const IrradianceRecords records({record(Vector3d::Zero(), 1.0f, 1.0)});
+  EXPECT_GT(records.coverage({0.5, 0.0, 0.0}, up), 0.0);
+  EXPECT_EQ(records.coverage({1.1, 0.0, 0.0}, up), 0.0) << "beyond the radius";
+  EXPECT_EQ(records.coverage({0.0, 0.0, 0.3}, up), 0.0) << "another surface above";
+  EXPECT_EQ(records.coverage({0.0, 0.0, 0.0}, -up), 0.0) << "the other side";
+  const Vector3d turned = Vector3d(std::sin(0.3), 0.0, std::cos(0.3));
+  EXPECT_EQ(records.coverage({0.0, 0.0, 0.0}, turned), 0.0) << "17 degrees about an edge";
+  EXPECT_FALSE(records.fit({3.0, 0.0, 0.0}, up).has_value());
+}
+
+TEST(IrradianceRecords, NoneServeAnywhere) {
+  EXPECT_FALSE(IrradianceRecords({}).fit(Vector3d::Zero(), up).has_value());
+}
+
+// Light of 1 and of 3 with an edge between, and noise of 5 %, whose variance the records know. Near
+// the edge no fit agrees with a record, which keeps its value. Far off, the widest fit of some 200
+// records has about 1.3 / sqrt(200) of their noise, 0.5 %; where fits near by do not reach as far,
+// less is lost.
+TEST(EvenOut, CalmsNoiseAndKeepsAnEdge) {
+  constexpr double noise = 0.05, edge = -0.5, bright = 3.0;
+  constexpr int half = 20;
+  const auto light = [](double x) { return x < edge ? 1.0 : bright; };
+  std::vector<IrradianceRecord> records = grid(half, 2.0, [&](int x, int y) {
+    const auto key =
+        random_key(static_cast<std::uint64_t>(x + half), static_cast<std::uint64_t>(y + half));
+    return light(x) * (1.0 + noise * std::sqrt(12.0) * (random_uniform(key) - 0.5));
+  });
+  for (IrradianceRecord& each : records) {
+    each.variance = std::pow(noise * light(each.position.x()), 2);
+  }
+  even_out(records);
+  double far = 0.0, worst = 0.0;
+  int count = 0;
+  for (const IrradianceRecord& each : records) {
+    const double x = each.position.x();
+    const double error = static_cast<double>(each.irradiance[0]) / light(x) - 1.0;
+    worst = std::max(worst, std::abs(error) * light(x) / bright);
+    if (std::abs(x - edge) < 8.0) continue;
+    far += error * error;
+    ++count;
+  }
+  std::printf("noise far off %.4f, worst %.4f\n", std::sqrt(far / count), worst);
+  EXPECT_LT(std::sqrt(far / count), 0.25 * noise);
+  // Three standard errors by which a fit may differ from a record, by the noise of the bright
+  // records around, and the noise of the record, which is even within sqrt(3) standard errors.
+  EXPECT_LT(worst, (3.0 + std::sqrt(3.0)) * noise);
+}
+
+// A room with a block, lit by a lamp in the ceiling, on a coarse mesh.
+struct CoarseRoom {
+  Scene scene;
+  SolvedScene solved;
+  Camera camera{.position = {0.3, 0.4, 1.6},
+                .direction = Vector3d(1.0, 0.8, -0.35).normalized(),
+                .up = up,
+                .fov_degrees = 75.0,
+                .width = 64,
+                .height = 48};
+
+  CoarseRoom()
+      : scene(
+            SceneBuilder()
+                .box({.reflectance = 0.7f, .one_sided = true}, {0, 0, 0}, {4, 3, 2.5}, true)
+                .box({.reflectance = 0.6f, .one_sided = true}, {1.6, 1, 0}, {2.2, 1.7, 1.1}, false)
+                .square({.exitance = 20.0f, .one_sided = true}, {2.9, 1.5, 2.45}, -up, 0.3)
+                .build()) {
+    SolveOptions options;
+    camera.up = (up - up.dot(camera.direction) * camera.direction).normalized();
+    options.mesh.max_patch_size = 1.5;
+    options.mesh.elements_per_patch_edge = 1;
+    options.refine.tolerance = 0.0;
+    options.gather.rays = 64;
+    solved = solve_scene(scene, options);
+  }
+  Image picture(const RenderOptions& options) const {
+    return SceneRenderer(scene, solved.mesh, solved.solution).render(camera, options);
+  }
+};
+
+double difference(const Image& a, const Image& b) {
+  return std::sqrt((a.radiance - b.radiance).square().mean()) / b.radiance.mean();
+}
+
+// Records have the light that a gather at every pixel finds, but for their noise of 3 %; the mesh
+// lacks the shadow of the block in indirect light.
+TEST(PictureRecords, AreNearerToAGatherThanACoarseMesh) {
+  const CoarseRoom room;
+  const Image gathered = room.picture({.pass = Pass::gather, .gather_rays = 1024});
+  const double with = difference(room.picture({}), gathered),
+               without = difference(room.picture({.has_records = false}), gathered);
+  std::printf("indirect light by records %.2f %% off a gather, by the mesh %.2f %%\n", 100 * with,
+              100 * without);
+  EXPECT_LT(with, IrradianceRecords::usual_error);
+  EXPECT_GT(without, IrradianceRecords::usual_error) << "the mesh is too fine for this test";
+}
+
+TEST(PictureRecords, AreTheSameForAnyNumberOfThreads) {
+  const CoarseRoom room;
+  const auto with_threads = [&](int n) {
+    const ThreadLimit limit(n);
+    return room.picture({});
+  };
+  EXPECT_TRUE((with_threads(1).radiance == with_threads(3).radiance).all());
+}
+
+}  // namespace
+}  // namespace lightwell::irradiance_records_test
