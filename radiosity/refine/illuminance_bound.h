@@ -11,9 +11,10 @@ namespace lightwell {
 Eigen::ArrayXf illuminance_bounds(const PatchMesh& mesh, const RadiositySolution& solution);
 
 /// Estimated RMS error of interpolated illuminance over each element, lx: half of
-/// illuminance_bounds(). If the solution has no error estimate, its elements were not refined, and
-/// half of the range of an element's corners stands for the error of interpolation. Empty if the
-/// solution does not know the noise of its gather either.
+/// illuminance_bounds(), and the error of caustics, which these bounds leave out: as if the range
+/// of their light over the element's corners came from one step. If the solution has no error
+/// estimate, its elements were not refined, and half of the range of the other light stands for
+/// the error of interpolation. Empty if the solution does not know the noise of its gather either.
 Eigen::ArrayXf illuminance_errors(const PatchMesh& mesh, const RadiositySolution& solution);
 
 }  // namespace lightwell
