@@ -54,6 +54,33 @@ float share_aimed(float reflectance) {
   return std::clamp(1.0f - reflectance, 0.2f, 0.5f);
 }
 
+// Adds light to the columns from `column` on, or to the only ones where channels are not apart.
+void add_to(const LitScene& lit, Eigen::Index column, const Spectrum& light, Eigen::ArrayXd& sum) {
+  const bool by_channel = lit.direct_light.column_count() == sum.size();
+  sum.segment(by_channel ? column : 0, light.size()) += light.cast<double>();
+}
+
+// Adds what a luminaire sends by way of mirrors and glass. Elsewhere the mesh holds such light as
+// caustics, and no ray reads it. Light computed anew on a surface has no part of the mesh's.
+void add_lamp(const LitScene& lit, const LightArrival& arrival, const Spectrum& share,
+              Eigen::ArrayXd& sum) {
+  const ElementHit& hit = arrival.hit;
+  const bool is_direct = arrival.through_panes_only;
+  if (is_direct || !lit.direct_light.owns(hit.facet, hit.from_back)) return;
+  const PatchMesh& mesh = lit.mesh();
+  const Spectrum M = mesh.emission.row(mesh.patch[hit.element]).transpose();
+  add_to(lit, lit.direct_light.first_column(hit.facet), share * M, sum);
+}
+
+// Adds light of the dome that a path by way of mirrors and glass escapes to.
+void add_dome(const LitScene& lit, const PathLosses& losses, const Spectrum& share,
+              Eigen::ArrayXd& sum) {
+  const FreeSource* const dome = lit.direct_light.dome();
+  if (losses.sky.size() == 0 || !dome) return;
+  add_to(lit, dome->channel * share.size(),
+         std::numbers::pi_v<float> * share * dome->light * losses.sky, sum);
+}
+
 }  // namespace
 
 Eigen::Vector3d GapLight::normal_towards(const Ray& ray, const ElementHit& hit) const {
@@ -136,15 +163,17 @@ void GapLight::add_end(const ElementCaster& caster, const Ray& ray, const Elemen
                    sum);
   }
   if (!paths_.is_specular(hit.facet)) return;
-  paths_.follow(
+  const PathLosses losses = paths_.follow(
       caster, ray, hit, key,
       [&](const LightArrival& arrival) {
         if (arrival.hit.element < 0) return;
-        radiosity_.add(
-            arrival.hit,
-            Spectrum(static_cast<float>(arrival.base_factor) * share * arrival.throughput), sum);
+        const Spectrum passed = share * arrival.throughput;
+        radiosity_.add(arrival.hit, Spectrum(static_cast<float>(arrival.base_factor) * passed),
+                       sum);
+        add_lamp(lit_, arrival, passed, sum);
       },
       PathQuantity::radiance);
+  add_dome(lit_, losses, share, sum);
 }
 
 // The gap that a point lies in, if few rays get out of it by themselves.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "radiosity/gather/final_gather.h"
 #include "tests/radiosity/gather/test_plates.h"
@@ -103,6 +104,84 @@ TEST(GapLight, IsNotLookedForBetweenPlatesFarApart) {
   plates.caster.closest_hits({&near, 1}, {&hit, 1});
   EXPECT_TRUE(gaps.is_gap(Vector3d::UnitZ(), near, hit));
   EXPECT_FALSE(gaps.is_gap(Vector3d::UnitX(), near, hit));
+}
+
+// Irradiance between two upright plates, 1 cm apart, that stand in the middle of `scene`: 2 cm
+// above the lower brink, by replicas of a gather that reads no light from the mesh. Of lamps it is
+// the indirect irradiance, of the sky, which no caustics hold, all of it.
+Eigen::ArrayXd between_plates(Scene scene, int replicas) {
+  const int plate = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  const int left = static_cast<int>(scene_facets(scene).size());
+  const double gap = 0.01, w = 0.2, l = 2.0;
+  test::add_polygon(scene, "left", plate, {{0, -l, 0}, {0, l, 0}, {0, l, w}, {0, -l, w}});
+  test::add_polygon(scene, "right", plate, {{gap, -l, 0}, {gap, -l, w}, {gap, l, w}, {gap, l, 0}});
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 2.0});
+  const ElementCaster caster(mesh);
+  const DirectLight light(scene, mesh);
+  const BandArray none = BandArray::Zero(mesh.vertex_count(), light.column_count());
+  const std::vector<GatherPoint> points = {
+      {.position = {0, 0, 0.02}, .normal = Vector3d::UnitX(), .facet = left}};
+  Eigen::ArrayXd found(replicas);
+  for (int i = 0; i < replicas; ++i) {
+    const GatherOptions options{
+        .rays = 1 << 12, .replica = static_cast<std::uint64_t>(i), .aims_out_of_gaps = true};
+    const GatheredIrradiance E = gather_irradiance({scene, caster, light}, none, points, options);
+    found[i] = E.indirect(0, 0) + (scene.sky ? E.direct(0, 0) : 0.0f);
+  }
+  return found;
+}
+
+// Means agree to four standard errors, of which one is less than a twentieth of the mean.
+void expect_same(const Eigen::ArrayXd& found, const Eigen::ArrayXd& expected) {
+  const auto variance = [](const Eigen::ArrayXd& x) {
+    const auto n = static_cast<double>(x.size());
+    return (x - x.mean()).square().sum() / (n * (n - 1.0));
+  };
+  const double noise = std::sqrt(variance(found) + variance(expected));
+  EXPECT_NEAR(found.mean(), expected.mean(), 4.0 * noise);
+  EXPECT_LT(noise, 0.05 * expected.mean());
+}
+
+constexpr double mirror_below = 5.0;
+void add_mirror(Scene& scene) {
+  const double h = mirror_below;
+  test::add_polygon(scene, "mirror", test::add_material(scene, test::mirror(scene.bands, 1.0f)),
+                    {{-10, -10, -h}, {10, -10, -h}, {10, 10, -h}, {-10, 10, -h}});
+}
+
+// A black hall with a luminous panel of 10 m x 10 m 5 m above. The panel also shines from 15 m
+// below: by way of a mirror, or as a second panel in its place. The lower one gives most light
+// there.
+Scene hall(bool by_mirror) {
+  Scene scene;
+  const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+  const int panel = test::add_material(scene, test::diffuse(scene.bands, 0.0f, 10.0f));
+  test::add_box(scene, {-10, -10, -20}, {10, 10, 10}, {black, black, black, black, black, black},
+                true);
+  const double p = 5.0, h = mirror_below;
+  test::add_polygon(scene, "panel", panel, {{-p, -p, h}, {-p, p, h}, {p, p, h}, {p, -p, h}});
+  if (by_mirror) {
+    add_mirror(scene);
+  } else {
+    test::add_polygon(scene, "image", panel,
+                      {{-p, -p, -3 * h}, {p, -p, -3 * h}, {p, p, -3 * h}, {-p, p, -3 * h}});
+  }
+  return scene;
+}
+
+TEST(GapLight, ComesFromLampsByWayOfMirrors) {
+  constexpr int replicas = 32;
+  expect_same(between_plates(hall(true), replicas), between_plates(hall(false), replicas));
+}
+
+// Below an even sky and above ground as bright, a mirror changes nothing.
+TEST(GapLight, ComesFromTheSkyByWayOfMirrors) {
+  constexpr int replicas = 32;
+  Scene scene;
+  scene.sky = test::even_sky(scene.bands, 10.0f, 10.0f);
+  Scene with_mirror = scene;
+  add_mirror(with_mirror);
+  expect_same(between_plates(with_mirror, replicas), between_plates(scene, replicas));
 }
 
 }  // namespace
