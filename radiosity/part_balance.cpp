@@ -40,6 +40,9 @@ class ReflectedPower {
         patch_(vertex_patches(mesh_)),
         emitted_(std::move(emitted)),
         reflected_(std::move(reflected)) {
+    if (balance.caustic.size() > 0) {
+      caustic_ = channel_sum(balance.caustic, static_cast<int>(reflected_.cols()));
+    }
     choose_parts();
   }
 
@@ -57,7 +60,7 @@ class ReflectedPower {
     for (Eigen::Index p = 0; p < count; ++p) {
       const std::vector<BalanceSample> samples = draw(chosen_[p]);
       const GatheredIrradiance found = gather(samples, by_part, chosen_[p]);
-      const BandArray direct = channel_sum(found.direct, static_cast<int>(bands));
+      const BandArray direct = from_lamps(found, samples);
       Eigen::ArrayXXd excess(static_cast<Eigen::Index>(samples.size()), bands);
       for (std::size_t i = 0; i < samples.size(); ++i) {
         const auto& [point, weight] = samples[i];
@@ -193,6 +196,17 @@ class ReflectedPower {
     return gather_irradiance(lit_, columns, points, balance_.gather);
   }
 
+  // Irradiance from lamps at samples, samples x bands: straight, and the mesh's caustics.
+  BandArray from_lamps(const GatheredIrradiance& found,
+                       const std::vector<BalanceSample>& samples) const {
+    BandArray E = channel_sum(found.direct, static_cast<int>(reflected_.cols()));
+    for (std::size_t i = 0; caustic_.size() > 0 && i < samples.size(); ++i) {
+      const ElementHit hit = point_on_element(mesh_, samples[i].point);
+      E.row(static_cast<Eigen::Index>(i)) += interpolate(mesh_, caustic_, hit).transpose();
+    }
+    return E;
+  }
+
   // The light of all columns of a band.
   template <class Row>
   static double found_in(const Row& columns, Eigen::Index band, Eigen::Index bands) {
@@ -240,6 +254,7 @@ class ReflectedPower {
   const PartBalance& balance_;
   std::vector<int> patch_;  // of each vertex
   BandArray emitted_{}, reflected_{};
+  BandArray caustic_{};                  // irradiance, vertices x bands; empty: none
   std::vector<int> chosen_{}, place_{};  // parts, and the index of each part in chosen_, -1: none
 };
 

@@ -13,6 +13,9 @@ struct PartBalance {
   const SceneParts& parts;
   std::vector<int> rays{};  ///< hemisphere rays at a sample point, by part
   GatherOptions gather{};   ///< all else of the gathers at the sample points
+  /// Irradiance from lamps by way of mirrors and glass, W/m^2, vertices x columns, which gathers do
+  /// not find; empty: none.
+  BandArray caustic{};
 };
 
 /// Scales the reflected radiosity of each part of a scene, so that each part reflects the light
@@ -26,8 +29,9 @@ struct PartBalance {
 /// has the noise of few points.
 ///
 /// P_p is the power that part p reflects by `radiosity`, P_p0 what it would reflect of the light
-/// straight from lamps and of what other surfaces emit, and P_pq of the light that part q reflects,
-/// all by gathers at sample points. One band has one set of equations, for all channels together.
+/// from lamps, caustics included, and of what other surfaces emit, and P_pq of the light that part
+/// q reflects, all by gathers at sample points. One band has one set of equations, for all channels
+/// together.
 ///
 /// A gather corrects the light of a part by one reflection. Behind two or three doors most of the
 /// light has been reflected often, and the error of coarse patches beside a door would decay too

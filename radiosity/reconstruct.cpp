@@ -32,7 +32,7 @@ VertexGather gather_in(const VertexGatherTask& task, BandArray irradiance,
   if (task.pilot.tree) {
     keep_power(mesh, task.lit.direct_light, unscaled_radiosity(solution), radiosity);
   }
-  PartBalance balance{.parts = task.parts, .gather = task.options};
+  PartBalance balance{.parts = task.parts, .gather = task.options, .caustic = task.pilot.caustic};
   for (const int rays : task.rays) balance.rays.push_back(task.cast_of(rays));
   balance_parts(task.lit, balance, radiosity);
   return gather_once(task, radiosity, kept);
