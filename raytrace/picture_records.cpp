@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -38,13 +37,6 @@ double error_of_solution(const PatchMesh& mesh, const RadiositySolution& solutio
   return count > 0.0 ? std::sqrt(squares / count) : 0.0;
 }
 
-// Random numbers of a place: the same in any order of places.
-std::uint64_t key_of(const ShadingPoint& at) {
-  auto key = static_cast<std::uint64_t>(at.facet);
-  for (const double x : at.position) key = random_key(key, std::bit_cast<std::uint64_t>(x));
-  return key;
-}
-
 // The least radius at which records of the narrowest grid cover every place between its points, at
 // most sqrt(1/2) of a step away. In a furnished room a radius of 1.5 steps blurs bright mouldings:
 // the picture's error was 4.0 %, and 3.0 % with 0.8.
@@ -59,13 +51,12 @@ double radius_of(const ElementCaster& caster, const SeenPlace& place) {
   constexpr std::size_t count = 32;
   constexpr double share_of_distance = 0.05, most_steps = 64.0;
   const SobolPoints points(count);
-  const std::uint64_t key = key_of(place.at);
   Eigen::Vector3d a, b;
   tangent_frame(place.at.normal, a, b);
   std::array<Ray, count> rays;
   std::array<ElementHit, count> hits;
   for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Array4f u = points.point(static_cast<int>(i), key);
+    const Eigen::Array4f u = points.point(static_cast<int>(i), place.key);
     const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
     rays[i] = {.origin = place.at.position,
                .direction = d.x() * a + d.y() * b + d.z() * place.at.normal,
@@ -169,19 +160,20 @@ class PictureRecords {
       report(progress_, "records", share_done(step, static_cast<double>(done) / count));
       parallel_for(std::min(between_reports, count - done), 1, [&](int begin, int end) {
         for (int i = done + begin; i < done + end; ++i) {
-          const ShadingPoint& at = candidates[static_cast<std::size_t>(i)].place.at;
-          set_light(at, records_[first + static_cast<std::size_t>(i)]);
+          const auto k = static_cast<std::size_t>(i);
+          set_light(candidates[k].place, records_[first + k]);
         }
       });
     }
   }
 
   // The mean of two gathers of half the rays; their difference tells the noise.
-  void set_light(const ShadingPoint& at, IrradianceRecord& record) const {
-    const std::uint64_t key = random_key(key_of(at), RandomPurpose::ray_tree_gathers);
+  void set_light(const SeenPlace& place, IrradianceRecord& record) const {
+    const std::uint64_t key = random_key(place.key, RandomPurpose::ray_tree_gathers);
     const auto half = [&](std::uint64_t number) {
       constexpr float half_the_rays = 0.5f;
-      return gather_.indirect_irradiance(lit_.caster, at, random_key(key, number), half_the_rays);
+      return gather_.indirect_irradiance(lit_.caster, place.at, random_key(key, number),
+                                         half_the_rays);
     };
     const Spectrum first = half(0), second = half(1);
     record.irradiance = 0.5f * (first + second);

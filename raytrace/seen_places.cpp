@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "scene/parallel.h"
+#include "scene/sampling.h"
 #include "scene/specular.h"
 
 namespace lightwell {
@@ -22,16 +23,20 @@ SeenPlaces::SeenPlaces(const LitScene& lit, const Camera& camera, const CameraRa
 
 std::vector<std::optional<SeenPlace>> SeenPlaces::on_grid(int step) const {
   const int across = step * finest_;
-  std::vector<Eigen::Vector2d> points;
+  std::vector<Eigen::Vector2i> points;
   for (int y = across / 2; y < camera_.height; y += across) {
-    for (int x = across / 2; x < camera_.width; x += across) points.emplace_back(x + 0.5, y + 0.5);
+    for (int x = across / 2; x < camera_.width; x += across) points.emplace_back(x, y);
   }
   std::vector<std::optional<SeenPlace>> places(points.size());
   constexpr int grain = 16;
   parallel_for(static_cast<int>(points.size()), grain, [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
       const auto k = static_cast<std::size_t>(i);
-      places[k] = place_at(points[k].x(), points[k].y());
+      const Eigen::Vector2i& at = points[k];
+      places[k] = place_at(at.x() + 0.5, at.y() + 0.5);
+      if (!places[k]) continue;
+      places[k]->key =
+          random_key(static_cast<std::uint64_t>(at.x()), static_cast<std::uint64_t>(at.y()));
     }
   });
   return places;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace lightwell {
 struct SeenPlace {
   ShadingPoint at{};
   int element = -1;
-  double spacing = 0.0;  ///< m, distance on the surface between neighbours of the narrowest grid
+  double spacing = 0.0;   ///< m, distance on the surface between neighbours of the narrowest grid
+  std::uint64_t key = 0;  ///< of the point of the picture, for random numbers
 };
 
 /// The places that a picture shows at the points of regular grids, also by way of smooth mirrors

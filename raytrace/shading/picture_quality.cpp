@@ -60,8 +60,10 @@ RenderOptions picture_options(std::string_view pass, std::string_view quality,
                               const PictureQuality& numbers) {
   RenderOptions options;
   options.pass = find_named(passes, pass, "pass").pass;
+  const bool is_draft = quality == "draft";
+  options.has_records = !is_draft;
   // A draft takes all light of virtual lights from the mesh.
-  if (options.pass == Pass::virtual_lights && quality == "draft") {
+  if (options.pass == Pass::virtual_lights && is_draft) {
     options.pass = Pass::interpolate;
     options.max_subdivision = 1;
     options.glossy_rays = 1;

@@ -90,10 +90,13 @@ TEST(Gloss, ScattersAlikeInBothPasses) {
       constexpr std::uint64_t count = 10000;
       double found = 0.0, seen = 0.0;
       for (std::uint64_t key = 0; key < count; ++key) {
-        paths.follow(ray, hit, key, [&](const ElementHit& end, const Spectrum& throughput) {
-          const float L = lit.mesh.emission(lit.mesh.patch[end.element], 0) / pi_f;
-          found += static_cast<double>(throughput[0] * L) / count;
-        });
+        paths.follow(
+            ray, hit, key,
+            [&](const ElementHit& end, const Spectrum& throughput) {
+              const float L = lit.mesh.emission(lit.mesh.patch[end.element], 0) / pi_f;
+              found += static_cast<double>(throughput[0] * L) / count;
+            },
+            PathQuantity::radiance);
         if (key % 20 == 0)
           seen += static_cast<double>(tree.trace(ray, key).radiance[0]) * 20 / count;
       }

@@ -153,12 +153,13 @@ Eigen::ArrayXf in_furnace(const Paint& paint, const RenderOptions& options) {
 }
 
 // Every ray has radiance 1, whatever its direction: only float rounding. The mesh's light, which
-// has no direction, counts as even.
+// has no direction, counts as even. (Glass is a pane: behind the surface of a body, radiance 1 is
+// seen as 1 / n^2.)
 TEST(ReliefInPictures, FurnaceIsKeptByTheSolutionsLight) {
   const RenderOptions options{.pass = Pass::direct, .photons = 0};
   for (const Paint& paint :
        {white, Paint{.specular = 1.0f}, Paint{.specular = 1.0f, .roughness = 0.3f},
-        Paint{.index_of_refraction = 1.5f, .roughness = 0.3f},
+        Paint{.index_of_refraction = 1.5f, .roughness = 0.3f, .thin = true},
         Paint{.index_of_refraction = 1.5f, .thin = true},
         Paint{.reflectance = 0.5f, .translucent = 0.5f}}) {
     const Eigen::ArrayXf L = in_furnace(paint, options);

@@ -30,6 +30,10 @@ SolvedScene for_rendering(const SolvedScene& solved) {
   copy.solution.direct_irradiance = s.direct_irradiance;
   copy.solution.indirect_irradiance = s.indirect_irradiance;
   copy.solution.caustic_irradiance = s.caustic_irradiance;
+  copy.solution.interpolation_error = s.interpolation_error;
+  copy.solution.gather_noise = s.gather_noise;
+  copy.solution.parts = s.parts;
+  copy.solution.error_estimate = s.error_estimate;
   return copy;
 }
 
