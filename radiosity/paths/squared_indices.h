@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "mesh/elements/element_caster.h"
 #include "scene/scene.h"
@@ -16,5 +17,9 @@ namespace lightwell {
 /// entered bounds a body around the patch; the indices of bodies within bodies multiply. The result
 /// of most walks counts, since rays pass between the polygons of imperfect models.
 Eigen::ArrayXd squared_indices(const Scene& scene, const ElementCaster& caster);
+
+/// Materials of absorbing bodies in which patches lie, ascending, by the same walks. Light on its
+/// way from patch to patch within such a body meets no surface of the body, and is not dimmed.
+std::vector<int> absorbing_bodies_around(const Scene& scene, const ElementCaster& caster);
 
 }  // namespace lightwell

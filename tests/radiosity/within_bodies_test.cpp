@@ -1,6 +1,7 @@
 // Light of what lies within solid glass, under water, and in bubbles.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numeric>
@@ -77,6 +78,24 @@ TEST(SquaredIndices, AreNoneWhereNothingLiesInABody) {
       {.name = "ball", .material = ball, .shape = Sphere{{0.8, 0.9, 0.5}, 0.1}});
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.3});
   EXPECT_EQ(squared_indices(scene, ElementCaster(mesh)).size(), 0);
+}
+
+// The ball absorbs; of the sheets, the one in the bubble is not in its glass.
+TEST(AbsorbingBodies, AreThoseAroundPatches) {
+  Scene scene = furnace_with_a_ball(true);
+  const int ball = 1;
+  scene.materials[ball].dielectric->absorption = constant_spectrum(scene.bands, 0.5f);
+  const auto found = [](const Scene& of) {
+    const PatchMesh mesh = build_patches(of, {.max_patch_size = 0.2});
+    return absorbing_bodies_around(of, ElementCaster(mesh));
+  };
+  EXPECT_EQ(found(scene), std::vector<int>{ball});
+  const SolvedScene solved = solve_scene(scene, {});
+  EXPECT_TRUE(std::ranges::any_of(solved.mesh.notes, [](const std::string& note) {
+    return note.find("not dimmed on its way") != std::string::npos;
+  }));
+  scene.surfaces.pop_back();  // the sheet in the glass
+  EXPECT_EQ(found(scene), std::vector<int>{});
 }
 
 class SolvedFurnace {
