@@ -26,15 +26,25 @@ std::vector<RenderArguments> from_best_to_quickest(const RenderArguments& argume
   return {arguments, draft, interpolated};
 }
 
-// Says when a picture is to be given up for a quicker one: when its rows so far tell that it will
-// take much more than the time that was left at its beginning.
+// Says when a picture is to be given up for a quicker one: when its records of indirect light take
+// more than half of the time that was left at its beginning, or when its rows so far tell that they
+// will take much more than what is left then.
 class Pace {
  public:
   explicit Pace(double allowed) : allowed_(allowed) {}
 
   bool is_too_slow(std::string_view phase, double share) {
+    constexpr double most_for_records = 0.5;
+    if (phase == "records") {
+      if (!watch_) watch_.emplace();
+      return watch_->seconds() > most_for_records * allowed_;
+    }
     if (phase != "render") return false;  // the photons of caustics, which all pictures share
-    if (!watch_) watch_.emplace();
+    if (!has_rows_) {
+      if (watch_) allowed_ -= watch_->seconds();
+      watch_.emplace();
+      has_rows_ = true;
+    }
     // A tenth of the time shows some rows in any picture. Rows from the top, often of a ceiling,
     // may be cheaper or dearer than the rest, so a fifth too much is no reason yet.
     constexpr double enough_to_judge = 0.1, too_much = 1.2;
@@ -44,6 +54,7 @@ class Pace {
 
  private:
   double allowed_;
+  bool has_rows_ = false;
   std::optional<Stopwatch> watch_{};
 };
 
