@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <numeric>
+#include <optional>
 
 #include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/translucency.h"
@@ -265,7 +266,13 @@ void balance_parts(const LitScene& lit, const PartBalance& balance, BandArray& r
   const auto bands = lit.scene.bands.count();
   const BandArray none = BandArray::Zero(radiosity.rows(), radiosity.cols());
   const BandArray emitted = gatherable_radiosity(lit.mesh(), lit.direct_light, none);
-  const ReflectedPower power(lit, balance, channel_sum(emitted, bands),
+  // Gathers here have a column for each part. Light of as many channels would be taken for parts.
+  std::optional<DirectLight> together;
+  if (lit.direct_light.channel_count() > 1) {
+    together.emplace(lit.scene, lit.mesh(), EmitterChannels{}, &lit.direct_light);
+  }
+  const LitScene whole{lit.scene, lit.caster, together ? *together : lit.direct_light};
+  const ReflectedPower power(whole, balance, channel_sum(emitted, bands),
                              channel_sum(radiosity - emitted, bands));
   if (power.parts().size() < 2) return;
   const Eigen::ArrayXXf scales = power.scales().cast<float>();

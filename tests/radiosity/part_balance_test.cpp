@@ -89,6 +89,43 @@ TEST(BalanceParts, LeavesAWhiteRoomWithALampAsItIs) {
   }
 }
 
+// Two rooms with boards a centimetre over their floors, in whose gaps gathers compute direct light
+// anew. Light of three channels has as many columns as that of two parts and of the lamps.
+TEST(BalanceParts, IsTheSameForLightKeptApart) {
+  Scene scene = rooms_with_doors({{"lit", {0, 0, 0}, {4, 5, 3}}, {"dim", {4.1, 0, 0}, {8.1, 5, 3}}},
+                                 {{.x = 4.0, .y = 0.4, .width = 0.01}}, 0.5f);
+  const int board = add_material(scene, diffuse(scene.bands, 0.5f));
+  for (const double x : {0.5, 4.6}) {
+    add_polygon(scene, "board", board,
+                {{x, 1, 0.01}, {x, 4, 0.01}, {x + 3, 4, 0.01}, {x + 3, 1, 0.01}});
+  }
+  for (const double y : {1.0, 2.0, 3.0}) {
+    const int lamp = add_material(scene, diffuse(scene.bands, 0.0f, 100.0f));
+    add_polygon(scene, "lamp", lamp,
+                {{2, y, 2.9}, {2, y + 0.4, 2.9}, {2.4, y + 0.4, 2.9}, {2.4, y, 2.9}});
+  }
+  const SolvedScene solved = solve_scene(scene, {.accuracy = Accuracy{.share = 0.1}});
+  const PatchMesh& mesh = solved.mesh;
+  const SceneParts& parts = solved.solution.parts;
+  ASSERT_EQ(parts.count(), 2);
+  const ElementCaster caster(mesh);
+  const DirectLight together(scene, mesh);
+  EmitterChannels channels{.names = {"a", "b", "c"},
+                           .of_surface = std::vector<int>(scene.surfaces.size(), -1)};
+  for (int c = 0; c < 3; ++c) channels.of_surface[scene.surfaces.size() - 3 + c] = c;
+  const DirectLight apart(scene, mesh, channels);
+  ASSERT_EQ(apart.channel_count(), 3);
+  const BandArray before = gatherable_radiosity(mesh, together, solved.solution.irradiance());
+  const auto bands = scene.bands.count();
+  BandArray whole = 0.8f * before, split = BandArray::Zero(before.rows(), 3 * bands);
+  split.leftCols(bands) = whole;
+  const PartBalance balance{.parts = parts, .rays = std::vector<int>(2, 64)};
+  balance_parts({scene, caster, together}, balance, whole);
+  balance_parts({scene, caster, apart}, balance, split);
+  EXPECT_TRUE((split.leftCols(bands) == whole).all())
+      << (split.leftCols(bands) - whole).abs().maxCoeff();
+}
+
 // A room whose walls reflect rho of light and get C everywhere by way of mirrors and glass is in
 // balance at B = rho C / (1 - rho).
 TEST(BalanceParts, CountsCaustics) {
