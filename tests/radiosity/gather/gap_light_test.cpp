@@ -131,7 +131,8 @@ Eigen::ArrayXd between_plates(Scene scene, int replicas) {
   return found;
 }
 
-// Means agree to four standard errors, of which one is less than a twentieth of the mean.
+// Means agree to four standard errors. One is at most a twentieth of the mean, so that a fifth of
+// the light cannot be missing: mirrors bring more than a third of it in the scenes below.
 void expect_same(const Eigen::ArrayXd& found, const Eigen::ArrayXd& expected) {
   const auto variance = [](const Eigen::ArrayXd& x) {
     const auto n = static_cast<double>(x.size());
