@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "mesh/patches/patch_sampler.h"
 #include "raytrace/seen_places.h"
 #include "raytrace/shading/pixel_gather.h"
 #include "scene/parallel.h"
@@ -16,9 +17,10 @@ namespace {
 
 // Places and records that a thread takes at a time.
 constexpr int records_together = 16;
-// Weight of a record at a place that needs no other one.
+// Weight of a record at a place that needs no other one: three quarters of its radius away, so that
+// records overlap and a plane can be fitted between them.
 constexpr double least_coverage = 0.25;
-// Steps of grids, in those of the narrowest one.
+// Step of the widest grid, in steps of the narrowest one.
 constexpr int widest_step = 16;
 
 // Relative RMS error of the solution's light, by its own estimate, over what the picture shows.
@@ -48,19 +50,17 @@ double least_radius(const SeenPlace& place) {
 // A share of the harmonic mean distance to what the place sees, within limits by the grid. Twice
 // the share raised the error of a furnished room's picture from 3.0 to 3.5 %.
 double radius_of(const ElementCaster& caster, const SeenPlace& place) {
+  // 32 rays tell the mean of 1 / t to some 10 %, as well as the share is known.
   constexpr std::size_t count = 32;
-  constexpr double share_of_distance = 0.05, most_steps = 64.0;
+  // Four steps of the widest grid: a record that serves farther is found no sooner.
+  constexpr double share_of_distance = 0.05, most_steps = 4.0 * widest_step;
   const SobolPoints points(count);
-  Eigen::Vector3d a, b;
-  tangent_frame(place.at.normal, a, b);
+  const PatchPoint from{place.element, place.at.position, place.at.normal};
   std::array<Ray, count> rays;
   std::array<ElementHit, count> hits;
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Array4f u = points.point(static_cast<int>(i), place.key);
-    const Eigen::Vector3d d = cosine_direction(u[0], u[1]);
-    rays[i] = {.origin = place.at.position,
-               .direction = d.x() * a + d.y() * b + d.z() * place.at.normal,
-               .origin_group = place.at.facet};
+    rays[i] = cosine_ray(caster.mesh(), from, u[0], u[1]);
   }
   caster.closest_elements(rays, hits);
   double nearness = 0.0;
@@ -76,8 +76,7 @@ double radius_of(const ElementCaster& caster, const SeenPlace& place) {
 IrradianceRecord empty_record(const ElementCaster& caster, const SeenPlace& place) {
   return {.position = place.at.position,
           .normal = place.at.smooth_normal,
-          .radius = radius_of(caster, place),
-          .least_radius = least_radius(place)};
+          .radius = radius_of(caster, place)};
 }
 
 class PictureRecords {
@@ -155,7 +154,10 @@ class PictureRecords {
     constexpr int between_reports = 1024;
     const auto count = static_cast<int>(candidates.size());
     const std::size_t first = records_.size();
-    for (const Candidate& candidate : candidates) records_.push_back(candidate.record);
+    for (const Candidate& candidate : candidates) {
+      records_.push_back(candidate.record);
+      least_radii_.push_back(least_radius(candidate.place));
+    }
     for (int done = 0; done < count; done += between_reports) {
       report(progress_, "records", share_done(step, static_cast<double>(done) / count));
       parallel_for(std::min(between_reports, count - done), 1, [&](int begin, int end) {
@@ -189,20 +191,22 @@ class PictureRecords {
   // Narrows records that their neighbours tell badly, so that narrower grids fill in the light
   // between: what differs from a plane grows with the square of the radius.
   void narrow() {
-    // Twice and a half the noise of a record.
-    constexpr float most_difference = 0.08f;
+    // Less than three times the noise of a record would narrow records for their noise alone.
+    constexpr float most_difference = 3.0f * static_cast<float>(IrradianceRecords::usual_error);
+    // A narrower grid has half the step, and a record is narrowed once more there.
     constexpr float narrowest = 0.35f;
     const IrradianceRecords known(records_);
     parallel_for(static_cast<int>(records_.size()), records_together, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
-        IrradianceRecord& record = records_[static_cast<std::size_t>(i)];
+        const auto k = static_cast<std::size_t>(i);
+        IrradianceRecord& record = records_[k];
         const auto found = known.fit(record.position, record.normal, i);
         if (!found) continue;
         const float E = record.irradiance.mean();
         const float difference = std::abs(found->irradiance.mean() - E);
         if (!(difference > most_difference * E)) continue;
         const float share = std::max(narrowest, std::sqrt(most_difference * E / difference));
-        record.radius = std::max(record.least_radius, record.radius * static_cast<double>(share));
+        record.radius = std::max(least_radii_[k], record.radius * static_cast<double>(share));
       }
     });
   }
@@ -212,6 +216,7 @@ class PictureRecords {
   Progress progress_;
   PixelGather gather_;
   std::vector<IrradianceRecord> records_{};
+  std::vector<double> least_radii_{};  // m, to which records may be narrowed
 };
 
 }  // namespace

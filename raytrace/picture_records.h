@@ -15,9 +15,9 @@ namespace lightwell {
 ///
 /// Places are sought on grids of pixels, from wide to narrow ones: a place that no record covers
 /// gets a record, whose radius is a share of the harmonic mean of the distances to what the place
-/// sees (Ward, Rubinstein & Clear 1988), but at least the distance to the next place of the
-/// narrowest grid. What is seen by way of smooth mirrors and glass gets records as well. E is that
-/// of PixelGather with RenderOptions::gather_rays.
+/// sees (Ward, Rubinstein & Clear 1988), but at least 0.8 of a step of the narrowest grid. What is
+/// seen by way of smooth mirrors and glass gets records as well. E is that of PixelGather with
+/// RenderOptions::gather_rays.
 std::shared_ptr<const IrradianceRecords> find_records(const LitScene& lit,
                                                       const RadiositySolution& solution,
                                                       const Camera& camera, const CameraRays& rays,

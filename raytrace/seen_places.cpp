@@ -67,46 +67,30 @@ std::optional<Ray> SeenPlaces::onward(const Ray& ray, const ElementHit& hit) con
   const Material& material =
       lit_.scene.materials[static_cast<std::size_t>(facets_[hit.facet].material)];
   if (!material.is_specular() || material.gloss_roughness() > 0.0f) return std::nullopt;
-  const SmoothScattering lobes = smooth_scattering({.material = material,
-                                                    .direction = ray.direction.normalized(),
-                                                    .normal = normal_against(ray, hit),
-                                                    .from_back = hit.from_back});
+  const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
+  const SmoothScattering lobes =
+      smooth_scattering({.material = material,
+                         .direction = ray.direction.normalized(),
+                         .normal = facets_.normal_against(ray.direction, hit.facet, point),
+                         .from_back = hit.from_back});
   if (lobes.count == 0) return std::nullopt;
   const auto brightest = std::max_element(
       lobes.sample.begin(), lobes.sample.begin() + lobes.count,
       [](const auto& a, const auto& b) { return a.weight.mean() < b.weight.mean(); });
-  return Ray{.origin = ray.origin + hit.t * ray.direction,
-             .direction = brightest->direction,
-             .origin_group = hit.facet};
+  return Ray{.origin = point, .direction = brightest->direction, .origin_group = hit.facet};
 }
 
 SeenPlace SeenPlaces::place_of(const Ray& ray, const ElementHit& hit, double width) const {
   const Eigen::Vector3d point = ray.origin + hit.t * ray.direction;
-  const Eigen::Vector3d normal = normal_against(ray, hit);
+  const Eigen::Vector3d normal = facets_.normal_against(ray.direction, hit.facet, point);
   constexpr double grazing = 0.1;  // cosine; neighbours at a smaller one are far apart
   const double cosine = std::max(grazing, -normal.dot(ray.direction.normalized()));
   return {.at = {.position = point,
                  .normal = normal,
-                 .smooth_normal = smooth_normal(hit, point, normal),
+                 .smooth_normal = facets_.smooth_normal(lit_.mesh(), normals_, hit, point, normal),
                  .facet = hit.facet},
           .element = hit.element,
           .spacing = finest_ * width / cosine};
-}
-
-// The facet's normal, unit, on the side that the ray comes from.
-Eigen::Vector3d SeenPlaces::normal_against(const Ray& ray, const ElementHit& hit) const {
-  const FacetShape& facet = facets_[hit.facet];
-  const Eigen::Vector3d normal =
-      facet.round < 0 ? facet.normal
-                      : front_normal(facets_.round(facet), ray.origin + hit.t * ray.direction);
-  return normal.dot(ray.direction) > 0.0 ? Eigen::Vector3d(-normal) : normal;
-}
-
-Eigen::Vector3d SeenPlaces::smooth_normal(const ElementHit& hit, const Eigen::Vector3d& point,
-                                          const Eigen::Vector3d& normal) const {
-  if (facets_[hit.facet].round >= 0) return normal;
-  if (normals_.is_given(hit.facet)) return normals_.at(hit.facet, point, normal);
-  return mesh_normal(lit_.mesh(), hit, normal);
 }
 
 }  // namespace lightwell

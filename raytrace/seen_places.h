@@ -37,9 +37,6 @@ class SeenPlaces {
   std::optional<SeenPlace> place_at(double x, double y) const;
   std::optional<Ray> onward(const Ray& ray, const ElementHit& hit) const;
   SeenPlace place_of(const Ray& ray, const ElementHit& hit, double width) const;
-  Eigen::Vector3d normal_against(const Ray& ray, const ElementHit& hit) const;
-  Eigen::Vector3d smooth_normal(const ElementHit& hit, const Eigen::Vector3d& point,
-                                const Eigen::Vector3d& normal) const;
 
   LitScene lit_;
   const Camera& camera_;

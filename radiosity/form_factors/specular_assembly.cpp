@@ -30,7 +30,7 @@ RecordStore joined_records(const PatchMesh& mesh, RowEstimates& rows,
     return squared_index.size() == 0 ? rows.inverse_variance(i)
                                      : rows.inverse_variance(i) / squared_index[i];
   };
-  // Of F_ij: the weight of S_ij times n_i^2 A_i.
+  // The weight of F_ij: that of S_ij times n_i^2 A_i.
   const auto weight = [&](int i) {
     return static_cast<float>(rows.inverse_variance(i) * mesh.area[i]);
   };

@@ -15,7 +15,7 @@
 namespace lightwell {
 namespace {
 
-// What lies around a patch.
+// The clear bodies around a patch.
 struct Medium {
   float index = 1.0f;  // of refraction
   int body = -1;       // material of the innermost body; -1: none
@@ -40,8 +40,8 @@ class MediumWalks {
   // True if a body absorbs.
   bool absorbs() const { return absorbs_; }
 
-  // What most walks from a patch find around it; air for patches of panes and bodies, which neither
-  // take nor send diffuse light.
+  // The medium that most walks from a patch find; air for patches of panes and bodies, which
+  // neither take nor send diffuse light.
   Medium around(int patch) const {
     const PatchMesh& mesh = caster_.mesh();
     const int facet = mesh.facet[mesh.first_element[patch]];
@@ -61,9 +61,13 @@ class MediumWalks {
   }
 
  private:
-  static constexpr int walks = 9, most_turns = 8, most_surfaces = 64;
+  // An odd number of walks leaves no ties between two media. Four of nine may pass between
+  // polygons.
+  static constexpr int walks = 9;
+  // Bounds of a walk in a closed room without a body, and between parallel panes.
+  static constexpr int most_turns = 8, most_surfaces = 64;
 
-  // What lies around a point, by one walk; nothing if the walk met no body.
+  // The medium around a point, by one walk; nothing if the walk met no body.
   std::optional<Medium> around(PatchPoint at, std::uint64_t key) const {
     const PatchMesh& mesh = caster_.mesh();
     Ray ray = away_from(at, key);

@@ -42,15 +42,6 @@ std::uint64_t chain_key(bool is_curved, int surface, const Eigen::Vector3d& norm
 
 }  // namespace
 
-Eigen::Vector3d mesh_normal(const PatchMesh& mesh, const ElementHit& hit,
-                            const Eigen::Vector3d& otherwise) {
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  for (int c = 0; c < mesh.corner_count(hit.element); ++c) {
-    normal += hit.weights[c] * mesh.vertex_normal[mesh.corners[hit.element][c]];
-  }
-  return normal.norm() > 0.0 ? Eigen::Vector3d(normal.normalized()) : otherwise;
-}
-
 FacetShapes::FacetShapes(const Scene& scene, const PatchMesh& mesh, const FacetNormals& normals) {
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
@@ -74,6 +65,25 @@ FacetShapes::FacetShapes(const Scene& scene, const PatchMesh& mesh, const FacetN
     shape.chain = chain_key(shape.round >= 0 || normals.is_given(static_cast<int>(f)), joined[f],
                             shape.normal, shape.point, diagonal);
   }
+}
+
+Eigen::Vector3d FacetShapes::normal_against(const Eigen::Vector3d& direction, int facet,
+                                            const Eigen::Vector3d& point) const {
+  const FacetShape& shape = (*this)[facet];
+  const Eigen::Vector3d normal = shape.round < 0 ? shape.normal : front_normal(round(shape), point);
+  return normal.dot(direction) > 0.0 ? Eigen::Vector3d(-normal) : normal;
+}
+
+Eigen::Vector3d FacetShapes::smooth_normal(const PatchMesh& mesh, const FacetNormals& normals,
+                                           const ElementHit& hit, const Eigen::Vector3d& point,
+                                           const Eigen::Vector3d& normal) const {
+  if ((*this)[hit.facet].round >= 0) return normal;
+  if (normals.is_given(hit.facet)) return normals.at(hit.facet, point, normal);
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (int c = 0; c < mesh.corner_count(hit.element); ++c) {
+    sum += hit.weights[c] * mesh.vertex_normal[mesh.corners[hit.element][c]];
+  }
+  return sum.norm() > 0.0 ? Eigen::Vector3d(sum.normalized()) : normal;
 }
 
 }  // namespace lightwell

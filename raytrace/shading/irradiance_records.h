@@ -15,7 +15,6 @@ struct IrradianceRecord {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();   ///< shading normal, unit
   double radius = 0.0;                                 ///< m, > 0, within which the record serves
-  double least_radius = 0.0;                           ///< m, to which the radius may be narrowed
   Spectrum irradiance{};                               ///< W/m^2
   double variance = 0.0;  ///< of the noise of the irradiance, mean of the bands, (W/m^2)^2
 };

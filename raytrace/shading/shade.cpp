@@ -404,17 +404,12 @@ RayTree::ShadingPoint RayTree::shading_point(const Ray& ray, const ElementHit& h
                                              const ElementCaster& caster) const {
   const FacetShape& facet = facets_[hit.facet];
   ShadingPoint at{.position = ray.origin + hit.t * ray.direction,
-                  .rest_normal = facet.normal,
                   .pose = caster.pose_of(hit.facet)};
   at.rest = at.pose ? Eigen::Vector3d(at.pose->inverse() * at.position) : at.position;
-  if (facet.round >= 0) {
-    at.rest_normal = front_normal(facets_.round(facet), at.rest);
-  } else {
-    // The point is projected onto the facet's plane in double, since the caster's distances are
-    // float.
-    at.rest -= facet.normal.dot(at.rest - facet.point) * facet.normal;
-  }
-  if (at.rest_normal.dot(at.turned_back(ray.direction)) > 0.0) at.rest_normal = -at.rest_normal;
+  // The point is projected onto the facet's plane in double, since the caster's distances are
+  // float.
+  if (facet.round < 0) at.rest -= facet.normal.dot(at.rest - facet.point) * facet.normal;
+  at.rest_normal = facets_.normal_against(at.turned_back(ray.direction), hit.facet, at.rest);
   at.position = at.pose ? Eigen::Vector3d(*at.pose * at.rest) : at.rest;
   at.normal = at.turned(at.rest_normal);
   return at;

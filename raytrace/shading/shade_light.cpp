@@ -28,13 +28,8 @@ ShadowOptions shadows_for(ShadowOptions shadows, float weight, int fewest) {
 
 }  // namespace
 
-// Normals of the file if given; else those of the mesh's vertices.
 Eigen::Vector3d RayTree::smooth_normal(const ElementHit& hit, const ShadingPoint& at) const {
-  if (facets_[hit.facet].round >= 0) return at.normal;
-  if (normals_.is_given(hit.facet)) {
-    return at.turned(normals_.at(hit.facet, at.rest, at.rest_normal));
-  }
-  return at.turned(mesh_normal(caster_.mesh(), hit, at.rest_normal));
+  return at.turned(facets_.smooth_normal(caster_.mesh(), normals_, hit, at.rest, at.rest_normal));
 }
 
 RayTree::ShadowOrigin RayTree::shadow_origin(const ElementHit& hit, const ShadingPoint& at) const {
