@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -13,6 +14,7 @@ namespace {
 RenderOptions options_of(const RenderArguments& arguments, const RenderOptions& given) {
   RenderOptions options = arguments.options();
   options.layers = given.layers;
+  options.records = given.records;
   options.run = given.run;
   return options;
 }
@@ -26,25 +28,15 @@ std::vector<RenderArguments> from_best_to_quickest(const RenderArguments& argume
   return {arguments, draft, interpolated};
 }
 
-// Says when a picture is to be given up for a quicker one: when its records of indirect light take
-// more than half of the time that was left at its beginning, or when its rows so far tell that they
-// will take much more than what is left then.
+// Says when a picture is to be given up for a quicker one: when its rows so far tell that they will
+// take much more than the time that was left at its beginning.
 class Pace {
  public:
   explicit Pace(double allowed) : allowed_(allowed) {}
 
   bool is_too_slow(std::string_view phase, double share) {
-    constexpr double most_for_records = 0.5;
-    if (phase == "records") {
-      if (!watch_) watch_.emplace();
-      return watch_->seconds() > most_for_records * allowed_;
-    }
     if (phase != "render") return false;  // the photons of caustics, which all pictures share
-    if (!has_rows_) {
-      if (watch_) allowed_ -= watch_->seconds();
-      watch_.emplace();
-      has_rows_ = true;
-    }
+    if (!watch_) watch_.emplace();
     // A tenth of the time shows some rows in any picture. Rows from the top, often of a ceiling,
     // may be cheaper or dearer than the rest, so a fifth too much is no reason yet.
     constexpr double enough_to_judge = 0.1, too_much = 1.2;
@@ -54,9 +46,24 @@ class Pace {
 
  private:
   double allowed_;
-  bool has_rows_ = false;
   std::optional<Stopwatch> watch_{};
 };
+
+// Records of indirect light, which the picture and its draft share; null: there are none, or they
+// take more than half of the time.
+std::shared_ptr<const IrradianceRecords> records_in_time(SceneRenderer& renderer,
+                                                         const Camera& camera,
+                                                         const RenderArguments& arguments,
+                                                         const RenderOptions& given) {
+  constexpr double most_of_time = 0.5;
+  RenderOptions options = options_of(arguments, given);
+  std::shared_ptr<const IrradianceRecords> records;
+  finishes_in_time(given.run.with_share(most_of_time), [&](const RunControl& in_time) {
+    options.run = in_time;
+    records = renderer.records(camera, options);
+  });
+  return records;
+}
 
 // Four samples for each pixel, with light from the solution.
 RenderOptions quickest(const RenderOptions& given) {
@@ -85,6 +92,7 @@ void copy_rows(const Image& from, int first, int end, Image& to) {
 bool is_given_up(SceneRenderer& renderer, const Camera& camera, const RenderOptions& given,
                  bool may_give_up, PictureInTime& picture) {
   RenderOptions options = options_of(picture.arguments, given);
+  if (given.run.has_limit()) options.has_records = given.records != nullptr;
   Pace pace(given.run.time_left());
   bool gave_up = false;
   RunControl run = given.run;
@@ -117,10 +125,12 @@ PictureInTime render_in_time(SceneRenderer& renderer, const Camera& camera,
                              const RenderArguments& arguments, const RenderOptions& given) {
   PictureInTime picture;
   const std::vector<RenderArguments> candidates = from_best_to_quickest(arguments);
+  RenderOptions options = given;
+  if (given.run.has_limit()) options.records = records_in_time(renderer, camera, arguments, given);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const bool may_give_up = given.run.has_limit() && i + 1 < candidates.size();
     picture.arguments = candidates[i];
-    if (!is_given_up(renderer, camera, given, may_give_up, picture)) break;
+    if (!is_given_up(renderer, camera, options, may_give_up, picture)) break;
   }
   if (picture.rows == camera.height) return picture;
   const Image finished = std::move(picture.image);

@@ -288,7 +288,8 @@ class GatherAttempts {
 
   // Completes the solution with what there is, by as little work as possible:
   // - the attempt before, if refinement was stopped in a later one;
-  // - the light at patches, if refinement was stopped in the first attempt;
+  // - the light at the vertices of the base, or at patches, if refinement was stopped in the first
+  //   attempt;
   // - the light of the pilot gather, if the gather was stopped.
   void end_early() {
     spent_["gather"] += watch_.lap();
@@ -303,7 +304,7 @@ class GatherAttempts {
     options_.refine.efforts.clear();
     raised_.assign(estimates_.size(), 1);
     if (state_ == State::has_nothing) {
-      pilot_ = pilot_gathers_->gather_at_patches(options_);
+      pilot_ = pilot_gathers_->gather_in_haste(options_);
       take_mesh(false);
     }
     if (state_ == State::has_pilot) {

@@ -56,6 +56,7 @@ struct PilotGathers::Impl {
 
   PilotGather unrefined(const SolveOptions& options);
   PilotGather at_patches(const SolveOptions& options);
+  PilotGather at_base(const SolveOptions& options);
   void prepare(const SolveOptions& options);
   PilotGather refined(const SolveOptions& options);
 
@@ -92,8 +93,9 @@ PilotGather PilotGathers::gather(const SolveOptions& options) {
   return options.refine.tolerance > 0.0 ? impl_->refined(options) : impl_->unrefined(options);
 }
 
-PilotGather PilotGathers::gather_at_patches(const SolveOptions& options) {
-  return impl_->at_patches(options);
+PilotGather PilotGathers::gather_in_haste(const SolveOptions& options) {
+  const bool has_light = impl_->refinement && !impl_->all_light;
+  return has_light ? impl_->at_base(options) : impl_->at_patches(options);
 }
 
 ElementCaster PilotGathers::caster(const PatchMesh& mesh, const PilotGather& pilot) const {
@@ -130,6 +132,17 @@ PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
   return {.direct = to_vertices(base, found.direct),
           .indirect = to_vertices(base, found.indirect),
           .shadows = gather.shadows,
+          .gather_rays = rays_by_part(options)};
+}
+
+// Precondition: refinement has begun.
+PilotGather PilotGathers::Impl::at_base(const SolveOptions& options) {
+  GatheredIrradiance found = refinement->light_at_base();
+  return {.direct = std::move(found.direct),
+          .indirect = std::move(found.indirect),
+          .shadows = gather_options(options).shadows,
+          .caustic = caustic,
+          .lacks_unread = true,
           .gather_rays = rays_by_part(options)};
 }
 

@@ -63,10 +63,11 @@ class PilotGathers {
   /// more elements than allowed, Interrupted when progress says stop.
   PilotGather gather(const SolveOptions& options);
 
-  /// Gather of few rays at one point of each patch, which the vertices of the base share: for want
-  /// of time, in place of gather(). Caustics are left out. Throws Interrupted when progress says
-  /// stop.
-  PilotGather gather_at_patches(const SolveOptions& options);
+  /// Light at the vertices of the base, for want of time in place of gather(): what a gather() that
+  /// was stopped has found there. If that one was stopped too early, or light is kept apart by
+  /// channels, a gather of few rays at one point of each patch, which the vertices of the base
+  /// share, without caustics. Throws Interrupted when progress says stop.
+  PilotGather gather_in_haste(const SolveOptions& options);
 
   /// The mesh before refinement; may be moved from after the last pilot gather.
   PatchMesh& base();

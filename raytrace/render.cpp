@@ -99,7 +99,9 @@ Image render(const Scene& scene, const ElementCaster& caster, const DirectLight&
   validate(options);
   const CameraRays rays(camera);
   RayTree tree(scene, caster, direct_light, solution, options);
-  tree.set_records(find_records({scene, caster, direct_light}, solution, camera, rays, options));
+  tree.set_records(options.records ? options.records
+                                   : find_records({scene, caster, direct_light}, solution, camera,
+                                                  rays, options));
   RayCounters counters;
   const Eye eye(rays, tree, counters);
   Image image{.width = camera.width, .height = camera.height};

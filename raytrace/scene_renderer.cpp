@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "raytrace/caustics/caustic_map.h"
+#include "raytrace/picture_records.h"
 #include "raytrace/shading/indirect_slant.h"
 #include "raytrace/shading/visible_lamps.h"
 #include "raytrace/virtual_lights/virtual_lights.h"
@@ -71,6 +72,13 @@ Image SceneRenderer::render(const Camera& camera, RenderOptions options, RenderR
   options.visible_lamps = visible_lamps();
   options.found_virtual_lights = virtual_lights(options);
   return lightwell::render(scene_, caster_, direct_light_, solution_, camera, options, report);
+}
+
+std::shared_ptr<const IrradianceRecords> SceneRenderer::records(
+    const Camera& camera, const RenderOptions& options) const {
+  validate(options);
+  return find_records({scene_, caster_, direct_light_}, solution_, camera, CameraRays(camera),
+                      options);
 }
 
 std::optional<IncidentLight> SceneRenderer::incident_light(const Camera& camera) const {

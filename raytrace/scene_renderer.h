@@ -24,6 +24,10 @@ class SceneRenderer {
   /// here. May be called by any number of threads at once, of which one finds them while the others
   /// wait.
   Image render(const Camera& camera, RenderOptions options = {}, RenderReport* report = nullptr);
+  /// Finds the records that render() would find for the same camera and options, for pictures that
+  /// are to share them as RenderOptions::records.
+  std::shared_ptr<const IrradianceRecords> records(const Camera& camera,
+                                                   const RenderOptions& options) const;
   /// The light that falls on what a camera sees, as meter_incident_light() returns it.
   std::optional<IncidentLight> incident_light(const Camera& camera) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 
 #include "radiosity/refine/cell_errors.h"
 #include "radiosity/refine/even_out_noise.h"
@@ -251,6 +252,12 @@ SolutionRefinement::SolutionRefinement(const LitScene& lit, const BandArray& rad
 }
 
 SolutionRefinement::~SolutionRefinement() = default;
+
+GatheredIrradiance SolutionRefinement::light_at_base() const {
+  std::vector<int> vertices(static_cast<std::size_t>(impl_->elements.base().vertex_count()));
+  std::iota(vertices.begin(), vertices.end(), 0);
+  return impl_->error.values(vertices);
+}
 
 RefinedSolution SolutionRefinement::refine(const RefineOptions& options,
                                            const ChannelLight* by_channel) {

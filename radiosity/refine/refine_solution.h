@@ -61,6 +61,10 @@ class SolutionRefinement {
   /// have the same sum. Throws Interrupted when progress says stop.
   RefinedSolution refine(const RefineOptions& options, const ChannelLight* by_channel = nullptr);
 
+  /// Light at the vertices of the base, vertices x bands, W/m^2, which is known from the beginning,
+  /// whether refine() was called or stopped or neither. Indirect light is 0 on unread_patches().
+  GatheredIrradiance light_at_base() const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

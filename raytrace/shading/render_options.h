@@ -13,6 +13,7 @@
 namespace lightwell {
 
 class CausticMap;
+class IrradianceRecords;
 class VirtualLights;
 class VisibleLamps;
 
@@ -55,6 +56,9 @@ struct RenderOptions {
   /// Pass::automatic: indirect light by IrradianceRecords where the solution's is coarse. A film
   /// does without, since records differ from picture to picture by their noise.
   bool has_records = true;
+  /// Result of find_records() for the same camera, shared by several pictures of it (see
+  /// SceneRenderer::records). Null: found for this picture, if it has records.
+  std::shared_ptr<const IrradianceRecords> records{};
   /// VirtualLights, for Pass::virtual_lights; 1 to most_virtual_lights.
   int virtual_lights = 4096;
   /// The virtual lights of the scene, shared as `caustics` is. Null: found for this picture.

@@ -49,6 +49,26 @@ TEST(SceneRenderer, PicturesShareTheirPhotonsAndHaveTheBitsOfPicturesAlone) {
   EXPECT_EQ(traced, 2) << "the solution's own caustics need none";
 }
 
+TEST(SceneRenderer, RecordsThatPicturesShareGiveTheBitsOfPicturesAlone) {
+  MirroredLamp mirrored;
+  const int elements = mirrored.lit.mesh.element_count();
+  mirrored.lit.solution.interpolation_error = Eigen::ArrayXf::Constant(elements, 0.1f);
+  SceneRenderer renderer(mirrored.lit.scene, mirrored.lit.mesh, mirrored.lit.solution);
+  const Camera camera = camera_towards({0.75, 0.1, 1.0}, {0.75, 0.1, 2.0}, 40.0, 16);
+  int found = 0;
+  RenderOptions options{.run = {.progress = [&found](std::string_view phase, double) {
+                          found += phase == "records" ? 1 : 0;
+                          return true;
+                        }}};
+  const Image alone = renderer.render(camera, options);
+  EXPECT_GT(found, 0);
+  options.records = renderer.records(camera, options);
+  ASSERT_TRUE(options.records);
+  found = 0;
+  EXPECT_TRUE((renderer.render(camera, options).radiance == alone.radiance).all());
+  EXPECT_EQ(found, 0) << "the picture takes the records that it is given";
+}
+
 TEST(SceneRenderer, StoppedWhileItTracesPhotonsItStartsAgain) {
   const MirroredLamp mirrored;
   SceneRenderer renderer(mirrored.lit.scene, mirrored.lit.mesh, mirrored.lit.solution);

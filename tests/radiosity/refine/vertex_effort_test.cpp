@@ -118,6 +118,24 @@ TEST(VertexEffort, SkyNoiseFallsWhereLittleOtherErrorIsLeft) {
   EXPECT_FALSE(noisy.sharpen_sky({little}));
 }
 
+TEST(VertexEffort, RefinementThatIsStoppedHasTheLightOfItsBase) {
+  Place place;
+  const VertexGathers alone = place.gathers(16);
+  bool is_stopped = false;
+  GatherOptions gather = Place::gather();
+  gather.run.progress = [&is_stopped](std::string_view, double) { return !is_stopped; };
+  const LitScene lit{place.scene, place.caster, place.direct_light};
+  SolutionRefinement refinement(lit, place.radiosity, {}, place.elements, gather,
+                                place.options(16));
+  is_stopped = true;
+  EXPECT_THROW(refinement.refine(place.options(16)), Interrupted);
+  const int count = place.mesh.vertex_count();
+  const GatheredIrradiance found = refinement.light_at_base();
+  ASSERT_EQ(found.direct.rows(), count);
+  EXPECT_TRUE((found.direct == alone.direct().topRows(count)).all());
+  EXPECT_GT(found.indirect.minCoeff(), 0.0f);
+}
+
 TEST(VertexEffort, NeighboursEvenOutTheNoiseOfTheSky) {
   Place place;
   const LitScene lit{place.scene, place.caster, place.direct_light};
