@@ -19,7 +19,6 @@
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/openings/find_openings.h"
 #include "radiosity/parts/find_parts.h"
-#include "radiosity/paths/squared_indices.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/refine_solution.h"
 #include "radiosity/rows/memory_budget.h"
@@ -173,18 +172,6 @@ void describe(const Scene& scene, RadiositySolution& solution) {
   solution.provenance.scene_hash = scene_hash(scene);
 }
 
-// Adds a note if surfaces lie within bodies that absorb.
-void note_undimmed_light(const Scene& scene, const ElementCaster& caster,
-                         std::vector<std::string>& notes) {
-  for (const int m : absorbing_bodies_around(scene, caster)) {
-    notes.push_back(
-        fmt::format("surfaces lie within a body of '{}', which absorbs: light from one of them "
-                    "straight to another, and to places within, is not dimmed on its way; light "
-                    "that crosses the surface of the body is",
-                    scene.materials[static_cast<std::size_t>(m)].name));
-  }
-}
-
 }  // namespace
 
 SolvedScene gather_to_elements(const Scene& scene, SolvedScene patches, const SolveOptions& options,
@@ -253,7 +240,6 @@ SolvedScene solve_scene(const Scene& scene, const SolveOptions& options, SolveRe
                                 LightPaths(scene, *caster, options.form_factors.max_specular_depth),
                                 options.run.progress);
   seconds.push_back({"parts", watch.lap()});
-  note_undimmed_light(scene, *caster, solved.mesh.notes);
   const std::vector<Opening> openings = openings_in_time(scene, options.run);
   seconds.push_back({"openings", watch.lap()});
 

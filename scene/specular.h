@@ -128,6 +128,9 @@ class Media {
  public:
   /// Records a scattering at a surface; `material` is the index of `what`.
   void cross(int material, const Material& what, const ScatteringSample& sample, bool from_back);
+  /// True if the light has crossed into no body, or out of all of them again. The light may still
+  /// be in a body that the path began in.
+  bool is_empty() const { return count_ == 0; }
   /// Transmittance per band over `distance` metres up to a surface of `material`, met from behind
   /// or not: exp(-absorption d) of the body around the light, ones where nothing absorbs. A clear
   /// surface met from behind bounds its own body, whatever was crossed before.

@@ -10,6 +10,7 @@
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/patch_light.h"
 #include "radiosity/solvers/solve_columns.h"
+#include "radiosity/visibility/absorbing_bodies.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "radiosity/visibility/shadow_rays.h"
 #include "raytrace/readings/cylinder.h"
@@ -67,6 +68,7 @@ struct PlacedLight::Room {
   PatchMesh mesh;
   ElementCaster caster;
   ClearPanes panes;
+  std::shared_ptr<const AbsorbingBodies> bodies;  // null: no patch lies in one
   SobolPoints of_patch, of_opening;
   std::vector<GatherPoint> points_of_planes{};
   std::vector<ReadingPlane> planes{};
@@ -93,6 +95,7 @@ PlacedLight::Room::Room(const Scene& lit, LightReceivers receivers, const Placed
       mesh(build_patches(scene, given.mesh, given.progress)),
       caster(mesh),
       panes(scene),
+      bodies(AbsorbingBodies::find(scene, caster)),
       of_patch(given.points_of_patch),
       of_opening(given.points_of_opening) {
   set_planes(receivers);
@@ -145,12 +148,19 @@ void PlacedLight::Room::add(const FreeSource& source, const SurfacePoint& at,
                             const Eigen::Array2f& u, double share, Eigen::ArrayXXd& sum) const {
   const ShadowSample sample = shadow_sample(source, at, double{u[0]}, double{u[1]});
   if (!(sample.weight > 0.0)) return;
-  const Eigen::ArrayXd light = share * (source.light * passed(sample.ray)).cast<double>();
+  Eigen::ArrayXd light = share * (source.light * passed(sample.ray)).cast<double>();
+  const Spectrum* absorption = bodies ? bodies->around(caster, at) : nullptr;
+  if (absorption) light *= left_after(*absorption, sample.ray.direction.norm()).cast<double>();
   if (!(light > 0.0).any()) return;
   const Lamp& lamp = std::get<LampLight>(source.shape).lamp;
   const KernelSlope slope = kernel_slope(lamp, at.position + sample.ray.direction, at);
   sum.col(0) += slope.kernel * light;
   for (Eigen::Index axis = 0; axis < 3; ++axis) sum.col(1 + axis) += slope.gradient[axis] * light;
+  if (!absorption) return;
+  // d exp(-a r) / dx = -a (v / r) exp(-a r) where v is the way to the lamp.
+  const Eigen::Vector3d outwards = sample.ray.direction.normalized();
+  const Eigen::ArrayXd dimming = slope.kernel * absorption->cast<double>() * light;
+  for (Eigen::Index axis = 0; axis < 3; ++axis) sum.col(1 + axis) -= outwards[axis] * dimming;
 }
 
 // Mean over points of a patch, each lit by a point of the opening.

@@ -36,7 +36,7 @@ bool is_member(const LightSample& sample, const LightList& lights) {
 std::vector<MemberLight> member_lights(std::span<const LightSample> members,
                                        const LightList& lights, const ElementCaster& caster,
                                        const SurfacePoint& at, std::uint64_t key,
-                                       const ClearPanes* panes) {
+                                       const ShadowMedium& medium) {
   std::vector<MemberLight> result;
   std::vector<Ray> rays;
   result.reserve(members.size());
@@ -63,8 +63,11 @@ std::vector<MemberLight> member_lights(std::span<const LightSample> members,
   std::vector<std::uint8_t> blocked(rays.size());
   caster.occluded(rays, blocked);
   for (std::size_t i = 0; i < result.size(); ++i) {
-    result[i].blocked = blocked[i];
-    if (blocked[i] != 0 && panes) result[i].passed = panes->passed(caster, rays[i]);
+    const bool is_blocked = blocked[i] != 0;
+    result[i].blocked = is_blocked || medium.absorbs() ? 1 : 0;
+    if (medium.absorbs() || (is_blocked && medium.panes)) {
+      result[i].passed = medium.passed(caster, rays[i], is_blocked);
+    }
   }
   return result;
 }

@@ -8,7 +8,7 @@
 #include "mesh/elements/element_caster.h"
 #include "radiosity/emitters/light_list.h"
 #include "radiosity/many_lights/light_choice.h"
-#include "radiosity/visibility/clear_panes.h"
+#include "radiosity/visibility/shadow_rays.h"
 #include "scene/surface_point.h"
 
 namespace lightwell {
@@ -21,8 +21,8 @@ struct MemberLight {
   /// Form factor by the point's kernel, or the kernel of a source, unobstructed, over the chance.
   double F = 0.0;
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< towards the point, any length
-  std::uint8_t blocked = 0;
-  Spectrum passed{};  ///< transmittance of the panes on a blocked way; empty: none
+  std::uint8_t blocked = 0;                              ///< 1: not all light arrives
+  Spectrum passed{};  ///< transmittance of a way that panes or a body dim; empty: none
 
   /// The share that arrives, mean of the bands.
   double arriving() const {
@@ -35,10 +35,10 @@ struct MemberLight {
 /// point to point.
 bool is_member(const LightSample& sample, const LightList& lights);
 
-/// The members that may give a point light. `panes` null: nothing passes through panes.
+/// The members that may give a point light.
 std::vector<MemberLight> member_lights(std::span<const LightSample> members,
                                        const LightList& lights, const ElementCaster& caster,
                                        const SurfacePoint& at, std::uint64_t key,
-                                       const ClearPanes* panes);
+                                       const ShadowMedium& medium);
 
 }  // namespace lightwell

@@ -17,6 +17,7 @@
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/many_lights/light_sampler.h"
 #include "radiosity/sky/sky_light.h"
+#include "radiosity/visibility/absorbing_bodies.h"
 #include "radiosity/visibility/shadow_rays.h"
 #include "scene/random_purpose.h"
 #include "scene/rays/float_rounding.h"
@@ -77,15 +78,21 @@ DirectLight::DirectLight(const Scene& scene, const PatchMesh& mesh, const Emitte
   lights_ = std::make_shared<const LightList>(std::move(lights));
   sampler_ = std::make_shared<const LightSampler>(lights_);
   exact_ = like ? like->exact_ : std::make_shared<const ExactShadows>(scene, mesh, emitters());
+  if (like) bodies_ = like->bodies_;
+  if (!like && MediumWalks(scene).absorbs()) {
+    bodies_ = AbsorbingBodies::find(scene, ElementCaster(mesh));
+  }
 }
 
-DirectLight::DirectLight(const Scene& scene, std::vector<FreeSource> sources)
+DirectLight::DirectLight(const Scene& scene, std::vector<FreeSource> sources,
+                         std::shared_ptr<const AbsorbingBodies> bodies)
     : lights_(std::make_shared<const LightList>(LightList{.sources = std::move(sources)})),
       sampler_(std::make_shared<const LightSampler>(lights_)),
       bases_(scene.materials),
       bands_(scene.bands.count()),
       samples_(most_probe_shadow_rays),
-      panes_(scene) {
+      panes_(scene),
+      bodies_(std::move(bodies)) {
   const std::size_t facets = scene_facets(scene).size();
   owned_.assign(facets, Owned::nothing);
   first_column_.assign(facets, 0);
@@ -123,7 +130,7 @@ double DirectLight::form_factor(const Emitter& emitter, const ElementCaster& cas
   }
   shadow.index = static_cast<int>(&emitter - known.data());
   find_share(*exact_, caster, query.at, shadow);
-  return shadow.F * cast_shadows({&shadow, 1}, caster, samples_, query.at, nullptr)[0].share();
+  return shadow.F * cast_shadows({&shadow, 1}, caster, samples_, query.at, {})[0].share();
 }
 
 std::optional<bool> DirectLight::sees(int light, const ElementCaster& caster,
@@ -179,7 +186,8 @@ Spectrum DirectLight::light_of(int light, const Eigen::Vector3d& point) const {
 DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const LightQuery& query,
                                           const std::vector<LightSample>& samples) const {
   const auto& [point, normal, facet] = query.at;
-  const ClearPanes* const panes = panes_.empty() ? nullptr : &panes_;
+  const ShadowMedium medium{.panes = panes_.empty() ? nullptr : &panes_,
+                            .absorption = bodies_ ? bodies_->around(caster, query.at) : nullptr};
   Shadows found;
   std::vector<LightSample> members;
   for (const LightSample& sample : samples) {
@@ -214,7 +222,7 @@ DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const Lig
     }
     found.lights.push_back(std::move(shadow));
   }
-  found.members = member_lights(members, *lights_, caster, query.at, query.key, panes);
+  found.members = member_lights(members, *lights_, caster, query.at, query.key, medium);
   std::vector<double> of_members(static_cast<std::size_t>(channel_count()), 0.0);
   for (const MemberLight& m : found.members) {
     of_members[static_cast<std::size_t>(lights_->channel(m.light))] +=
@@ -222,9 +230,14 @@ DirectLight::Shadows DirectLight::shadows(const ElementCaster& caster, const Lig
   }
   set_effort(found.lights, std::move(of_members), query.shadows);
   for (LightShadow& shadow : found.lights) {
-    if (shadow.emitter) find_share(*exact_, caster, query.at, shadow);
+    if (!shadow.emitter) continue;
+    if (medium.absorbs()) {
+      shadow.sampler = SolidAngleSampler(*shadow.emitter, point);
+    } else {
+      find_share(*exact_, caster, query.at, shadow);
+    }
   }
-  found.tallies = cast_shadows(found.lights, caster, samples_, query.at, panes);
+  found.tallies = cast_shadows(found.lights, caster, samples_, query.at, medium);
   return found;
 }
 

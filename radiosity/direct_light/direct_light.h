@@ -20,6 +20,7 @@
 
 namespace lightwell {
 
+class AbsorbingBodies;
 class ExactShadows;
 class LightSampler;
 class SkyLight;
@@ -107,7 +108,8 @@ struct LightQuery {
 /// ShadowOptions::cluster_share). The mean over keys of random numbers is the sum over all lights.
 ///
 /// Irradiance includes light that passes straight through ClearPanes; form factors take panes as
-/// opaque.
+/// opaque. At points within an absorbing body, each shadow ray counts with what the body leaves of
+/// the light over the ray's length; form factors do not.
 ///
 /// With `channels`, the light of channel c lies in the columns from c * bands on.
 class DirectLight {
@@ -122,8 +124,10 @@ class DirectLight {
   /// for bit, as by the mesh alone.
   DirectLight(const Scene& scene, const ElementCaster& caster);
 
-  /// The light of `sources` alone, none of which is the sky's dome, all in channel 0.
-  DirectLight(const Scene& scene, std::vector<FreeSource> sources);
+  /// The light of `sources` alone, none of which is the sky's dome, all in channel 0. `bodies`:
+  /// those of a DirectLight of the scene.
+  DirectLight(const Scene& scene, std::vector<FreeSource> sources,
+              std::shared_ptr<const AbsorbingBodies> bodies);
 
   const std::vector<Emitter>& emitters() const { return lights_->emitters; }
   const std::vector<FreeSource>& free_sources() const { return lights_->sources; }
@@ -131,6 +135,8 @@ class DirectLight {
   const FreeSource* dome() const;
   /// The light of the dome; null if there is none.
   const SkyLight* sky() const { return sky_.get(); }
+  /// Absorbing bodies that surfaces lie within; null: none.
+  const std::shared_ptr<const AbsorbingBodies>& bodies() const { return bodies_; }
   int light_count() const { return lights_->count(); }
   /// True if the emission of that side of a facet is direct light, which other rays must not count
   /// again. Only the outside of a sphere is; its inside sees itself all around.
@@ -235,6 +241,7 @@ class DirectLight {
   int bands_ = 0;
   SobolPoints samples_;
   ClearPanes panes_;
+  std::shared_ptr<const AbsorbingBodies> bodies_{};  // null: no patch lies in one
 };
 
 }  // namespace lightwell

@@ -25,9 +25,9 @@ Spectrum pictured_light(const Emitter& emitter, const EmissionTree::View& view, 
 // Rays of all lights are cast together. A known share becomes the tally as it is.
 std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
                                       const ElementCaster& caster, const SobolPoints& sobol,
-                                      const SurfacePoint& at, const ClearPanes* panes) {
+                                      const SurfacePoint& at, const ShadowMedium& medium) {
   std::vector<ShadowTally> tallies(shadows.size());
-  ShadowBatch batch(caster, tallies, panes);
+  ShadowBatch batch(caster, tallies, medium);
   const auto add = [&](std::size_t i, int begin, int end) {
     for (int s = begin; s < end; ++s) {
       const Eigen::Array4f u = sobol.point(s, shadows[i].key);
@@ -50,7 +50,9 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
   batch.flush();
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const LightShadow& shadow = shadows[i];
-    if (shadow.share || (!tallies[i].is_mixed() && !shadow.by_expected_weight)) continue;
+    // A body dims each ray by its own length, so that all rays differ.
+    const bool needs_all = tallies[i].is_mixed() || shadow.by_expected_weight || medium.absorbs();
+    if (shadow.share || !needs_all) continue;
     add(i, shadow.least, shadow.most);
   }
   batch.flush();

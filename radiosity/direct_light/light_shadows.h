@@ -54,13 +54,12 @@ void set_effort(std::span<LightShadow> shadows, std::vector<double> other_light,
 void find_share(const ExactShadows& exact, const ElementCaster& caster, const SurfacePoint& at,
                 LightShadow& shadow);
 
-/// Casts the rays of all lights, and tallies those of each. `panes` null: nothing passes through
-/// panes.
+/// Casts the rays of all lights, and tallies those of each.
 std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
                                       const ElementCaster& caster, const SobolPoints& sobol,
-                                      const SurfacePoint& at, const ClearPanes* panes);
+                                      const SurfacePoint& at, const ShadowMedium& medium);
 
-/// The share of a light that arrives, through clear panes as well, mean of the bands.
+/// The share of a light that arrives, dimmed light as well, mean of the bands.
 double arriving_share(const ShadowTally& tally);
 
 }  // namespace lightwell

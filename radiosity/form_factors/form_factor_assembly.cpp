@@ -199,7 +199,8 @@ class Assembly {
     for (int i = 0; i < n_; ++i) {
       if (!rows_.is_measured(i)) continue;
       is_closed = is_closed && std::abs(sum[i] - target_[i]) <= closed * mesh_.area[i];
-      if (sum[i] > target_[i]) shorter[i] = std::max(target_[i], 0.0) / sum[i];
+      // The target of a row of dimmed light alone is 0 but for rounding.
+      if (sum[i] > std::max(target_[i], 0.0)) shorter[i] = std::max(target_[i], 0.0) / sum[i];
     }
     if (is_closed) return;
     weight_.colwise() *= shorter;

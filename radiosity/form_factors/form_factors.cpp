@@ -106,7 +106,9 @@ class Estimator {
         options_(options),
         paths_(lit.scene, lit.caster, options.max_specular_depth) {
     for (int i = 0; i < mesh_.patch_count(); ++i) {
-      receives_.push_back(paths_.is_diffuse(mesh_.facet[mesh_.first_element[i]]));
+      // Closed forms know nothing of absorption: rays find the light within absorbing bodies.
+      receives_.push_back(paths_.is_diffuse(mesh_.facet[mesh_.first_element[i]]) &&
+                          !paths_.dims_before(i));
     }
   }
 
@@ -114,7 +116,7 @@ class Estimator {
   BandArray mirrored() const {
     BandArray shares = mirrored_shares(scene_, mesh_);
     for (int i = 0; i < mesh_.patch_count(); ++i) {
-      if (receives_[static_cast<std::size_t>(i)] == 0) shares.row(i).setZero();
+      if (!paths_.is_diffuse(mesh_.facet[mesh_.first_element[i]])) shares.row(i).setZero();
     }
     return (shares > 0.0f).any() ? shares : BandArray();
   }
@@ -261,13 +263,13 @@ class Estimator {
         },
         [&](int i, std::vector<NearExchange::Pair>& found) {
           std::erase_if(found, [&](const NearExchange::Pair& pair) {
-            return emitters.emitter_of(i) >= 0 || emitters.emitter_of(pair.patch) >= 0;
+            return is_closed_emitter(emitters, i) || is_closed_emitter(emitters, pair.patch);
           });
           pairs.append(i, found.data(), found.size());
         });
     pairs.close();
     KnownExchange& known = estimate.known;
-    for (int i = 0; i < n; ++i) known.is_whole[i] = emitters.emitter_of(i) >= 0 ? 1 : 0;
+    for (int i = 0; i < n; ++i) known.is_whole[i] = is_closed_emitter(emitters, i) ? 1 : 0;
     emitters.compute(receives_, options_, phase_of("emitters"));
     near.exchange(
         std::move(pairs), options_.run.progress,
@@ -281,6 +283,10 @@ class Estimator {
     known.S.close();
     return estimate;
   }
+  // True for patches of emitters whose rows consist of closed forms.
+  bool is_closed_emitter(const EmitterExchange& emitters, int i) const {
+    return emitters.emitter_of(i) >= 0 && !paths_.dims_before(i);
+  }
   static bool by_patch(const FormFactor& a, const FormFactor& b) { return a.patch < b.patch; }
 
   // Rays still find the light that escapes, the light through mirrors and glass, and the exchange
@@ -290,7 +296,7 @@ class Estimator {
     const std::vector<PatchOutline> outlines = patch_outlines(mesh_);
     const auto is_count = [&](int i, int j) {
       return !outlines[static_cast<std::size_t>(i)].is_polygon() ||
-             !outlines[static_cast<std::size_t>(j)].is_polygon();
+             !outlines[static_cast<std::size_t>(j)].is_polygon() || paths_.dims_before(j);
     };
     Estimate estimate = nothing_yet();
     cast_counts(estimate, rays_of(emitters, std::max(1, options_.rays_per_patch)), is_count);

@@ -44,7 +44,8 @@ class Tally {
   void add_run(const HemicubeEye& eye, int item, int face, int row, int first, int last) {
     const PatchMesh& mesh = caster_.mesh();
     const int facet = hemicube_item::facet(mesh, item);
-    if (facet >= 0 && paths_.is_specular(facet)) {
+    const bool is_dimmed = item >= 0 && paths_.dims_before(mesh.patch[item]);
+    if (facet >= 0 && (paths_.is_specular(facet) || is_dimmed)) {
       for (int column = first; column < last; ++column) follow(eye, face, row, column);
       return;
     }
@@ -56,8 +57,9 @@ class Tally {
     }
   }
 
-  // Follows the ray of a cell that sees a specular surface. The ray determines what the cell sees,
-  // so nothing is lost where a flat element and the exact shape differ.
+  // Follows the ray of a cell that sees a specular surface, or one within an absorbing body. The
+  // ray determines what the cell sees, so nothing is lost where a flat element and the exact shape
+  // differ.
   void follow(const HemicubeEye& eye, int face, int row, int column) {
     const PatchMesh& mesh = caster_.mesh();
     const Ray ray{.origin = eye.position,
@@ -68,7 +70,13 @@ class Tally {
     ++row_.rays;
     const double share = cells_.delta_form_factor(face, row, column, column + 1);
     const bool specular = hit.facet >= 0 && paths_.is_specular(hit.facet);
-    if (hit.element >= 0 && (!specular || paths_.is_diffuse(hit.facet))) {
+    const bool arrives = hit.element >= 0 && (!specular || paths_.is_diffuse(hit.facet));
+    const Spectrum left = arrives ? paths_.left_by_body(ray, hit) : Spectrum();
+    if (left.size() > 0) {
+      row_.specular += share;
+      arrive(mesh.patch[hit.element], paths_.base_factor(ray, hit) * share, left);
+      if (!specular) absorbed_ += share * (1.0f - left).cast<double>();
+    } else if (arrives) {
       add(mesh.patch[hit.element], share);
     } else {
       (specular ? row_.specular : row_.escaped) += share;
@@ -79,13 +87,17 @@ class Tally {
     const PathLosses losses =
         paths_.follow(ray, hit, random_key(key_, RandomPurpose::hemicube_paths, cell),
                       [&](const ElementHit& end, const Spectrum& throughput) {
-                        const auto [at, is_new] = by_way_of_specular_.try_emplace(
-                            mesh.patch[end.element], Eigen::ArrayXd::Zero(throughput.size()));
-                        at->second += share * throughput.cast<double>();
+                        arrive(mesh.patch[end.element], share, throughput);
                       });
     specular_escaped_ += share * losses.escaped.cast<double>();
     absorbed_ += share * losses.absorbed.cast<double>();
     cut_ += share * losses.cut.cast<double>();
+  }
+
+  void arrive(int patch, double share, const Spectrum& throughput) {
+    const auto [at, is_new] =
+        by_way_of_specular_.try_emplace(patch, Eigen::ArrayXd::Zero(throughput.size()));
+    at->second += share * throughput.cast<double>();
   }
 
   void add(int patch, double share) {

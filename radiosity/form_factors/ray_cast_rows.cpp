@@ -111,7 +111,7 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
                    .absorbed = Spectrum::Zero(bands),
                    .cut = Spectrum::Zero(bands),
                    .rays = static_cast<double>(rays)};
-  std::map<int, Spectrum> by_way_of_specular;
+  Row to{.row = row, .absorbed = Spectrum::Zero(bands)};
   const std::uint64_t key =
       random_key(static_cast<std::uint64_t>(patch), RandomPurpose::form_factor_rays);
   PatchRays from(mesh, patch);
@@ -134,24 +134,36 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
       for (std::size_t r = 0; r < n; ++r) {
         const ElementHit& h = hit[r];
         const double aimed = view.is_empty() ? 0.0 : density(view, ray[r], h);
+        double weight = 1.0;
         if (aimed > 0.0) {
           const double by_cosine =
               rays * static_cast<double>(points[first + r].z) * std::numbers::inv_pi;
-          add_weight(h, by_cosine / (by_cosine + Portals::aimed(rays) * aimed), scratch, row);
-        } else {
+          weight = by_cosine / (by_cosine + Portals::aimed(rays) * aimed);
+        }
+        const bool is_dimmed = dim(ray[r], h, weight, to);
+        if (!is_dimmed && aimed > 0.0) {
+          add_weight(h, weight, scratch, row);
+        } else if (!is_dimmed) {
           count(h, scratch, row);
         }
         if (is_specular(h)) {
           const std::uint64_t index = static_cast<std::uint64_t>(begin) + first + r;
-          pass_on(ray[r], h, random_key(key, RandomPurpose::form_factor_paths, index), row,
-                  by_way_of_specular);
+          pass_on(ray[r], h, random_key(key, RandomPurpose::form_factor_paths, index), to);
         }
       }
       if (behind) count_hidden({ray.data(), n}, {hit.data(), n}, scratch);
     }
   }
-  if (!view.is_empty()) aim_at_portals(patch, rays, view, scratch, row);
+  if (!view.is_empty()) aim_at_portals(patch, rays, view, scratch, to);
   scratch.take(rays, behind, row);
+  to.take(rays);
+  return row;
+}
+
+// Moves the sums, as shares of `rays`, into the row.
+void RowCaster::Row::take(int rays) {
+  if (dimmed > 0.0) take_dimmed(rays);
+  const Eigen::Index bands = row.absorbed.size();
   row.specular_share.resize(static_cast<Eigen::Index>(by_way_of_specular.size()), bands);
   const auto all = static_cast<float>(rays);
   for (const auto& [to, weight] : by_way_of_specular) {
@@ -164,7 +176,24 @@ EstimatedRow RowCaster::cast(int patch, int rays, Scratch& scratch, bool behind)
   row.cut /= all;
   row.escaped /= rays;
   row.specular /= rays;
-  return row;
+}
+
+// Adds dimmed rays to the light by way of mirrors and glass. The weights of rays aimed at openings
+// add up to 1 in the mean alone, and no row of form factors closes this light later.
+void RowCaster::Row::take_dimmed(int rays) {
+  double others = row.escaped;
+  for (const FormFactor& f : row.shares) others += rays * static_cast<double>(f.value);
+  const double scale = (rays - row.specular) / (others + dimmed);
+  row.specular += scale * dimmed;
+  row.absorbed += static_cast<float>(scale) * absorbed;
+  for (const auto& [to, share] : of_dimmed) {
+    arrive(to, static_cast<float>(scale) * share, by_way_of_specular);
+  }
+}
+
+void RowCaster::arrive(int patch, const Spectrum& share, Arrivals& arrivals) {
+  auto [at, is_new] = arrivals.try_emplace(patch, share);
+  if (!is_new) at->second += share;
 }
 
 bool RowCaster::is_specular(const ElementHit& hit) const {
@@ -183,6 +212,20 @@ void RowCaster::count(const ElementHit& hit, Scratch& scratch, EstimatedRow& row
   }
 }
 
+// Counts a ray that an absorbing body dims on its way to a diffuse surface; false: none does. The
+// base of a coat gets its share, and pass_on() follows what the coat mirrors.
+bool RowCaster::dim(const Ray& ray, const ElementHit& hit, double weight, Row& to) const {
+  if (hit.element < 0 || !paths_.is_diffuse(hit.facet)) return false;
+  const Spectrum left = paths_.left_by_body(ray, hit);
+  if (left.size() == 0) return false;
+  const auto share = static_cast<float>(weight);
+  to.dimmed += weight;
+  arrive(caster_.mesh().patch[hit.element],
+         share * static_cast<float>(paths_.base_factor(ray, hit)) * left, to.of_dimmed);
+  if (!is_specular(hit)) to.absorbed += share * (1.0f - left);
+  return true;
+}
+
 // Density of aimed rays, 1/sr, of a ray that passes a portal and does not meet a mirror or glass.
 double RowCaster::density(const Portals::View& view, const Ray& ray, const ElementHit& hit) const {
   if (hit.facet >= 0 && !paths_.is_mostly_diffuse(hit.facet)) return 0.0;
@@ -199,7 +242,7 @@ void RowCaster::add_weight(const ElementHit& hit, double weight, Scratch& scratc
 }
 
 void RowCaster::aim_at_portals(int patch, int rays, const Portals::View& view, Scratch& scratch,
-                               EstimatedRow& row) const {
+                               Row& to) const {
   const PatchMesh& mesh = caster_.mesh();
   const PatchSampler sampler(mesh, patch);
   const std::uint64_t key =
@@ -220,22 +263,22 @@ void RowCaster::aim_at_portals(int patch, int rays, const Portals::View& view, S
     const double aimed = density(view, ray, hit);
     if (!(aimed > 0.0) || !portals_->passes(aim, from.position, hit.t)) continue;
     const double by_cosine = rays * cosine * std::numbers::inv_pi;
-    add_weight(hit, by_cosine / (by_cosine + count * aimed), scratch, row);
+    const double weight = by_cosine / (by_cosine + count * aimed);
+    if (!dim(ray, hit, weight, to)) add_weight(hit, weight, scratch, to.row);
   }
 }
 
 // Follows a ray that met a mirror, a coat or glass.
 void RowCaster::pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch,
-                        EstimatedRow& row, std::map<int, Spectrum>& by_way_of_specular) const {
+                        Row& to) const {
   const PatchMesh& mesh = caster_.mesh();
   const PathLosses losses =
       paths_.follow(ray, hit, branch, [&](const ElementHit& end, const Spectrum& throughput) {
-        auto [at, is_new] = by_way_of_specular.try_emplace(mesh.patch[end.element], throughput);
-        if (!is_new) at->second += throughput;
+        arrive(mesh.patch[end.element], throughput, to.by_way_of_specular);
       });
-  row.specular_escaped += losses.escaped;
-  row.absorbed += losses.absorbed;
-  row.cut += losses.cut;
+  to.row.specular_escaped += losses.escaped;
+  to.row.absorbed += losses.absorbed;
+  to.row.cut += losses.cut;
 }
 
 // Continues the rays through all surfaces they meet, until they leave the scene.

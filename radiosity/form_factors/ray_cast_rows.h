@@ -97,17 +97,34 @@ class RowCaster {
   /// A quarter as many rays more are aimed at portals where any are seen. Rays of both kinds that
   /// pass a portal and meet a diffuse surface, or nothing, have the weights of the balance
   /// heuristic.
+  ///
+  /// Rays that an absorbing body dims on their way to a diffuse surface count per band, as if they
+  /// had come by way of glass.
   EstimatedRow cast(int patch, int rays, Scratch& scratch, bool count_hidden = false) const;
 
  private:
+  // Sums per band of what arrives at patches.
+  using Arrivals = std::map<int, Spectrum>;
+  static void arrive(int patch, const Spectrum& share, Arrivals& arrivals);
+  // A row under way.
+  struct Row {
+    EstimatedRow& row;
+    Arrivals by_way_of_specular{};
+    // Rays that a body dims on their way to a diffuse surface: sum of weights, and what arrives.
+    double dimmed = 0.0;
+    Arrivals of_dimmed{};
+    Spectrum absorbed{};  // of dimmed rays
+    void take(int rays);
+    void take_dimmed(int rays);
+  };
   bool is_specular(const ElementHit& hit) const;
   void count(const ElementHit& hit, Scratch& scratch, EstimatedRow& row) const;
-  void pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch, EstimatedRow& row,
-               std::map<int, Spectrum>& by_way_of_specular) const;
+  bool dim(const Ray& ray, const ElementHit& hit, double weight, Row& to) const;
+  void pass_on(const Ray& ray, const ElementHit& hit, std::uint64_t branch, Row& to) const;
   double density(const Portals::View& view, const Ray& ray, const ElementHit& hit) const;
   void add_weight(const ElementHit& hit, double weight, Scratch& scratch, EstimatedRow& row) const;
   void aim_at_portals(int patch, int rays, const Portals::View& view, Scratch& scratch,
-                      EstimatedRow& row) const;
+                      Row& to) const;
   void count_hidden(std::span<Ray> rays, std::span<ElementHit> hits, Scratch& scratch) const;
 
   const ElementCaster& caster_;

@@ -154,13 +154,20 @@ void GapLight::add_direct(const ElementCaster& caster, const LightQuery& query,
   }
 }
 
+// Leaves of a share what an absorbing body leaves on the way of a ray.
+void GapLight::dim(const Ray& ray, const ElementHit& hit, Spectrum& share) const {
+  const Spectrum left = paths_.left_by_body(ray, hit);
+  if (left.size() > 0) share *= left;
+}
+
 // Adds the radiosity where a ray ends, also through mirrors and glass.
 void GapLight::add_end(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                        std::uint64_t key, const Spectrum& share, Eigen::ArrayXd& sum) const {
   if (hit.facet < 0) return;
   if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
-    radiosity_.add(hit, Spectrum(static_cast<float>(paths_.base_factor(caster, ray, hit)) * share),
-                   sum);
+    Spectrum straight = static_cast<float>(paths_.base_factor(caster, ray, hit)) * share;
+    dim(ray, hit, straight);
+    radiosity_.add(hit, straight, sum);
   }
   if (!paths_.is_specular(hit.facet)) return;
   const PathLosses losses = paths_.follow(
@@ -253,6 +260,7 @@ void GapLight::follow(const ElementCaster& caster, const Ray& ray, const Element
   const GapExits* const exits = aims.exits;
   Stop stop{.ray = ray, .hit = hit, .share = Spectrum::Ones(lit_.scene.bands.count())};
   for (int bounce = 0; bounce < most_bounces; ++bounce) {
+    dim(stop.ray, stop.hit, stop.share);
     stop.key = random_key(key, RandomPurpose::gap_rays, static_cast<std::uint64_t>(bounce));
     const Eigen::Vector3d normal = normal_towards(stop.ray, stop.hit);
     stop.at = {.position = stop.ray.origin + stop.hit.t * stop.ray.direction,
@@ -311,7 +319,8 @@ void GapLight::add_near_portal(const ElementCaster& caster, const Portals& porta
                         .normal = normal_towards(first_ray, first_hit),
                         .facet = first_hit.facet};
   const std::uint64_t portal_key = random_key(key, RandomPurpose::gap_rays, near_portal);
-  const Spectrum rho = mesh.reflectance.row(mesh.patch[first_hit.element]).transpose();
+  Spectrum rho = mesh.reflectance.row(mesh.patch[first_hit.element]).transpose();
+  dim(first_ray, first_hit, rho);
   add_direct(caster, {.at = at, .key = portal_key, .shadows = shadows, .one_stands_for_all = true},
              rho, sum);
   const Portals::View view =

@@ -107,6 +107,7 @@ class GapLight {
                                     std::uint64_t key) const;
   void add_direct(const ElementCaster& caster, const LightQuery& query, const Spectrum& share,
                   Eigen::ArrayXd& sum) const;
+  void dim(const Ray& ray, const ElementHit& hit, Spectrum& share) const;
   double next_ray(const ElementCaster& caster, const GapAims& aims, const Portals::View& view,
                   double share, Stop& stop) const;
   void add_end(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,

@@ -236,8 +236,11 @@ void HemisphereGather::add_straight(const Place& place, const Ray& ray, const El
                                     double share, Eigen::ArrayXd& sum) const {
   const double cosine = place.at.normal.dot(ray.direction);
   if (!(cosine > 0.0)) return;
-  radiosity_.add_seen(ray, hit, std::numbers::pi * share / (place.rays * cosine),
-                      share * paths_.base_factor(ray, hit), sum);
+  const double solid_angle = std::numbers::pi * share / (place.rays * cosine);
+  const double weight = share * paths_.base_factor(ray, hit);
+  const Spectrum left = paths_.left_by_body(ray, hit);
+  if (left.size() == 0) return radiosity_.add_seen(ray, hit, solid_angle, weight, sum);
+  radiosity_.add_seen(ray, hit, solid_angle, Spectrum(static_cast<float>(weight) * left), sum);
 }
 
 void HemisphereGather::add_of_gap(const Place& place, const Ray& ray, const ElementHit& hit,

@@ -51,6 +51,13 @@ class ReadRadiosity {
     add(hit, Spectrum(static_cast<float>(share) * pictures_->factor(ray, hit, solid_angle)), sum);
   }
 
+  /// The same, with a share per band.
+  void add_seen(const Ray& ray, const ElementHit& hit, double solid_angle, const Spectrum& share,
+                Eigen::ArrayXd& sum) const {
+    if (!pictures_->varies(hit.element)) return add(hit, share, sum);
+    add(hit, Spectrum(share * pictures_->factor(ray, hit, solid_angle)), sum);
+  }
+
   /// Adds the radiosity at an element's point times the share of each band.
   void add(const ElementHit& hit, const Spectrum& share, Eigen::ArrayXd& sum) const {
     const Eigen::Index bands = share.size();

@@ -91,7 +91,13 @@ CastPiece cast_piece(const FreeSource& source, const ElementCaster& caster, cons
       }
       if (hit.element >= 0 && paths.is_diffuse(hit.facet) && !source.is_distant()) {
         const int patch = mesh.patch[hit.element];
-        if (color[r].size() > 0) {
+        const Spectrum left = paths.left_by_body(rays[r], hit);
+        if (left.size() > 0) {
+          piece.in_bands.push_back({patch, with_color(left, color[r]) * static_cast<float>(w)});
+          if (!is_specular) {
+            piece.absorbed += w * factor(color[r], bands) * (1.0f - left).cast<double>();
+          }
+        } else if (color[r].size() > 0) {
           piece.in_bands.push_back({patch, color[r] * static_cast<float>(w)});
         } else {
           piece.straight.push_back({patch, w});

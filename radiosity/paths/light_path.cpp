@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "mesh/patches/patch_patterns.h"
+#include "radiosity/visibility/absorbing_bodies.h"
 #include "scene/facet_textures.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
@@ -39,6 +40,7 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
     has_specular_ = has_specular_ || material.is_specular();
     absorbs_ = absorbs_ || (material.dielectric && (material.dielectric->absorption > 0.0f).any());
   }
+  if (absorbs_) bodies_ = AbsorbingBodies::find(scene, caster);
 }
 
 bool LightPaths::is_mostly_diffuse(int facet) const {
@@ -88,6 +90,15 @@ double LightPaths::base_factor(const ElementCaster& caster, const Ray& ray,
   }
   const Eigen::Vector3d normal = normal_at(caster, hit, ray.origin + hit.t * ray.direction);
   return base->factor(-normal.dot(ray.direction.normalized()));
+}
+
+Spectrum LightPaths::left_by_body(const Ray& ray, const ElementHit& hit) const {
+  const Spectrum* absorption = bodies_ ? bodies_->before(caster_.mesh(), hit) : nullptr;
+  return absorption ? left_after(*absorption, hit.t * ray.direction.norm()) : Spectrum();
+}
+
+bool LightPaths::dims_before(int patch) const {
+  return bodies_ && bodies_->before_patch(patch) != nullptr;
 }
 
 bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const ElementHit& hit,
@@ -141,8 +152,12 @@ bool LightPaths::continue_at(const ElementCaster& caster, Ray& ray, const Elemen
 void LightPaths::absorb(const Ray& ray, const ElementHit& hit, PathLight& light,
                         PathLosses& losses) const {
   if (!absorbs_ || hit.facet < 0) return;
-  const Spectrum passed =
+  Spectrum passed =
       light.media.passed(scene_, material_[hit.facet], hit.from_back, hit.t * ray.direction.norm());
+  if (light.media.is_empty()) {
+    const Spectrum left = left_by_body(ray, hit);
+    if (left.size() > 0) passed *= left;
+  }
   losses.absorbed += light.throughput * (1.0f - passed);
   light.throughput *= passed;
 }

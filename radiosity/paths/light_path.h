@@ -14,6 +14,8 @@
 
 namespace lightwell {
 
+class AbsorbingBodies;
+
 /// The part of a ray's unit of light that arrived at no diffuse surface.
 struct PathLosses {
   Spectrum escaped{};   ///< left the scene or met a black back, see PathQuantity
@@ -65,7 +67,8 @@ enum class PathQuantity {
 /// Follows rays through mirrors and clear glass to diffuse surfaces (extended form factors, Sillion
 /// & Puech 1989). One scattering sample continues each ray: a branch of glass with Fresnel's
 /// probability, a direction of a rough surface's lobe (see sample_scattering). The mean is exact.
-/// Absorbing bodies attenuate along the path (see Media). Smooth surfaces polarise the light, which
+/// Absorbing bodies attenuate along the path (see Media), also those that a path begins in (see
+/// AbsorbingBodies). Smooth surfaces polarise the light, which
 /// decides over its share at the surfaces behind them (see Polarisation).
 ///
 /// Weak paths end by Russian roulette, behind two coats, which mirror a twentieth of the light
@@ -92,6 +95,12 @@ class LightPaths {
   }
   /// True if the facet reflects or emits diffusely.
   bool is_diffuse(int facet) const { return diffuse_[facet] != 0; }
+  /// Share, per band, that an absorbing body leaves of light that comes straight along `ray` to
+  /// `hit`; empty: all of it. follow() counts this share on its own.
+  Spectrum left_by_body(const Ray& ray, const ElementHit& hit) const;
+  /// True if a patch lies within an absorbing body, so that left_by_body() at its hits is not
+  /// empty.
+  bool dims_before(int patch) const;
 
   /// Calls `arrive` for every arrival behind the specular facet at `hit` of `ray`. The
   /// facet's own diffuse share, if any, is left to the caller. `key` decides the branches.
@@ -140,6 +149,7 @@ class LightPaths {
   std::shared_ptr<const FacetTextures> textures_{};  // null: no facet has a pattern
   std::shared_ptr<const PatchPatterns> patterns_{};  // null with textures_
   bool has_specular_ = false, absorbs_ = false;
+  std::shared_ptr<const AbsorbingBodies> bodies_{};  // null: no patch lies in one
   std::vector<char> specular_, diffuse_;
   CoatedBases bases_;
   std::vector<int> material_;            // per facet

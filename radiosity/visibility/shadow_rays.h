@@ -24,11 +24,10 @@ struct ShadowTally {
   double all = 0.0, seen = 0.0,
          squares = 0.0;  ///< sums of weights, of weights of unblocked rays, of squared weights
 
-  double dimmed = 0.0;  ///< sum of weights of rays that cross clear panes
-  /// Sum of weight times transmittance of rays through clear panes, per band; empty without such
-  /// rays.
+  double dimmed = 0.0;  ///< sum of weights of rays that cross clear panes or an absorbing body
+  /// Sum of weight times transmittance of these rays, per band; empty without such rays.
   Spectrum through{};
-  bool blocked = false;  ///< some ray meets more than clear panes
+  bool blocked = false;  ///< some ray of dimmed tallies meets more than clear panes
   /// Sums of weight times exitance of samples of a picture, and of those of unblocked rays.
   Eigen::Array3d pictured = Eigen::Array3d::Zero(), pictured_seen = Eigen::Array3d::Zero();
 
@@ -50,14 +49,26 @@ struct ShadowTally {
   }
 };
 
+/// What dims shadow rays instead of blocking them.
+struct ShadowMedium {
+  const ClearPanes* panes = nullptr;  ///< null: none
+  /// Absorption coefficient, 1/m, of the body that the rays run in; null: none absorbs.
+  const Spectrum* absorption = nullptr;
+
+  /// Transmittance per band of a ray that is not blocked or, if `is_blocked`, blocked by panes
+  /// alone; 0 in all bands otherwise.
+  Spectrum passed(const ElementCaster& caster, const Ray& ray, bool is_blocked) const;
+  /// True if rays that are not blocked may arrive dimmed.
+  bool absorbs() const { return absorption != nullptr; }
+};
+
 /// Casts shadow rays of many tallies in batches that suit the ray caster. Tallies accumulate in the
 /// order of add(), independently of the batches.
 class ShadowBatch {
  public:
-  /// `panes`: panes that dim shadow rays instead of blocking them; null: none.
   ShadowBatch(const ElementCaster& caster, std::span<ShadowTally> tallies,
-              const ClearPanes* panes = nullptr)
-      : caster_(caster), tallies_(tallies), panes_(panes) {}
+              const ShadowMedium& medium = {})
+      : caster_(caster), tallies_(tallies), medium_(medium) {}
 
   void add(int tally, const ShadowSample& sample);
   /// Casts all waiting rays. Tallies are complete only after flush().
@@ -70,12 +81,12 @@ class ShadowBatch {
     const Eigen::Array3f* exitance = nullptr;
     int tally = 0;
   };
-  void add_through_panes(const Ray& ray, const Waiting& of_ray, ShadowTally& tally) const;
+  void add_dimmed(const Ray& ray, const Waiting& of_ray, bool is_blocked, ShadowTally& tally) const;
 
   static constexpr std::size_t most = 256;
   const ElementCaster& caster_;
   std::span<ShadowTally> tallies_;
-  const ClearPanes* panes_;
+  ShadowMedium medium_;
   // Grow as rays come: many points need a single one.
   std::vector<Ray> rays_{};
   std::vector<Waiting> waiting_{};

@@ -115,7 +115,11 @@ class ReadErrors {
 
   double end(const Ray& ray, const ElementHit& hit, double share, std::uint64_t key) const {
     double sum = 0.0;
-    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) sum += share * reflected(hit.element);
+    if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
+      const Spectrum left = paths_.left_by_body(ray, hit);
+      const double dimmed = left.size() > 0 ? double{left.mean()} : 1.0;
+      sum += share * dimmed * reflected(hit.element);
+    }
     if (!paths_.is_specular(hit.facet)) return sum;
     paths_.follow(
         ray, hit, key,

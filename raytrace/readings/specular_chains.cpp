@@ -47,7 +47,8 @@ std::optional<SpecularPaths::Traced> SpecularPaths::trace(const Eigen::Vector3d&
                                      .exit = part.ray.direction.normalized(),
                                      .end = part.end * part.ray.direction.norm(),
                                      .weight = part.weight,
-                                     .media = part.media};
+                                     .media = part.media,
+                                     .facet = part.ray.origin_group};
                     });
   return found;
 }
@@ -104,6 +105,7 @@ std::optional<PathToGoal> SpecularPaths::find(const PathGoal& goal, std::uint64_
                                  ? std::isfinite(path->end)
                                  : distance <= 0.0 || path->end < distance - clearance;
       if (is_hidden) return std::nullopt;
+      const Ray last{.origin = path->origin, .direction = path->exit, .origin_group = path->facet};
       return PathToGoal{
           .direction = w,
           .exit = path->exit,
@@ -111,7 +113,7 @@ std::optional<PathToGoal> SpecularPaths::find(const PathGoal& goal, std::uint64_
           .spread = std::abs(det),
           .weight = goal.is_direction
                         ? path->weight
-                        : Spectrum(path->weight * path->media.passed(scene_, -1, false, distance))};
+                        : Spectrum(path->weight * tree_.left_along(path->media, last, distance))};
     }
     Eigen::Vector2d move = -A.inverse() * r;
     if (!(move.norm() < 1e6)) return std::nullopt;

@@ -61,8 +61,7 @@ struct PathToGoal {
 class SpecularPaths {
  public:
   /// Keeps references.
-  SpecularPaths(const Scene& scene, const RayTree& tree, const GatherPoint& at)
-      : scene_(scene), tree_(tree), at_(at) {}
+  SpecularPaths(const RayTree& tree, const GatherPoint& at) : tree_(tree), at_(at) {}
 
   /// Newton's method from the nearest of the first rays; empty where the chain does not lead to the
   /// goal, or where another surface hides the goal (`clearance`, m, before it).
@@ -75,11 +74,11 @@ class SpecularPaths {
     double end = 0.0;
     Spectrum weight{};
     Media media{};
+    int facet = -1;  // that the last straight part begins at
   };
   std::optional<Traced> trace(const Eigen::Vector3d& direction, std::uint64_t chain,
                               const ChainTurns& turns) const;
 
-  const Scene& scene_;
   const RayTree& tree_;
   const GatherPoint& at_;
 };

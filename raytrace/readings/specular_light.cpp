@@ -39,7 +39,7 @@ class PointLight {
         options_(options),
         key_(key),
         bands_(lit.scene.bands.count()),
-        paths_(lit.scene, tree, at) {
+        paths_(tree, at) {
     frame_.col(2) = at.normal;
     Eigen::Vector3d a, b;
     tangent_frame(at.normal, a, b);

@@ -251,8 +251,10 @@ void PixelGather::add_flat(const Place& place, const Ray& ray, const ElementHit&
 // Radiosity B that a ray finds straight where it ends, for a ray that stands for `solid_angle`.
 Spectrum PixelGather::straight_radiosity(const ElementCaster& caster, const Ray& ray,
                                          const ElementHit& hit, double solid_angle) const {
-  const Spectrum B = static_cast<float>(paths_.base_factor(caster, ray, hit)) *
-                     interpolate(caster.mesh(), radiosity_, hit);
+  Spectrum B = static_cast<float>(paths_.base_factor(caster, ray, hit)) *
+               interpolate(caster.mesh(), radiosity_, hit);
+  const Spectrum left = paths_.left_by_body(ray, hit);
+  if (left.size() > 0) B *= left;
   return pictures_.varies(hit.element) ? Spectrum(B * pictures_.factor(ray, hit, solid_angle)) : B;
 }
 

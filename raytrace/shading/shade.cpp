@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/visibility/absorbing_bodies.h"
 #include "raytrace/shading/indirect_slant.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
@@ -182,8 +183,7 @@ void RayTree::follow(Branch branch, TreeState& state) const {
   if (hit.facet < 0) return add_background(branch, state);
   const ShadingPoint at = shading_point(branch.ray, hit, *state.caster);
   if (absorbs_) {
-    branch.weight *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
-                                         (at.position - branch.ray.origin).norm());
+    branch.weight *= left_before(branch, hit, (at.position - branch.ray.origin).norm());
   }
   if (state.shades && with_layers_ && branch.node == 1) {
     const Eigen::Vector3d smooth = hit.element >= 0 ? smooth_normal(hit, at) : at.normal;
@@ -198,6 +198,27 @@ void RayTree::follow(Branch branch, TreeState& state) const {
     }
   }
   split(branch, hit, at, state);
+}
+
+Spectrum RayTree::left_along(const Media& media, const Ray& ray, double distance) const {
+  Spectrum left = media.passed(scene_, -1, false, distance);
+  const AbsorbingBodies* bodies = direct_light_.bodies().get();
+  if (!bodies || !media.is_empty() || !std::isfinite(distance)) return left;
+  const Spectrum* absorption = bodies->around(
+      caster_,
+      {.position = ray.origin, .normal = ray.direction.normalized(), .facet = ray.origin_group});
+  if (absorption) left *= left_after(*absorption, distance);
+  return left;
+}
+
+// The same over the last `distance` metres of a branch before a hit.
+Spectrum RayTree::left_before(const Branch& branch, const ElementHit& hit, double distance) const {
+  Spectrum left = branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back, distance);
+  const AbsorbingBodies* bodies = direct_light_.bodies().get();
+  if (!bodies || !branch.media.is_empty()) return left;
+  const Spectrum* absorption = bodies->before(caster_.mesh(), hit);
+  if (absorption) left *= left_after(*absorption, distance);
+  return left;
 }
 
 // Adds the radiance of a luminaire where it hides the hit. Rough surfaces sample the light of
@@ -221,11 +242,13 @@ bool RayTree::shows_lamp(const Branch& branch, const ElementHit& hit, TreeState&
     state.result.layers.segment<3>(first_sampled_column(Layer::normal)) =
         seen->normal.cast<float>();
   }
+  Branch dimmed = branch;
+  if (absorbs_) dimmed.weight *= left_along(branch.media, ray, seen->t);
   if (!seen->is_body) {
-    add_seen(branch, seen->radiance, state);
+    add_seen(dimmed, seen->radiance, state);
     return true;
   }
-  add_body(branch, *seen, state);
+  add_body(dimmed, *seen, state);
   if (!branch.is_sharp) add_light_behind(branch, hit, state);
   return true;
 }
@@ -258,8 +281,7 @@ void RayTree::add_light_behind(const Branch& branch, const ElementHit& hit,
   const ShadingPoint at = shading_point(branch.ray, hit, *state.caster);
   Spectrum L = branch.weight * std::numbers::inv_pi_v<float> * emission(branch, hit, at);
   if (absorbs_) {
-    L *= branch.media.passed(scene_, facets_[hit.facet].material, hit.from_back,
-                             (at.position - branch.ray.origin).norm());
+    L *= left_before(branch, hit, (at.position - branch.ray.origin).norm());
   }
   add_reflected(branch, L, state);
 }

@@ -86,9 +86,9 @@ struct SpecularSegment {
 /// reflected or crosses by chance, with the weight of both, and ends by Russian roulette below a
 /// tenth of that. So many weak branches together lose nothing in the mean.
 ///
-/// Within an absorbing body L falls by the law of Beer and Lambert, see Media. Refraction leaves
-/// the basic radiance L / n^2 unchanged (see radiance_scale), so a path that ends outside again has
-/// no factor n^2.
+/// Within an absorbing body L falls by the law of Beer and Lambert, see Media and AbsorbingBodies.
+/// Refraction leaves the basic radiance L / n^2 unchanged (see radiance_scale), so a path that ends
+/// outside again has no factor n^2.
 ///
 /// The *fingerprint* is equal for two rays whose trees see the same smooth surfaces from the same
 /// sides in the same order. Branches that weigh less than RenderOptions::contrast are left out,
@@ -202,6 +202,8 @@ class RayTree {
   const ElementCaster& caster() const { return caster_; }
   /// The luminaires that rays of the tree meet beside the surfaces.
   const VisibleLamps& visible_lamps() const { return *visible_lamps_; }
+  /// Share, per band, that absorbing bodies leave of light over `distance` m from a ray's origin.
+  Spectrum left_along(const Media& media, const Ray& ray, double distance) const;
   /// Adds light that arrives from a mirror, glass or gloss to the radiance and the layers of a
   /// sample.
   void add_specular(const Spectrum& light, RaySample& sample) const;
@@ -291,6 +293,7 @@ class RayTree {
                          const PixelCone& cone, std::vector<PixelPoint>* points) const;
   RaySample outline(const Ray& ray, const PixelCone& cone) const;
   void follow(Branch branch, TreeState& state) const;
+  Spectrum left_before(const Branch& branch, const ElementHit& hit, double distance) const;
   bool shows_lamp(const Branch& branch, const ElementHit& hit, TreeState& state) const;
   void add_body(const Branch& branch, const VisibleLamps::Seen& body, TreeState& state) const;
   void add_light_behind(const Branch& branch, const ElementHit& hit, TreeState& state) const;

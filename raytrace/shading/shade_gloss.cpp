@@ -182,7 +182,7 @@ void RayTree::add_lamp(const Branch& branch, const SurfaceInteraction& interacti
   if (absorbs_) {
     Media media = branch.media;
     media.cross(material, interaction.material, sample, hit.from_back);
-    seen *= media.passed(scene_, facets_[lamp->emitter->facet].material, false, lamp->distance);
+    seen *= left_along(media, ray, lamp->distance);
   }
   add_reflected(branch, seen, state);
 }
@@ -217,7 +217,7 @@ void RayTree::add_free_source(const Branch& branch, const SurfaceInteraction& in
   if (absorbs_) {
     Media media = branch.media;
     media.cross(material, interaction.material, sample, hit.from_back);
-    seen *= media.passed(scene_, -1, false, source_sample.distance);
+    seen *= left_along(media, ray, source_sample.distance);
   }
   add_reflected(branch, seen, state);
 }
@@ -294,8 +294,7 @@ void RayTree::add_bright_patch(const Branch& branch, const SurfaceInteraction& i
   aimed.weight *= scattering_weight(interaction, {.direction = aim.direction}) *
                   (share * static_cast<float>(density / both));
   if (absorbs_) {
-    aimed.weight *=
-        aimed.media.passed(scene_, facets_[met.facet].material, met.from_back, distance);
+    aimed.weight *= left_before(aimed, met, distance);
   }
   if (!(aimed.weight > 0.0f).any()) return;
   aimed.depth = branch.depth + 1;

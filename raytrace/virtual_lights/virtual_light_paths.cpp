@@ -198,8 +198,10 @@ class PathTracer {
     lit_.caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.facet < 0) return ways;
     if (hit.element >= 0 && paths_.is_diffuse(hit.facet)) {
-      add(hit.element, ray.origin + hit.t * ray.direction,
-          static_cast<float>(paths_.base_factor(ray, hit)) * flux, ways);
+      Spectrum arriving = static_cast<float>(paths_.base_factor(ray, hit)) * flux;
+      const Spectrum left = paths_.left_by_body(ray, hit);
+      if (left.size() > 0) arriving *= left;
+      add(hit.element, ray.origin + hit.t * ray.direction, arriving, ways);
     }
     if (!paths_.is_specular(hit.facet)) return ways;
     paths_.follow(ray, hit, key, [&](const LightArrival& end) {

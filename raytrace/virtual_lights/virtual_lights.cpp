@@ -35,8 +35,10 @@ VirtualLights::VirtualLights(const LitScene& lit, const VirtualLightOptions& opt
       paths_(lit.scene, lit.caster, options.max_specular_depth, PathDetail::points),
       caustics_(options.caustics),
       most_(kernel_limit(area_of_virtual_lights(lit), options.count)),
-      lights_(lit.scene, find_virtual_lights(lit_, paths_, caustics_.get(), options.count, most_,
-                                             options.key, options.progress)) {
+      lights_(lit.scene,
+              find_virtual_lights(lit_, paths_, caustics_.get(), options.count, most_, options.key,
+                                  options.progress),
+              lit.direct_light.bodies()) {
   if (const FreeSource* dome = lit.direct_light.dome()) dome_ = dome->light;
 }
 
@@ -112,10 +114,19 @@ Spectrum VirtualLights::near_light(const ElementCaster& caster, const Ray& ray,
   if (!(kernel > most_)) return none;
   const double share = (1.0 - most_ / kernel) * paths_.base_factor(caster, ray, hit);
   if (query.radiosity) {
-    return static_cast<float>(share) * interpolate(lit_.mesh(), *query.radiosity, hit);
+    return dimmed(ray, hit,
+                  static_cast<float>(share) * interpolate(lit_.mesh(), *query.radiosity, hit));
   }
   if (random_uniform(random_key(key, 6)) >= share) return none;
-  return radiosity(caster, {hit, ray.origin + hit.t * ray.direction, normal, query.depth}, key);
+  return dimmed(
+      ray, hit,
+      radiosity(caster, {hit, ray.origin + hit.t * ray.direction, normal, query.depth}, key));
+}
+
+// Light that a ray reads where it ends, as far as an absorbing body leaves it.
+Spectrum VirtualLights::dimmed(const Ray& ray, const ElementHit& hit, const Spectrum& light) const {
+  const Spectrum left = paths_.left_by_body(ray, hit);
+  return left.size() > 0 ? Spectrum(left * light) : light;
 }
 
 // Radiosity that a ray finds behind mirrors and glass. Shadow rays to virtual lights pass clear

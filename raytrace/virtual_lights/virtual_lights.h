@@ -80,6 +80,7 @@ class VirtualLights {
   };
   Spectrum near_light(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                       double cosine, const Query& query, std::uint64_t key) const;
+  Spectrum dimmed(const Ray& ray, const ElementHit& hit, const Spectrum& light) const;
   Spectrum by_way(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                   const Query& query, std::uint64_t key) const;
   Spectrum radiosity(const ElementCaster& caster, const End& end, std::uint64_t key) const;

@@ -8,6 +8,7 @@
 
 #include "radiosity/paths/squared_indices.h"
 #include "radiosity/solve.h"
+#include "radiosity/visibility/absorbing_bodies.h"
 #include "tests/radiosity/test_scenes.h"
 #include "tests/sample_mean.h"
 
@@ -80,21 +81,34 @@ TEST(SquaredIndices, AreNoneWhereNothingLiesInABody) {
 }
 
 // The ball absorbs; of the sheets, the one in the bubble is not in its glass.
-TEST(AbsorbingBodies, AreThoseAroundPatches) {
+TEST(AbsorbingBodies, AreThoseAroundPatchesAndPoints) {
   Scene scene = furnace_with_a_ball(true);
-  const int ball = 1;
-  scene.materials[ball].dielectric->absorption = constant_spectrum(scene.bands, 0.5f);
-  const auto found = [](const Scene& of) {
-    const PatchMesh mesh = build_patches(of, {.max_patch_size = 0.2});
-    return absorbing_bodies_around(of, ElementCaster(mesh));
+  scene.materials[1].dielectric->absorption = constant_spectrum(scene.bands, 0.5f);
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.2});
+  const ElementCaster caster(mesh);
+  const auto bodies = AbsorbingBodies::find(scene, caster);
+  ASSERT_NE(bodies, nullptr);
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    const std::string& name = scene.surfaces[static_cast<std::size_t>(mesh.surface[p])].name;
+    // The front of the bubble lies in the glass of the ball.
+    const bool is_within = name == "in the glass" || (name == "bubble" && mesh.is_back[p] == 0);
+    EXPECT_EQ(bodies->before_patch(p) != nullptr, is_within) << name;
+  }
+  const auto absorbs = [&](double x, double y, double z) {
+    return bodies->around(caster, {.position = {x, y, z}}) != nullptr;
   };
-  EXPECT_EQ(found(scene), std::vector<int>{ball});
-  const SolvedScene solved = solve_scene(scene, {});
-  EXPECT_TRUE(std::ranges::any_of(solved.mesh.notes, [](const std::string& note) {
-    return note.find("not dimmed on its way") != std::string::npos;
-  }));
-  scene.surfaces.pop_back();  // the sheet in the glass
-  EXPECT_EQ(found(scene), std::vector<int>{});
+  EXPECT_TRUE(absorbs(0.5, 0.6, 0.25));
+  EXPECT_FALSE(absorbs(0.5, 0.6, 0.45)) << "in the bubble";
+  EXPECT_FALSE(absorbs(0.9, 1.1, 0.8)) << "outside";
+}
+
+TEST(AbsorbingBodies, AreNoneWithoutPatchesWithin) {
+  Scene scene = furnace_with_a_ball(true);
+  scene.materials[1].dielectric->absorption = constant_spectrum(scene.bands, 0.5f);
+  std::erase_if(scene.surfaces, [](const Surface& surface) {
+    return surface.name == "in the glass" || surface.name == "bubble";
+  });
+  EXPECT_EQ(AbsorbingBodies::find(scene, ElementCaster(build_patches(scene, {}))), nullptr);
 }
 
 class SolvedFurnace {

@@ -54,7 +54,7 @@ TEST(ClusterMembers, GiveTheClosedFormInTheMean) {
     std::vector<double> found;
     for (std::uint64_t key = 0; key < 4096; ++key) {
       const std::vector<MemberLight> members =
-          member_lights({&drawn, 1}, lights, caster, at, key, nullptr);
+          member_lights({&drawn, 1}, lights, caster, at, key, {});
       ASSERT_EQ(members.size(), 1U);
       EXPECT_EQ(members[0].blocked, 0);
       found.push_back(members[0].F);
@@ -80,7 +80,7 @@ TEST(ClusterMembers, AreThoseThatSendLightToThePoint) {
   const LightList lights{.emitters = direct.emitters(), .sources = direct.free_sources()};
   const std::vector<LightSample> all{{.light = 0, .cluster = 0}, {.light = 1, .cluster = 0}};
   const auto count = [&](const SurfacePoint& at) {
-    return member_lights(all, lights, caster, at, 1, nullptr).size();
+    return member_lights(all, lights, caster, at, 1, {}).size();
   };
   EXPECT_EQ(count({.position = {0, 0, 0}, .normal = Vector3d::UnitZ(), .facet = -1}), 2U);
   // Below the horizon of the point.

@@ -3,10 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 
 #include "scene/optics.h"
 #include "scene/sampling.h"
@@ -142,6 +144,26 @@ TEST(RayTree, StackOfSlabsPassesTheSumOfAllItsReflections) {
         EXPECT_LT(standard_error, 1.5e-3 * T) << thin << ' ' << count << ' ' << degrees;
       }
     }
+  }
+}
+
+// An eye within solid glass sees what lies in the glass dimmed by the length of the way, straight
+// and by way of a mirror in the glass.
+TEST(RayTree, EyeWithinABodySeesItDimmedByTheWay) {
+  constexpr double absorption = 0.5;
+  const TracedScene lit(
+      SceneBuilder()
+          .box({.index_of_refraction = 1.5f, .absorption = 0.5f}, {-5, -5, -5}, {5, 5, 5}, false)
+          .square({.exitance = pi_f}, {0, 0, -2}, up, 0.5)
+          .square({.specular = 0.9f}, {0, 0, 1}, -up, 0.5)
+          .build());
+  // The mirror is met at the distance 1, and the lamp another 3 from there.
+  const std::array<std::pair<Eigen::Vector3d, double>, 2> views = {
+      {{-up, std::exp(-2.0 * absorption)}, {up, 0.9 * std::exp(-4.0 * absorption)}}};
+  for (const auto& [direction, expected] : views) {
+    const Ray ray{.origin = {0.1, 0.2, 0}, .direction = direction};
+    // Products of a few floats.
+    EXPECT_NEAR(radiance(lit, ray), expected, std::ldexp(8.0, -24));
   }
 }
 
