@@ -1,10 +1,11 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
@@ -50,9 +51,11 @@ class AbsorbingBodies {
     const auto m = static_cast<std::size_t>(std::max(body, 0));
     return body < 0 || !(absorption_[m] > 0.0f).any() ? nullptr : &absorption_[m];
   }
+  const Spectrum* walked(const ElementCaster& caster, const SurfacePoint& at) const;
   bool is_behind(const ElementCaster& caster, const SurfacePoint& at) const;
 
   MediumWalks walks_;
+  std::optional<Eigen::AlignedBox3d> box_;    // that the bodies lie in; nothing: not known
   std::vector<Spectrum> absorption_;          // per material; 0 where it is no body
   std::vector<int> of_patch_;                 // material of the body; -1: none
   std::vector<std::array<int, 2>> of_facet_;  // the same on the front and the back

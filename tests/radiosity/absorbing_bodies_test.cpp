@@ -11,6 +11,7 @@
 
 #include "radiosity/direct_light/direct_light.h"
 #include "radiosity/form_factors/form_factors.h"
+#include "radiosity/openings/find_openings.h"
 #include "radiosity/paths/free_light.h"
 #include "radiosity/solve.h"
 #include "tests/radiosity/test_scenes.h"
@@ -223,6 +224,20 @@ TEST(AbsorbingFurnace, HasTheRadiosityOfItsClosedForm) {
     }
     expect_mean(inside, 1.0 / (1.0 - double{rho} * T), 0.05, "inside of the ball");
   }
+  expect_balance(solved.solution.energy);
+}
+
+// Rays aimed at the slits behind a sheet make the weights of a row's rays add up to 1 in the mean
+// alone. Rows within water keep their light all the same.
+TEST(AbsorbingSlit, IsBalanced) {
+  const Bands bands = rgb_bands();
+  const Material wall = test::diffuse(bands, 0.6f);
+  Scene scene = pool(wall, wall, wall);
+  const int shining = test::add_material(scene, test::diffuse(bands, 0.0f, 1.0f));
+  test::add_polygon(scene, "lamp", shining,
+                    {{0.01, 0.2, 0.1}, {0.01, 0.8, 0.1}, {0.01, 0.8, 0.4}, {0.01, 0.2, 0.4}});
+  ASSERT_FALSE(find_openings(scene).empty());
+  const SolvedScene solved = solve_scene(scene, slab_options(FormFactorMethod::automatic));
   expect_balance(solved.solution.energy);
 }
 
