@@ -150,7 +150,10 @@ void PlacedLight::Room::add(const FreeSource& source, const SurfacePoint& at,
   if (!(sample.weight > 0.0)) return;
   Eigen::ArrayXd light = share * (source.light * passed(sample.ray)).cast<double>();
   const Spectrum* absorption = bodies ? bodies->around(caster, at) : nullptr;
-  if (absorption) light *= left_after(*absorption, sample.ray.direction.norm()).cast<double>();
+  if (absorption) {
+    const double way = sample.ray.t_max * sample.ray.direction.norm();
+    light *= left_after(*absorption, way).cast<double>();
+  }
   if (!(light > 0.0).any()) return;
   const Lamp& lamp = std::get<LampLight>(source.shape).lamp;
   const KernelSlope slope = kernel_slope(lamp, at.position + sample.ray.direction, at);

@@ -21,9 +21,9 @@ constexpr float reflectance = 0.6f;
 
 /// A room of 5 m x 4 m x 3 m, all of whose surfaces reflect, with two lamps: a measured
 /// distribution with an opening, and a point.
-Scene room_with_lamps() {
+Scene room_with_lamps(float rho = reflectance) {
   SceneBuilder builder;
-  builder.box({.reflectance = reflectance, .one_sided = true}, {0, 0, 0}, {5, 4, 3}, true);
+  builder.box({.reflectance = rho, .one_sided = true}, {0, 0, 0}, {5, 4, 3}, true);
   Scene scene = builder.build();
   Eigen::ArrayXXd values(4, 4);
   values << 400, 300, 150, 0, 400, 320, 200, 0, 400, 250, 120, 0, 400, 280, 180, 0;
@@ -38,6 +38,25 @@ Scene room_with_lamps() {
                  {.name = "bulb",
                   .position = {3.4, 2.7, 2.1},
                   .intensity = constant_spectrum(scene.bands, 80.0f / 683.0f)}};
+  return scene;
+}
+
+/// A black room full of water that absorbs and does not bend light, in two bodies with a narrow gap
+/// between them beside a wall: no way from a lamp to a point crosses the gap, since light by way of
+/// bodies is none that places are searched by.
+Scene room_full_of_water() {
+  Scene scene = room_with_lamps(0.0f);
+  const Paint water{.index_of_refraction = 1.0f, .absorption = 0.3f};
+  const Eigen::Vector3d middle(2.5, 0.1, 1.5), y = Eigen::Vector3d::UnitY();
+  Scene surfaces = SceneBuilder()
+                       .square(water, middle - 0.001 * y, y, 0.9)
+                       .square(water, middle + 0.001 * y, -y, 0.9)
+                       .build();
+  for (Surface& surface : surfaces.surfaces) {
+    surface.material = static_cast<int>(scene.materials.size());
+    scene.surfaces.push_back(surface);
+  }
+  scene.materials.push_back(surfaces.materials[0]);
   return scene;
 }
 
@@ -62,8 +81,7 @@ PlacedLightOptions coarse() {
 /// of the light of some points is reflected. E is a float: 6e-8 of some 100 lx over 2 h = 0.02 m is
 /// 3e-4 lx/m beside slopes of 50 lx/m. E changes over 2 m, so that h^2 / 6 of its third derivative
 /// is 1e-5 of the slope.
-TEST(PlacedLight, SlopesAreThoseOfCentralDifferences) {
-  const Scene scene = room_with_lamps();
+void expect_slopes_of_central_differences(const Scene& scene) {
   const PlacedLight light(scene, both, {.grids = {plane()}}, {}, coarse());
   Eigen::Matrix3Xd places(3, 2);
   places << scene.lamps[0].position, scene.lamps[1].position;
@@ -87,10 +105,17 @@ TEST(PlacedLight, SlopesAreThoseOfCentralDifferences) {
   }
 }
 
+TEST(PlacedLight, SlopesAreThoseOfCentralDifferences) {
+  expect_slopes_of_central_differences(room_with_lamps());
+}
+
+TEST(PlacedLight, SlopesWithinWaterAreThoseOfCentralDifferences) {
+  expect_slopes_of_central_differences(room_full_of_water());
+}
+
 /// The light of a lamp is that of a solve of the scene, which shares no mesh, no form factors and
 /// no random numbers with it.
-TEST(PlacedLight, LuxIsThatOfASolve) {
-  const Scene scene = room_with_lamps();
+void expect_lux_of_a_solve(const Scene& scene) {
   const PlacedLight light(scene, both, {.grids = {plane()}}, {}, coarse());
   Eigen::Matrix3Xd places(3, 2);
   places << scene.lamps[0].position, scene.lamps[1].position;
@@ -109,6 +134,26 @@ TEST(PlacedLight, LuxIsThatOfASolve) {
       EXPECT_NEAR(lux[p], field.lux[p], 2.0 * field.lux_within[p]) << "point " << p;
     }
     EXPECT_NEAR(lux.mean(), field.mean, 0.01 * field.mean);
+  }
+}
+
+TEST(PlacedLight, LuxIsThatOfASolve) {
+  expect_lux_of_a_solve(room_with_lamps());
+}
+
+TEST(PlacedLight, LuxWithinWaterIsDimmedByTheWay) {
+  const Scene scene = room_full_of_water();
+  const PlacedLight light(scene, std::span(both).last(1), {.grids = {plane()}}, {}, coarse());
+  const Eigen::Vector3d bulb = scene.lamps[1].position;
+  const PlacedReadings here = light.at(bulb);
+  const LuxGrid grid = plane();
+  for (std::size_t p = 0; p < grid.points.size(); ++p) {
+    const Eigen::Vector3d to = bulb - grid.points[p].position;
+    const double r = to.norm(), candela = 80.0, absorption = 0.3;
+    const double expected = candela * to.z() / (r * r * r) * std::exp(-absorption * r);
+    // Floats, and the first millimetre before the lamp, where rays of light begin.
+    EXPECT_NEAR(here.lux.value(static_cast<Eigen::Index>(p), 0), expected,
+                expected * (std::ldexp(32.0, -24) + 1e-3 * absorption));
   }
 }
 
