@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -38,8 +39,9 @@ std::uint64_t site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& n
                        double cube) {
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
+  const Eigen::Array3d whole = (position.array() / cube).floor();
   const auto at = [&](int i) {
-    return static_cast<std::uint64_t>(static_cast<std::int64_t>(std::floor(position[i] / cube)));
+    return static_cast<std::uint64_t>(static_cast<std::int64_t>(whole[i]));
   };
   return random_key(at(0), at(1), at(2), static_cast<std::uint64_t>(2 * axis + (normal[axis] > 0)));
 }
@@ -123,7 +125,9 @@ SkySites::SkySites(const SkyCells& cells, const ClearPanes& panes, double scene_
       panes_(panes),
       caster_(caster),
       cube_(cube_share * std::max(scene_diagonal, 1e-9)) {
-  Collector collector(caster.mesh());
+  const PatchMesh& mesh = caster.mesh();
+  for (int v = 0; v < mesh.vertex_count(); ++v) bounds_.extend(mesh.position(v));
+  Collector collector(mesh);
   while (!collector.collect(cube_)) cube_ *= 1.5;
   for (auto& [key, points] : collector.points) {
     place_of_[key] = static_cast<int>(places_.size());
@@ -142,6 +146,7 @@ void SkySites::find_all() {
   };
   // Threads would wait for each other if sites asked for the same places beside them.
   for_all([&](Place& place) { visibility_of(place); });
+  ways_out();
   for_all([&](Place& place) { site_of(place); });
   for (Place& place : places_) {
     place.points = {};
@@ -169,8 +174,10 @@ const SkySites::Site& SkySites::site_of(Place& place) const {
       if (found == place_of_.end()) continue;
       beside.push_back(&visibility_of(places_[static_cast<std::size_t>(found->second)]));
     }
-    place.site = std::make_unique<const Site>(
-        site_by(weights_of(visibility_of(place), beside), axis_of(point.normal)));
+    const CellVisibility own =
+        visibility_by_ways(*caster_, place.points, place.key, visibility_of(place));
+    place.site =
+        std::make_unique<const Site>(site_by(weights_of(own, beside), axis_of(point.normal)));
   });
   return *place.site;
 }
@@ -183,7 +190,105 @@ const SkySites::Site* SkySites::find(const SurfacePoint& at) const {
 
 SkySites::Weights SkySites::sample(const ElementCaster& caster, const SurfacePoint& at,
                                    std::uint64_t key) const {
-  return weights_of(sample_cells(caster, {&at, 1}, key), {});
+  const CellVisibility by_rays = sample_cells(caster, {&at, 1}, key);
+  return weights_of(visibility_by_ways(caster, {&at, 1}, key, by_rays), {});
+}
+
+// The ways out of all places, those that are hard to find first.
+const std::vector<SkySites::WayOut>& SkySites::ways_out() const {
+  // Enough for the rooms of a house, and little work to look through for each place.
+  constexpr std::size_t most = 2048;
+  std::call_once(are_ways_found_, [&] {
+    for (Place& place : places_) {
+      const std::vector<WayOut>& ways = visibility_of(place).ways;
+      ways_out_.insert(ways_out_.end(), ways.begin(), ways.end());
+    }
+    std::ranges::stable_sort(ways_out_, {}, &WayOut::alike);
+    ways_out_.resize(std::min(ways_out_.size(), most));
+  });
+  return ways_out_;
+}
+
+bool SkySites::gets_out(const ElementCaster& caster, const Ray& ray) const {
+  std::uint8_t blocked = 0;
+  caster.occluded({&ray, 1}, {&blocked, 1});
+  return blocked == 0 || (!panes_.empty() && (panes_.passed(caster, ray) > 0.0f).any());
+}
+
+// A direction in which the point sees the sky through the hole that a way out passes; empty if none
+// is found.
+std::optional<Eigen::Vector3d> SkySites::direction_out(const ElementCaster& caster,
+                                                       const SurfacePoint& point,
+                                                       const WayOut& way) const {
+  const auto towards = [&](double t) -> Eigen::Vector3d {
+    return way.from + t * way.direction - point.position;
+  };
+  const auto sees = [&](double t) {
+    const Eigen::Vector3d to = towards(t);
+    return to.dot(point.normal) > 0.0 && gets_out(caster, {.origin = point.position,
+                                                           .direction = to,
+                                                           .t_max = 1.0,
+                                                           .origin_group = point.facet});
+  };
+  double leaves = std::numeric_limits<double>::infinity();  // metres along the way, at the bounds
+  for (int i = 0; i < 3; ++i) {
+    const double speed = way.direction[i];
+    if (speed == 0.0) continue;
+    const double end = speed > 0.0 ? bounds_.max()[i] : bounds_.min()[i];
+    leaves = std::min(leaves, std::max(0.0, (end - way.from[i]) / speed));
+  }
+  // The way starts in view of few places, and its middle, in a room, in view of most.
+  constexpr int halvings = 7, bisections = 14;
+  double seen = leaves, hidden = leaves;
+  for (int i = 0; !sees(seen); ++i) {
+    if (i == halvings) return {};
+    hidden = seen;
+    seen *= 0.5;
+  }
+  for (int i = 0; i < bisections && seen < hidden; ++i) {
+    const double middle = 0.5 * (seen + hidden);
+    (sees(middle) ? seen : hidden) = middle;
+  }
+  const Eigen::Vector3d direction = towards(seen).normalized();
+  const Ray ray{.origin = point.position, .direction = direction, .origin_group = point.facet};
+  return gets_out(caster, ray) ? std::optional(direction) : std::nullopt;
+}
+
+// What rays through all cells found and, if few got out, what ways out show besides: a hole is in
+// other cells for other points of the site.
+SkySites::CellVisibility SkySites::visibility_by_ways(const ElementCaster& caster,
+                                                      std::span<const SurfacePoint> points,
+                                                      std::uint64_t key,
+                                                      const CellVisibility& by_rays) const {
+  CellVisibility visibility = by_rays;
+  constexpr int enough = 12;
+  const int known = by_rays.ways.empty() ? 0 : by_rays.ways.front().alike;
+  if (known >= enough || ways_out().empty()) return visibility;
+  // Ways near by are likely to be in view, and those that few rays find are likely to leave through
+  // small holes.
+  std::vector<std::pair<double, const WayOut*>> order;
+  order.reserve(ways_out().size());
+  for (const WayOut& way : ways_out()) {
+    const double distance = (way.from - points.front().position).norm();
+    order.emplace_back(distance * std::sqrt(static_cast<double>(way.alike)), &way);
+  }
+  constexpr std::size_t most_ways = 128;
+  const auto few = static_cast<std::ptrdiff_t>(std::min(most_ways, order.size()));
+  std::partial_sort(order.begin(), order.begin() + few, order.end(),
+                    [](const auto& a, const auto& b) { return a.first < b.first; });
+  int found = 0;
+  for (std::ptrdiff_t i = 0; i < few && found < enough; ++i) {
+    const double u = random_uniform(random_key(key, static_cast<std::uint64_t>(i)));
+    const auto p = static_cast<std::size_t>(u * static_cast<double>(points.size()));
+    const auto& [nearness, way] = order[static_cast<std::size_t>(i)];
+    const std::optional<Eigen::Vector3d> direction = direction_out(caster, points[p], *way);
+    if (!direction) continue;
+    const auto cell = static_cast<std::size_t>(cells_.cell_of(*direction));
+    visibility.tried[cell] += 1.0f;
+    visibility.open[cell] += 1.0f;
+    ++found;
+  }
+  return visibility;
 }
 
 SkySites::CellVisibility SkySites::sample_cells(const ElementCaster& caster,
@@ -192,6 +297,7 @@ SkySites::CellVisibility SkySites::sample_cells(const ElementCaster& caster,
   struct Sample {
     int cell = 0;
     std::size_t point = 0;
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();
     bool is_open = false;
   };
   // A ray through each cell, each from one of the points `from`, drawn at random.
@@ -208,7 +314,7 @@ SkySites::CellVisibility SkySites::sample_cells(const ElementCaster& caster,
       if (!(direction.dot(point.normal) > 0.0)) continue;
       rays.push_back(
           {.origin = point.position, .direction = direction, .origin_group = point.facet});
-      samples.push_back({.cell = c, .point = p});
+      samples.push_back({.cell = c, .point = p, .direction = direction});
     }
     std::vector<std::uint8_t> blocked(rays.size());
     caster.occluded(rays, blocked);
@@ -239,6 +345,14 @@ SkySites::CellVisibility SkySites::sample_cells(const ElementCaster& caster,
   // estimates send a share of their own rays to cells that are not known as open.
   if (seeing.empty()) return visibility;
   for (const Sample& sample : samples_from(seeing, 1)) count_in(sample);
+  std::vector<WayOut> out;
+  for (const Sample& sample : first) {
+    if (sample.is_open) out.push_back({points[sample.point].position, sample.direction});
+  }
+  const auto alike = static_cast<int>(out.size());
+  if (out.size() > 2) out = {out.front(), out.back()};
+  for (WayOut& way : out) way.alike = alike;
+  visibility.ways = std::move(out);
   return visibility;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -27,6 +28,10 @@ double thinning_elsewhere(double open, double elsewhere);
 /// Rays cast beforehand from surfaces of each site find through which cells of the sky rays get
 /// out, so that points near by can send their rays there. The rays of a site are cast when a point
 /// in the site is first asked for: a picture, or a few probes, ask for few sites.
+///
+/// A hole that is small against a cell lets few rays of few sites out. The sites that found nothing
+/// learn from these *ways out*: a point that moves along a way is seen from another place until it
+/// has passed the hole, so bisection finds the hole as that place sees it, however small it is.
 class SkySites {
  public:
   /// Per cell, the sampling weight of its rays beside its unobstructed irradiance; 0: no ray of the
@@ -56,9 +61,16 @@ class SkySites {
   Weights sample(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key) const;
 
  private:
+  /// A ray that got out of the scene.
+  struct WayOut {
+    Eigen::Vector3d from = Eigen::Vector3d::Zero();
+    Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  // unit
+    int alike = 0;                                         // rays of the same place that got out
+  };
   /// Rays tried through each cell, and those that got out.
   struct CellVisibility {
     std::array<float, SkyCells::count> tried{}, open{};
+    std::vector<WayOut> ways{};  // two at most
   };
   using Points = std::vector<SurfacePoint>;
   struct Collector;
@@ -74,8 +86,15 @@ class SkySites {
 
   const CellVisibility& visibility_of(Place& place) const;
   const Site& site_of(Place& place) const;
+  CellVisibility visibility_by_ways(const ElementCaster& caster,
+                                    std::span<const SurfacePoint> points, std::uint64_t key,
+                                    const CellVisibility& by_rays) const;
   CellVisibility sample_cells(const ElementCaster& caster, std::span<const SurfacePoint> points,
                               std::uint64_t key) const;
+  const std::vector<WayOut>& ways_out() const;
+  std::optional<Eigen::Vector3d> direction_out(const ElementCaster& caster,
+                                               const SurfacePoint& point, const WayOut& way) const;
+  bool gets_out(const ElementCaster& caster, const Ray& ray) const;
   static Weights weights_of(const CellVisibility& own,
                             std::span<const CellVisibility* const> beside);
   Site site_by(const Weights& weights, const Eigen::Vector3d& axis) const;
@@ -85,7 +104,10 @@ class SkySites {
   std::optional<ElementCaster> caster_;  // empty: all sites are found
   double cube_ = 1.0;                    // m, edge of a site
   std::unordered_map<std::uint64_t, int> place_of_{};
+  Eigen::AlignedBox3d bounds_{};  // of the surfaces
   mutable std::deque<Place> places_{};
+  mutable std::once_flag are_ways_found_{};
+  mutable std::vector<WayOut> ways_out_{};
   Site unknown_{};
 };
 
