@@ -20,9 +20,17 @@ constexpr int most_sites = 4096, points_per_octant = 3;
 // The largest edge of a site, as a share of the scene's diagonal; smaller ones cost more rays.
 constexpr double cube_share = 1.0 / 32.0;
 
+// Coordinates of a point in edges of cubes. No cube begins at the origin: planes of many scenes lie
+// there, and rounding would put their points into either of two cubes, one of which may lie within
+// a wall. The golden section is far from all simple fractions of the scene's size.
+Eigen::Array3d in_cubes(const Eigen::Vector3d& position, double cube) {
+  constexpr double golden = 0.3819660112501051;
+  return position.array() / cube + golden;
+}
+
 // The eighth of its cube that a point lies in, 0 to 7.
 int octant_of(const Eigen::Vector3d& position, double cube) {
-  const Eigen::Array3d halves = (position.array() / (0.5 * cube)).floor();
+  const Eigen::Array3d halves = (2.0 * in_cubes(position, cube)).floor();
   int octant = 0;
   for (int i = 0; i < 3; ++i) octant |= (static_cast<std::int64_t>(halves[i]) & 1) << i;
   return octant;
@@ -39,7 +47,7 @@ std::uint64_t site_key(const Eigen::Vector3d& position, const Eigen::Vector3d& n
                        double cube) {
   int axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
-  const Eigen::Array3d whole = (position.array() / cube).floor();
+  const Eigen::Array3d whole = in_cubes(position, cube).floor();
   const auto at = [&](int i) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(whole[i]));
   };

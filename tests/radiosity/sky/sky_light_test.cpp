@@ -242,6 +242,24 @@ TEST(SkyLight, HoleGivesItsLightHoweverSmallItIs) {
   }
 }
 
+// Below the floor, z = 0, is a dark box. Points of the floor are off by less than a rounding of the
+// room's size, 3 * 2^-53 m.
+TEST(SkyLight, RoundingOfAPlaneThroughTheOriginDoesNotMatter) {
+  constexpr double size = 0.1;
+  Scene scene = room_with_hole(size);
+  const int black = test::add_material(scene, test::diffuse(scene.bands, 0.0f));
+  test::add_box(scene, {-3, -2, -0.05}, {3, 2, 0}, {black, black, black, black, black, black},
+                true);
+  const UnderSky room{scene};
+  for (const double z : {0.0, -1e-17}) {
+    const LightOfHole light = light_of_hole(room, size, points_below_a_hole(z));
+    EXPECT_NEAR(light.found, light.expected, 4.0 * light.error * light.expected) << z;
+    // As above: 23 rays get through 5.5e-4 sr, so that the sum is off by 0.75 %, and half as much
+    // again.
+    EXPECT_LT(light.error, 0.012) << z;
+  }
+}
+
 TEST(SkyLight, MeetsAGoalOfNoise) {
   const UnderSky room{room_with_window()};
   constexpr int floor = 4, count = 64;
