@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <numeric>
 #include <optional>
+#include <span>
+#include <string>
+#include <utility>
 
 #include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/translucency.h"
@@ -29,63 +32,59 @@ struct BalanceSample {
   double weight = 0.0;  // m^2
 };
 
+// Channels whose light is gathered together: as many as fit into the columns of most_parts.
+struct ChannelRange {
+  int first = 0, count = 1;
+};
+
+// Light of a channel at vertices, vertices x bands.
+struct ChannelLight {
+  BandArray reflected{};  // radiosity, W/m^2
+  BandArray caustic{};    // irradiance, W/m^2; empty: none
+};
+
+// A s = b for the parts of a scene, in one band of one channel.
+struct BalanceEquations {
+  explicit BalanceEquations(Eigen::Index parts)
+      : matrix(Eigen::MatrixXd::Zero(parts, parts)),
+        right(Eigen::VectorXd::Zero(parts)),
+        variance(Eigen::ArrayXd::Zero(parts)) {}
+
+  Eigen::MatrixXd matrix;
+  Eigen::VectorXd right;
+  Eigen::ArrayXd variance;  // of A s - b where all s are 1
+};
+
 // The power that parts reflect, and where it comes from.
 class ReflectedPower {
  public:
-  // Radiosity in sums of all channels, vertices x bands.
-  ReflectedPower(const LitScene& lit, const PartBalance& balance, BandArray emitted,
-                 BandArray reflected)
+  // Radiosity of all channels, vertices x columns, without `emitted` and with it.
+  ReflectedPower(const LitScene& lit, const PartBalance& balance, const BandArray& emitted,
+                 const BandArray& radiosity)
       : lit_(lit),
         mesh_(lit.mesh()),
         balance_(balance),
+        bands_(lit.scene.bands.count()),
         patch_(vertex_patches(mesh_)),
-        emitted_(std::move(emitted)),
-        reflected_(std::move(reflected)) {
-    if (balance.caustic.size() > 0) {
-      caustic_ = channel_sum(balance.caustic, static_cast<int>(reflected_.cols()));
-    }
-    choose_parts();
+        emitted_(emitted),
+        radiosity_(radiosity) {
+    choose_parts(channel_sum(radiosity_ - emitted_, bands_));
   }
 
   // The parts that have light, in rising order.
   const std::vector<int>& parts() const { return chosen_; }
 
-  // The scale of each chosen part, parts x bands.
+  // The scale of each chosen part, parts x columns of all channels.
   Eigen::ArrayXXd scales() const {
-    const Eigen::Index bands = reflected_.cols(), count = static_cast<Eigen::Index>(chosen_.size());
-    const BandArray by_part = columns_by_part();
-    // Rows of parts; the columns of a band are the power, the constant part, and that of each part.
-    std::vector<Eigen::MatrixXd> matrix(bands, Eigen::MatrixXd::Zero(count, count));
-    std::vector<Eigen::VectorXd> right(bands, Eigen::VectorXd::Zero(count));
-    Eigen::ArrayXXd variance = Eigen::ArrayXXd::Zero(count, bands);  // of A s - b where all s are 1
-    for (Eigen::Index p = 0; p < count; ++p) {
-      const std::vector<BalanceSample> samples = draw(chosen_[p]);
-      const GatheredIrradiance found = gather(samples, by_part, chosen_[p]);
-      const BandArray direct = from_lamps(found, samples);
-      Eigen::ArrayXXd excess(static_cast<Eigen::Index>(samples.size()), bands);
-      for (std::size_t i = 0; i < samples.size(); ++i) {
-        const auto& [point, weight] = samples[i];
-        const auto row = static_cast<Eigen::Index>(i);
-        const auto rho = mesh_.reflectance.row(mesh_.patch[point.element]);
-        const Spectrum own = interpolate(mesh_, reflected_, point_on_element(mesh_, point));
-        for (Eigen::Index k = 0; k < bands; ++k) {
-          const double by_rho = weight * double{rho[k]};
-          matrix[k](p, p) += weight * double{own[k]};
-          right[k][p] += by_rho * (double{direct(row, k)} + double{found.indirect(row, k)});
-          for (Eigen::Index q = 0; q < count; ++q) {
-            matrix[k](p, q) -= by_rho * double{found.indirect(row, (1 + q) * bands + k)};
-          }
-          const double arriving =
-              double{direct(row, k)} + found_in(found.indirect.row(row), k, bands);
-          excess(row, k) = weight * double{own[k]} - by_rho * arriving;
-        }
+    Eigen::ArrayXXd scales(static_cast<Eigen::Index>(chosen_.size()), radiosity_.cols());
+    const int channels = static_cast<int>(radiosity_.cols()) / bands_;
+    const int most = std::max(1, (1 + static_cast<int>(most_parts)) / blocks());
+    for (int first = 0; first < channels; first += most) {
+      const ChannelRange range{first, std::min(most, channels - first)};
+      const std::vector<BalanceEquations> equations = equations_of(range);
+      for (std::size_t j = 0; j < equations.size(); ++j) {
+        scales.col(first * bands_ + static_cast<Eigen::Index>(j)) = solved(equations[j]);
       }
-      if (samples.empty()) continue;
-      variance.row(p) = (excess.rowwise() - excess.colwise().mean()).square().colwise().sum();
-    }
-    Eigen::ArrayXXd scales = Eigen::ArrayXXd::Ones(count, bands);
-    for (Eigen::Index k = 0; k < bands; ++k) {
-      scales.col(k) = solved(matrix[k], right[k], variance.col(k));
     }
     return scales;
   }
@@ -98,10 +97,11 @@ class ReflectedPower {
   }
 
  private:
-  void choose_parts() {
+  // `reflected`: sums of all channels, vertices x bands.
+  void choose_parts(const BandArray& reflected) {
     const auto count = static_cast<std::size_t>(balance_.parts.judged_count());
     std::vector<double> power(count, 0.0), area(count, 0.0);
-    const Eigen::ArrayXXd of_patch = patch_integral(mesh_, reflected_);
+    const Eigen::ArrayXXd of_patch = patch_integral(mesh_, reflected);
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       const auto part = static_cast<std::size_t>(balance_.parts.judged_with(p));
       power[part] += of_patch.row(p).sum();
@@ -120,27 +120,132 @@ class ReflectedPower {
     }
     place_.assign(count, -1);
     for (std::size_t i = 0; i < chosen_.size(); ++i) place_[chosen_[i]] = static_cast<int>(i);
+    for (const int part : chosen_) samples_.push_back(draw(part, reflected));
   }
 
-  // Radiosity that gathers read. Its first columns are emission and all that is not scaled; those
-  // after them are the light that each part reflects.
-  BandArray columns_by_part() const {
-    const Eigen::Index bands = reflected_.cols();
-    BandArray columns =
-        BandArray::Zero(reflected_.rows(), bands * (1 + static_cast<Eigen::Index>(chosen_.size())));
-    columns.leftCols(bands) = emitted_;
-    for (int v = 0; v < mesh_.vertex_count(); ++v) {
-      const Eigen::Index block = 1 + part_of_vertex(v);
-      columns.row(v).segment(block * bands, bands) += reflected_.row(v);
+  // Blocks of columns for each channel in a gather: emission and all that is not scaled, and the
+  // light that each part reflects.
+  int blocks() const { return 1 + static_cast<int>(chosen_.size()); }
+
+  bool is_all(ChannelRange range) const { return range.count * bands_ == radiosity_.cols(); }
+
+  // The first column of a channel's block in a gather.
+  Eigen::Index first_column(int channel, Eigen::Index block) const {
+    return (channel * blocks() + block) * bands_;
+  }
+
+  std::vector<ChannelLight> light_of(ChannelRange range) const {
+    std::vector<ChannelLight> lights;
+    for (int c = range.first; c < range.first + range.count; ++c) {
+      const Eigen::Index k = c * bands_;
+      ChannelLight light{radiosity_.middleCols(k, bands_) - emitted_.middleCols(k, bands_)};
+      if (balance_.caustic.size() > 0) light.caustic = balance_.caustic.middleCols(k, bands_);
+      lights.push_back(std::move(light));
+    }
+    return lights;
+  }
+
+  // Direct light in the first block of each channel. Other channels have a block behind all.
+  EmitterChannels channels_by_block(ChannelRange range) const {
+    const int used = range.count * blocks();
+    const auto block_of = [&](int channel) {
+      const int i = channel - range.first;
+      return i >= 0 && i < range.count ? i * blocks() : used;
+    };
+    EmitterChannels channels;
+    for (int i = 0; i < used + (is_all(range) ? 0 : 1); ++i) {
+      channels.names.push_back(std::to_string(i));
+    }
+    channels.of_surface.assign(lit_.scene.surfaces.size(), 0);
+    const std::vector<FacetRef> facets = scene_facets(lit_.scene);
+    for (std::size_t f = 0; f < facets.size(); ++f) {
+      channels.of_surface[static_cast<std::size_t>(facets[f].surface)] =
+          block_of(lit_.direct_light.first_column(static_cast<int>(f)) / bands_);
+    }
+    for (const FreeSource& source : lit_.direct_light.free_sources()) {
+      channels.of_source.push_back(block_of(source.channel));
+    }
+    return channels;
+  }
+
+  // Radiosity that gathers read.
+  BandArray columns_by_part(ChannelRange range, const std::vector<ChannelLight>& lights) const {
+    const int count = range.count * blocks() + (is_all(range) ? 0 : 1);
+    BandArray columns = BandArray::Zero(radiosity_.rows(), count * bands_);
+    for (int c = 0; c < range.count; ++c) {
+      columns.middleCols(first_column(c, 0), bands_) =
+          emitted_.middleCols((range.first + c) * bands_, bands_);
+      for (int v = 0; v < mesh_.vertex_count(); ++v) {
+        columns.row(v).segment(first_column(c, 1 + part_of_vertex(v)), bands_) +=
+            lights[static_cast<std::size_t>(c)].reflected.row(v);
+      }
     }
     return columns;
+  }
+
+  std::vector<BalanceEquations> equations_of(ChannelRange range) const {
+    // Without channels all direct light is in the first block.
+    std::optional<DirectLight> by_block;
+    if (lit_.direct_light.channel_count() > 1) {
+      by_block.emplace(lit_.scene, mesh_, channels_by_block(range), &lit_.direct_light);
+    }
+    const LitScene lit{lit_.scene, lit_.caster, by_block ? *by_block : lit_.direct_light};
+    const std::vector<ChannelLight> lights = light_of(range);
+    const BandArray by_part = columns_by_part(range, lights);
+    const auto count = static_cast<Eigen::Index>(chosen_.size());
+    std::vector<BalanceEquations> equations(static_cast<std::size_t>(range.count * bands_),
+                                            BalanceEquations(count));
+    for (Eigen::Index p = 0; p < count; ++p) {
+      if (samples_[static_cast<std::size_t>(p)].empty()) continue;
+      const GatheredIrradiance found = gather(lit, p, by_part);
+      for (int c = 0; c < range.count; ++c) {
+        add_rows(p, c, found, lights[static_cast<std::size_t>(c)],
+                 std::span(equations).subspan(c * bands_, bands_));
+      }
+    }
+    return equations;
+  }
+
+  // The equation of part p in each band of a channel, which is number `channel` of those gathered.
+  void add_rows(Eigen::Index p, int channel, const GatheredIrradiance& found,
+                const ChannelLight& light, std::span<BalanceEquations> equations) const {
+    const std::vector<BalanceSample>& samples = samples_[static_cast<std::size_t>(p)];
+    Eigen::ArrayXXd excess(static_cast<Eigen::Index>(samples.size()), bands_);
+    for (Eigen::Index i = 0; i < excess.rows(); ++i) {
+      const auto& [point, weight] = samples[static_cast<std::size_t>(i)];
+      const auto rho = mesh_.reflectance.row(mesh_.patch[point.element]);
+      const ElementHit hit = point_on_element(mesh_, point);
+      const Spectrum own = interpolate(mesh_, light.reflected, hit);
+      const Spectrum caustic = light.caustic.size() > 0 ? interpolate(mesh_, light.caustic, hit)
+                                                        : Spectrum(Spectrum::Zero(bands_));
+      for (Eigen::Index k = 0; k < bands_; ++k) {
+        auto& [matrix, right, variance] = equations[static_cast<std::size_t>(k)];
+        const Eigen::Index at = first_column(channel, 0) + k;
+        const double by_rho = weight * double{rho[k]};
+        double arriving =
+            double{found.direct(i, at)} + double{found.indirect(i, at)} + double{caustic[k]};
+        right[p] += by_rho * arriving;
+        matrix(p, p) += weight * double{own[k]};
+        for (Eigen::Index q = 0; q < matrix.cols(); ++q) {
+          const double of_part = double{found.indirect(i, at + (1 + q) * bands_)};
+          matrix(p, q) -= by_rho * of_part;
+          arriving += of_part;
+        }
+        excess(i, k) = weight * double{own[k]} - by_rho * arriving;
+      }
+    }
+    for (Eigen::Index k = 0; k < bands_; ++k) {
+      const auto of_band = excess.col(k);
+      equations[static_cast<std::size_t>(k)].variance[p] =
+          (of_band - of_band.mean()).square().sum();
+    }
   }
 
   // Sheets scatter light of both sides, which points on one side do not tell.
   bool is_translucent(int patch) const { return mesh_.patch_behind(patch) >= 0; }
 
   // Points on the surfaces of a part, half of them by area and half by the light that is reflected.
-  std::vector<BalanceSample> draw(int part) const {
+  std::vector<BalanceSample> draw(int part, const BandArray& reflected) const {
     struct Candidate {
       int element;
       double area, power, up_to;
@@ -155,7 +260,7 @@ class ReflectedPower {
       for (int e = mesh_.first_element[p]; e < mesh_.first_element[p + 1]; ++e) {
         double light = 0.0;
         for (int c = 0; c < mesh_.corner_count(e); ++c) {
-          light += reflected_.row(mesh_.corners[e][c]).sum() / mesh_.corner_count(e);
+          light += reflected.row(mesh_.corners[e][c]).sum() / mesh_.corner_count(e);
         }
         const double of_element = mesh_.element_area[e] * std::max(light, 0.0);
         candidates.push_back({e, mesh_.element_area[e], of_element, 0.0});
@@ -184,44 +289,25 @@ class ReflectedPower {
     return samples;
   }
 
-  GatheredIrradiance gather(const std::vector<BalanceSample>& samples, const BandArray& columns,
-                            int part) const {
+  GatheredIrradiance gather(const LitScene& lit, Eigen::Index p, const BandArray& columns) const {
+    const int part = chosen_[static_cast<std::size_t>(p)];
     std::vector<GatherPoint> points;
-    for (const auto& [point, weight] : samples) {
+    for (const auto& [point, weight] : samples_[static_cast<std::size_t>(p)]) {
       points.push_back({.position = point.position,
                         .normal = point.normal,
                         .facet = mesh_.facet[point.element],
                         .key = random_key(static_cast<std::uint64_t>(part), points.size()),
                         .rays = balance_.rays[static_cast<std::size_t>(part)]});
     }
-    return gather_irradiance(lit_, columns, points, balance_.gather);
-  }
-
-  // Irradiance from lamps at samples, samples x bands: straight, and the mesh's caustics.
-  BandArray from_lamps(const GatheredIrradiance& found,
-                       const std::vector<BalanceSample>& samples) const {
-    BandArray E = channel_sum(found.direct, static_cast<int>(reflected_.cols()));
-    for (std::size_t i = 0; caustic_.size() > 0 && i < samples.size(); ++i) {
-      const ElementHit hit = point_on_element(mesh_, samples[i].point);
-      E.row(static_cast<Eigen::Index>(i)) += interpolate(mesh_, caustic_, hit).transpose();
-    }
-    return E;
-  }
-
-  // The light of all columns of a band.
-  template <class Row>
-  static double found_in(const Row& columns, Eigen::Index band, Eigen::Index bands) {
-    double sum = 0.0;
-    for (Eigen::Index k = band; k < columns.size(); k += bands) sum += double{columns[k]};
-    return sum;
+    return gather_irradiance(lit, columns, points, balance_.gather);
   }
 
   // s of A s = b, drawn towards 1 by how sure the points are of it: the light of lamps within a
   // part is balanced already (see keep_power in reconstruct), while A_pp is in a bright part a
-  // small difference between what the part reflects and what comes back. `variance` is that of each
-  // row of A s - b. Parts without power in the band keep theirs.
-  static Eigen::ArrayXd solved(Eigen::MatrixXd matrix, Eigen::VectorXd right,
-                               const Eigen::ArrayXd& variance) {
+  // small difference between what the part reflects and what comes back. Parts without power in the
+  // band keep theirs.
+  static Eigen::ArrayXd solved(BalanceEquations equations) {
+    auto& [matrix, right, variance] = equations;
     for (Eigen::Index p = 0; p < right.size(); ++p) {
       if (matrix(p, p) > 0.0) continue;
       matrix.row(p).setZero();
@@ -253,37 +339,27 @@ class ReflectedPower {
   const LitScene& lit_;
   const PatchMesh& mesh_;
   const PartBalance& balance_;
+  int bands_;
   std::vector<int> patch_;  // of each vertex
-  BandArray emitted_{}, reflected_{};
-  BandArray caustic_{};                  // irradiance, vertices x bands; empty: none
+  const BandArray &emitted_, &radiosity_;
   std::vector<int> chosen_{}, place_{};  // parts, and the index of each part in chosen_, -1: none
+  std::vector<std::vector<BalanceSample>> samples_{};  // of each chosen part
 };
 
 }  // namespace
 
 void balance_parts(const LitScene& lit, const PartBalance& balance, BandArray& radiosity) {
   if (balance.parts.judged_count() < 2) return;
-  const auto bands = lit.scene.bands.count();
-  const BandArray none = BandArray::Zero(radiosity.rows(), radiosity.cols());
-  const BandArray emitted = gatherable_radiosity(lit.mesh(), lit.direct_light, none);
-  // Gathers here have a column for each part. Light of as many channels would be taken for parts.
-  std::optional<DirectLight> together;
-  if (lit.direct_light.channel_count() > 1) {
-    together.emplace(lit.scene, lit.mesh(), EmitterChannels{}, &lit.direct_light);
-  }
-  const LitScene whole{lit.scene, lit.caster, together ? *together : lit.direct_light};
-  const ReflectedPower power(whole, balance, channel_sum(emitted, bands),
-                             channel_sum(radiosity - emitted, bands));
+  const BandArray emitted = gatherable_radiosity(
+      lit.mesh(), lit.direct_light, BandArray::Zero(radiosity.rows(), radiosity.cols()));
+  const ReflectedPower power(lit, balance, emitted, radiosity);
   if (power.parts().size() < 2) return;
   const Eigen::ArrayXXf scales = power.scales().cast<float>();
   for (int v = 0; v < lit.mesh().vertex_count(); ++v) {
     const int part = power.part_of_vertex(v);
     if (part < 0) continue;
-    for (Eigen::Index k = 0; k < radiosity.cols(); k += bands) {
-      auto at = radiosity.row(v).segment(k, bands);
-      const auto own = emitted.row(v).segment(k, bands);
-      at = own + (at - own) * scales.row(part);
-    }
+    const auto own = emitted.row(v);
+    radiosity.row(v) = own + (radiosity.row(v) - own) * scales.row(part);
   }
 }
 

@@ -30,8 +30,9 @@ struct PartBalance {
 ///
 /// P_p is the power that part p reflects by `radiosity`, P_p0 what it would reflect of the light
 /// from lamps, caustics included, and of what other surfaces emit, and P_pq of the light that part
-/// q reflects, all by gathers at sample points. One band has one set of equations, for all channels
-/// together.
+/// q reflects, all by gathers at sample points. Each band of each channel has equations of its own:
+/// the error of the sun in a part says nothing of a lamp there, whose light would be wrong when the
+/// sun is dimmed.
 ///
 /// A gather corrects the light of a part by one reflection. Behind two or three doors most of the
 /// light has been reflected often, and the error of coarse patches beside a door would decay too

@@ -93,6 +93,26 @@ PatchPowers powers_of(const PatchMesh& mesh, const BandArray& of_patches,
   return {mesh, std::move(balanced), patch_integral(mesh, channel_sum(at_vertices, bands))};
 }
 
+// Factors at vertices that give neighbourhoods and peaks the power that was balanced, vertices x
+// bands.
+BandArray power_factors(const PatchMesh& mesh, const PatchNeighbourhoods& neighbourhoods,
+                        const PatchPowers& powers) {
+  BandArray factor(mesh.patch_count(), mesh.reflectance.cols());
+  std::vector<int> others;
+  for (int p = 0; p < mesh.patch_count(); ++p) {
+    if (powers.is_peak(p)) {
+      factor.row(p) = powers.factor(std::span(&p, 1)).transpose();
+    } else {
+      others.push_back(p);
+    }
+  }
+  neighbourhoods.visit(others, [&](std::span<const int> patches) {
+    const Eigen::ArrayXf of_all = powers.factor(patches);
+    for (const int p : patches) factor.row(p) = of_all.transpose();
+  });
+  return to_vertices(mesh, factor);
+}
+
 // Irradiance of patches that have no light from behind or of their own, W/m^2, as their equations
 // balanced it, and 1 where it is known: both patches x columns.
 struct PatchIrradiance {
@@ -178,25 +198,12 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
                 const BandArray& patch_radiosity, BandArray& radiosity) {
   const BandArray unowned = without_owned_emission(mesh, direct_light, patch_radiosity);
-  const PatchPowers powers = powers_of(mesh, unowned, radiosity);
-  const Eigen::Index bands = mesh.reflectance.cols();
-  BandArray factor(mesh.patch_count(), bands);
-  std::vector<int> others;
-  for (int p = 0; p < mesh.patch_count(); ++p) {
-    if (powers.is_peak(p)) {
-      factor.row(p) = powers.factor(std::span(&p, 1)).transpose();
-    } else {
-      others.push_back(p);
-    }
-  }
   const PatchNeighbourhoods neighbourhoods(mesh);
-  neighbourhoods.visit(others, [&](std::span<const int> patches) {
-    const Eigen::ArrayXf of_all = powers.factor(patches);
-    for (const int p : patches) factor.row(p) = of_all.transpose();
-  });
-  const BandArray at_vertices = to_vertices(mesh, factor);
+  const Eigen::Index bands = mesh.reflectance.cols();
   for (Eigen::Index k = 0; k < radiosity.cols(); k += bands) {
-    radiosity.middleCols(k, bands) *= at_vertices;
+    const BandArray of_channel = radiosity.middleCols(k, bands);
+    const PatchPowers powers = powers_of(mesh, unowned.middleCols(k, bands), of_channel);
+    radiosity.middleCols(k, bands) *= power_factors(mesh, neighbourhoods, powers);
   }
 }
 

@@ -46,7 +46,8 @@ BandArray patch_to_vertex(const PatchMesh& mesh, const DirectLight& direct_light
 ///   as the place that a spotlight falls on, has a factor of its own. Its light would otherwise be
 ///   spread over the surfaces around.
 ///
-/// The factors follow from all channels together, so that channels still add up.
+/// Each channel has factors of its own: sunlight that falls between vertices says nothing of a lamp
+/// beside it, whose light would be wrong when the sun is dimmed.
 void keep_power(const PatchMesh& mesh, const DirectLight& direct_light,
                 const BandArray& patch_radiosity, BandArray& radiosity);
 

@@ -21,11 +21,11 @@ int part_of_lamp(const SolvedScene& solved) {
 }
 
 // A luminous square of 40 cm that shines down.
-void add_lamp(Scene& scene, const Eigen::Vector3d& middle) {
+void add_lamp(Scene& scene, const Eigen::Vector3d& middle, const char* name = "lamp") {
   const auto corner = [&](double x, double y) -> Eigen::Vector3d {
     return middle + Eigen::Vector3d(x, y, 0.0);
   };
-  add_polygon(scene, "lamp", add_material(scene, diffuse(scene.bands, 0.0f, 100.0f)),
+  add_polygon(scene, name, add_material(scene, diffuse(scene.bands, 0.0f, 100.0f)),
               {corner(-0.2, -0.2), corner(-0.2, 0.2), corner(0.2, 0.2), corner(0.2, -0.2)});
 }
 
@@ -102,7 +102,8 @@ TEST(BalanceParts, LeavesAWhiteRoomWithALampAsItIs) {
 }
 
 // Two rooms with boards a centimetre over their floors, in whose gaps gathers compute direct light
-// anew. Light of three channels has as many columns as that of two parts and of the lamps.
+// anew. Light of three channels, two of them dark, has as many columns as that of two parts and of
+// the lamps.
 TEST(BalanceParts, IsTheSameForLightKeptApart) {
   Scene scene = lit_and_dim_room(0.5f);
   const int board = add_material(scene, diffuse(scene.bands, 0.5f));
@@ -120,9 +121,8 @@ TEST(BalanceParts, IsTheSameForLightKeptApart) {
   const DirectLight together(scene, mesh);
   EmitterChannels channels{.names = {"a", "b", "c"},
                            .of_surface = std::vector<int>(scene.surfaces.size(), -1)};
-  int channel = 0;
   for (std::size_t i = 0; i < scene.surfaces.size(); ++i) {
-    if (scene.surfaces[i].name == "lamp") channels.of_surface[i] = channel++;
+    if (scene.surfaces[i].name == "lamp") channels.of_surface[i] = 0;
   }
   const DirectLight apart(scene, mesh, channels);
   ASSERT_EQ(apart.channel_count(), 3);
@@ -135,6 +135,55 @@ TEST(BalanceParts, IsTheSameForLightKeptApart) {
   balance_parts({scene, caster, apart}, balance, split);
   EXPECT_TRUE((split.leftCols(bands) == whole).all())
       << (split.leftCols(bands) - whole).abs().maxCoeff();
+}
+
+// Light of a part by a lamp, W.
+double power_in(const SolvedScene& solved, const BandArray& radiosity, int part) {
+  const Eigen::ArrayXXd of_patch = patch_integral(solved.mesh, radiosity);
+  double sum = 0.0;
+  for (int i = 0; i < solved.mesh.patch_count(); ++i) {
+    if (solved.solution.parts.judged_with(i) == part) sum += of_patch(i, 0);
+  }
+  return sum;
+}
+
+// The light of one lamp may be right where that of another is not.
+TEST(BalanceParts, BalancesEachChannelByItself) {
+  Scene scene = three_rooms();
+  add_lamp(scene, {1.0, 1.0, 2.9}, "second");
+  add_lamp(scene, {3.0, 4.0, 2.9}, "third");
+  SolveOptions options{.accuracy = Accuracy{.share = 0.05}};
+  options.channels = channels_per_luminaire(scene);
+  ASSERT_EQ(options.channels.names.size(), 3u);
+  const SolvedScene solved = solve_scene(scene, options);
+  const SceneParts& parts = solved.solution.parts;
+  ASSERT_EQ(parts.count(), 3);
+  const DirectLight direct(scene, solved.mesh, options.channels);
+  const auto bands = scene.bands.count();
+  const std::vector<LightChannel>& channels = solved.solution.channels;
+  const BandArray right =
+      gatherable_radiosity(solved.mesh, direct,
+                           side_by_side(channels, &LightChannel::direct_irradiance) +
+                               side_by_side(channels, &LightChannel::indirect_irradiance));
+  const std::vector<int> patch = vertex_patches(solved.mesh);
+  const float factors[] = {1.0f, 2.0f, 0.5f};
+  BandArray balanced = right;
+  for (int v = 0; v < solved.mesh.vertex_count(); ++v) {
+    if (parts.judged_with(patch[v]) == part_of_lamp(solved)) continue;
+    for (int c = 0; c < 3; ++c) balanced.row(v).segment(c * bands, bands) *= factors[c];
+  }
+  balance_parts({scene, ElementCaster(solved.mesh), direct},
+                {.parts = parts, .rays = std::vector<int>(3, 512)}, balanced);
+  for (int p = 0; p < parts.count(); ++p) {
+    for (int c = 0; c < 3; ++c) {
+      // As in UndoesTheFactorsOfParts. One factor for the three channels, which give about the same
+      // light, would be 3 / (1 + 2 + 0.5) and leave the first channel off by 14 %.
+      EXPECT_NEAR(power_in(solved, balanced.middleCols(c * bands, bands), p) /
+                      power_in(solved, right.middleCols(c * bands, bands), p),
+                  1.0, 0.08)
+          << parts.parts[static_cast<std::size_t>(p)].name << ", channel " << c;
+    }
+  }
 }
 
 // A room whose walls reflect rho of light and get C everywhere by way of mirrors and glass is in

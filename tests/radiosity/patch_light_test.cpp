@@ -51,6 +51,24 @@ TEST(KeepPower, RestoresWhatIsLostWhereItIsLost) {
   EXPECT_LT((radiosity - 1.0f).abs().maxCoeff(), 1e-5f);
 }
 
+// The light of one channel may be lost between vertices where that of another is not.
+TEST(KeepPower, RestoresEachChannelByItself) {
+  const Sheets sheets;
+  const PatchMesh& mesh = sheets.mesh;
+  const Eigen::Index bands = sheets.scene.bands.count();
+  const std::vector<int> patch = vertex_patches(mesh);
+  EmitterChannels channels{.names = {"sun", "lamp"}};
+  channels.of_surface.assign(sheets.scene.surfaces.size(), -1);
+  const DirectLight direct_light(sheets.scene, mesh, channels);
+  BandArray radiosity = BandArray::Ones(mesh.vertex_count(), 2 * bands);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    radiosity.row(v).head(bands).setConstant(static_cast<float>(sheets.found(patch[v])));
+  }
+  keep_power(mesh, direct_light, BandArray::Ones(mesh.patch_count(), 2 * bands), radiosity);
+  // As above.
+  EXPECT_LT((radiosity - 1.0f).abs().maxCoeff(), 1e-5f);
+}
+
 // A patch that errs alone, among 800, moves all of them by an 800th of its error.
 TEST(KeepPower, TrustsNoPatchAlone) {
   const Sheets sheets;
