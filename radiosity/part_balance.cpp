@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -32,7 +33,7 @@ struct BalanceSample {
   double weight = 0.0;  // m^2
 };
 
-// Channels whose light is gathered together: as many as fit into the columns of most_parts.
+// Channels whose light is gathered together.
 struct ChannelRange {
   int first = 0, count = 1;
 };
@@ -78,7 +79,9 @@ class ReflectedPower {
   Eigen::ArrayXXd scales() const {
     Eigen::ArrayXXd scales(static_cast<Eigen::Index>(chosen_.size()), radiosity_.cols());
     const int channels = static_cast<int>(radiosity_.cols()) / bands_;
-    const int most = std::max(1, (1 + static_cast<int>(most_parts)) / blocks());
+    // Columns that take no more memory than those of most_parts, or twice those of all channels.
+    const int most =
+        std::max(1, std::max(1 + static_cast<int>(most_parts), 2 * channels) / blocks());
     for (int first = 0; first < channels; first += most) {
       const ChannelRange range{first, std::min(most, channels - first)};
       const std::vector<BalanceEquations> equations = equations_of(range);
@@ -120,7 +123,11 @@ class ReflectedPower {
     }
     place_.assign(count, -1);
     for (std::size_t i = 0; i < chosen_.size(); ++i) place_[chosen_[i]] = static_cast<int>(i);
-    for (const int part : chosen_) samples_.push_back(draw(part, reflected));
+    for (const int part : chosen_) {
+      first_sample_.push_back(static_cast<int>(samples_.size()));
+      std::ranges::copy(draw(part, reflected), std::back_inserter(samples_));
+    }
+    first_sample_.push_back(static_cast<int>(samples_.size()));
   }
 
   // Blocks of columns for each channel in a gather: emission and all that is not scaled, and the
@@ -195,9 +202,9 @@ class ReflectedPower {
     const auto count = static_cast<Eigen::Index>(chosen_.size());
     std::vector<BalanceEquations> equations(static_cast<std::size_t>(range.count * bands_),
                                             BalanceEquations(count));
+    const GatheredIrradiance found = gather(lit, by_part);
     for (Eigen::Index p = 0; p < count; ++p) {
-      if (samples_[static_cast<std::size_t>(p)].empty()) continue;
-      const GatheredIrradiance found = gather(lit, p, by_part);
+      if (first_sample_[p] == first_sample_[p + 1]) continue;
       for (int c = 0; c < range.count; ++c) {
         add_rows(p, c, found, lights[static_cast<std::size_t>(c)],
                  std::span(equations).subspan(c * bands_, bands_));
@@ -209,10 +216,10 @@ class ReflectedPower {
   // The equation of part p in each band of a channel, which is number `channel` of those gathered.
   void add_rows(Eigen::Index p, int channel, const GatheredIrradiance& found,
                 const ChannelLight& light, std::span<BalanceEquations> equations) const {
-    const std::vector<BalanceSample>& samples = samples_[static_cast<std::size_t>(p)];
-    Eigen::ArrayXXd excess(static_cast<Eigen::Index>(samples.size()), bands_);
-    for (Eigen::Index i = 0; i < excess.rows(); ++i) {
-      const auto& [point, weight] = samples[static_cast<std::size_t>(i)];
+    const Eigen::Index first = first_sample_[p];
+    Eigen::ArrayXXd excess(first_sample_[p + 1] - first, bands_);
+    for (Eigen::Index i = first; i < first + excess.rows(); ++i) {
+      const auto& [point, weight] = samples_[static_cast<std::size_t>(i)];
       const auto rho = mesh_.reflectance.row(mesh_.patch[point.element]);
       const ElementHit hit = point_on_element(mesh_, point);
       const Spectrum own = interpolate(mesh_, light.reflected, hit);
@@ -231,7 +238,7 @@ class ReflectedPower {
           matrix(p, q) -= by_rho * of_part;
           arriving += of_part;
         }
-        excess(i, k) = weight * double{own[k]} - by_rho * arriving;
+        excess(i - first, k) = weight * double{own[k]} - by_rho * arriving;
       }
     }
     for (Eigen::Index k = 0; k < bands_; ++k) {
@@ -289,15 +296,19 @@ class ReflectedPower {
     return samples;
   }
 
-  GatheredIrradiance gather(const LitScene& lit, Eigen::Index p, const BandArray& columns) const {
-    const int part = chosen_[static_cast<std::size_t>(p)];
+  // At the sample points of all parts.
+  GatheredIrradiance gather(const LitScene& lit, const BandArray& columns) const {
     std::vector<GatherPoint> points;
-    for (const auto& [point, weight] : samples_[static_cast<std::size_t>(p)]) {
-      points.push_back({.position = point.position,
-                        .normal = point.normal,
-                        .facet = mesh_.facet[point.element],
-                        .key = random_key(static_cast<std::uint64_t>(part), points.size()),
-                        .rays = balance_.rays[static_cast<std::size_t>(part)]});
+    for (std::size_t p = 0; p < chosen_.size(); ++p) {
+      const auto part = static_cast<std::size_t>(chosen_[p]);
+      for (int i = first_sample_[p]; i < first_sample_[p + 1]; ++i) {
+        const PatchPoint& point = samples_[static_cast<std::size_t>(i)].point;
+        points.push_back({.position = point.position,
+                          .normal = point.normal,
+                          .facet = mesh_.facet[point.element],
+                          .key = random_key(part, i - first_sample_[p]),
+                          .rays = balance_.rays[part]});
+      }
     }
     return gather_irradiance(lit, columns, points, balance_.gather);
   }
@@ -342,8 +353,9 @@ class ReflectedPower {
   int bands_;
   std::vector<int> patch_;  // of each vertex
   const BandArray &emitted_, &radiosity_;
-  std::vector<int> chosen_{}, place_{};  // parts, and the index of each part in chosen_, -1: none
-  std::vector<std::vector<BalanceSample>> samples_{};  // of each chosen part
+  std::vector<int> chosen_{}, place_{};   // parts, and the index of each part in chosen_, -1: none
+  std::vector<BalanceSample> samples_{};  // of one chosen part after another
+  std::vector<int> first_sample_{};       // of each chosen part, and the number of all
 };
 
 }  // namespace

@@ -137,7 +137,7 @@ TEST(BalanceParts, IsTheSameForLightKeptApart) {
       << (split.leftCols(bands) - whole).abs().maxCoeff();
 }
 
-// Light of a part by a lamp, W.
+// Power of `radiosity` (W/m^2, vertices x bands) in a part, W.
 double power_in(const SolvedScene& solved, const BandArray& radiosity, int part) {
   const Eigen::ArrayXXd of_patch = patch_integral(solved.mesh, radiosity);
   double sum = 0.0;
