@@ -60,7 +60,7 @@ TEST(LightTree, NoNodeOfVirtualLightsGivesMoreThanItsBound) {
                                              .most = 0.3}});
   }
   const LightTree tree(bounds_of(sources, 0));
-  const DirectLight light(hall.scene, std::move(sources));
+  const DirectLight light(hall.scene, std::move(sources), nullptr);
   EXPECT_EQ(light.light_count(), count);
   for (int k = 0; k < 200; ++k) {
     const SurfacePoint at = point_in_hall(k + count);
