@@ -13,6 +13,7 @@ namespace {
 
 RenderOptions options_of(const RenderArguments& arguments, const RenderOptions& given) {
   RenderOptions options = arguments.options();
+  options.max_subdivision = std::min(options.max_subdivision, given.max_subdivision);
   options.layers = given.layers;
   options.records = given.records;
   options.run = given.run;
@@ -129,6 +130,8 @@ PictureInTime render_in_time(SceneRenderer& renderer, const Camera& camera,
   if (given.run.has_limit()) options.records = records_in_time(renderer, camera, arguments, given);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const bool may_give_up = given.run.has_limit() && i + 1 < candidates.size();
+    // The noise of few rays would split all pixels to the end.
+    if (i > 0) options.max_subdivision = 1;
     picture.arguments = candidates[i];
     if (!is_given_up(renderer, camera, options, may_give_up, picture)) break;
   }

@@ -19,8 +19,9 @@ struct PictureInTime {
 /// else is that of `arguments`.
 ///
 /// - If the time is limited, a picture whose rows so far tell that it will take much longer is
-///   given up: for the draft, with the records of indirect light that are found by then, then for
-///   light from the solution alone. Records that take more than half of the time are given up too.
+///   given up: for the draft, with the records of indirect light that are found by then and pixels
+///   that are split once, then for light from the solution alone. Records that take more than half
+///   of the time are given up too.
 /// - Once the time is up, four samples for each pixel, with light from the solution, fill in the
 ///   rows that are missing.
 ///

@@ -62,10 +62,10 @@ RenderOptions picture_options(std::string_view pass, std::string_view quality,
   options.pass = find_named(passes, pass, "pass").pass;
   const bool is_draft = quality == "draft";
   options.has_records = !is_draft;
-  if (is_draft) options.max_subdivision = 1;
   // A draft takes all light of virtual lights from the mesh.
   if (options.pass == Pass::virtual_lights && is_draft) {
     options.pass = Pass::interpolate;
+    options.max_subdivision = 1;
     options.glossy_rays = 1;
     options.sampling.least = 4;
   }
