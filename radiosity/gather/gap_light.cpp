@@ -8,6 +8,7 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/random_purpose.h"
+#include "scene/rays/surface_ray.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -28,18 +29,6 @@ constexpr double sizes_wide = 8.0;
 constexpr double narrowest_gap = 1e-4;
 // Many rays end in a gap, so each needs one light and one shadow ray.
 constexpr ShadowOptions shadows{.min_rays = 1, .max_rays = 1};
-
-// A cosine-distributed ray from a surface.
-Ray scattered(const SurfacePoint& at, std::uint64_t key) {
-  Eigen::Vector3d a, b;
-  tangent_frame(at.normal, a, b);
-  const Eigen::Vector3d d =
-      cosine_direction(static_cast<float>(random_uniform(random_key(key, 1))),
-                       static_cast<float>(random_uniform(random_key(key, 2))));
-  return {.origin = at.position,
-          .direction = d.x() * a + d.y() * b + d.z() * at.normal,
-          .origin_group = at.facet};
-}
 
 // Distance, metres, of the portals that a ray from where another ended is aimed at. No element is
 // larger than its patch, so the portals of Portals::is_near() are among them. Portals farther
@@ -196,7 +185,7 @@ std::optional<GapLight::GapSize> GapLight::gap_around(const ElementCaster& caste
   constexpr std::size_t deciding = 16, many = 8;
   std::array<Ray, deciding> rays;
   std::array<ElementHit, deciding> hits;
-  for (std::size_t i = 0; i < deciding; ++i) rays[i] = scattered(at, random_key(key, i));
+  for (std::size_t i = 0; i < deciding; ++i) rays[i] = cosine_ray(at, random_key(key, i));
   caster.closest_hits(rays, hits);
   std::size_t out = 0;
   for (std::size_t i = 0; i < deciding; ++i) out += is_gap(at.normal, rays[i], hits[i]) ? 0 : 1;
@@ -231,7 +220,7 @@ double GapLight::next_ray(const ElementCaster& caster, const GapAims& aims,
                           const Portals::View& view, double share, Stop& stop) const {
   const Eigen::Vector3d& from = stop.at.position;
   const auto number = [&](std::uint64_t i) { return random_uniform(random_key(stop.key, i)); };
-  stop.ray = scattered(stop.at, stop.key);
+  stop.ray = cosine_ray(stop.at, stop.key);
   const bool is_aimed = share > 0.0 && number(4) < share;
   Portals::Aim at_portal;
   if (is_aimed && aims.exits) {

@@ -5,7 +5,7 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "scene/random_purpose.h"
-#include "scene/sampling.h"
+#include "scene/rays/surface_ray.h"
 
 namespace lightwell {
 namespace {
@@ -23,17 +23,6 @@ Ray away_from(const PatchMesh& mesh, const PatchPoint& at, std::uint64_t key) {
   const std::uint64_t turn = random_key(key, 1);
   return cosine_ray(mesh, at, static_cast<float>(random_uniform(random_key(turn, 1))),
                     static_cast<float>(random_uniform(random_key(turn, 2))));
-}
-
-Ray away_from(const SurfacePoint& at, std::uint64_t key) {
-  Eigen::Vector3d a, b;
-  tangent_frame(at.normal, a, b);
-  const Eigen::Vector3d d =
-      cosine_direction(static_cast<float>(random_uniform(random_key(key, 1))),
-                       static_cast<float>(random_uniform(random_key(key, 2))));
-  return {.origin = at.position,
-          .direction = d.x() * a + d.y() * b + d.z() * at.normal,
-          .origin_group = at.facet};
 }
 
 // The medium that walk(i) returns for most i, of those that met a body; air if none did.
@@ -79,7 +68,7 @@ Medium MediumWalks::before(const ElementCaster& caster, int patch) const {
 Medium MediumWalks::around(const ElementCaster& caster, const SurfacePoint& at) const {
   return most_common([&](int i) {
     const std::uint64_t key = walk_key(static_cast<std::uint64_t>(at.facet), i);
-    return walk(caster, away_from(at, key), key);
+    return walk(caster, cosine_ray(at, key), key);
   });
 }
 
