@@ -262,7 +262,7 @@ std::optional<Eigen::Vector3d> SkySites::direction_out(const ElementCaster& cast
   return gets_out(caster, ray) ? std::optional(direction) : std::nullopt;
 }
 
-// What rays through all cells found and, if few got out, what ways out show besides: a hole is in
+// Joins what rays through all cells found, if few got out, with what ways out show: a hole is in
 // other cells for other points of the site.
 SkySites::CellVisibility SkySites::visibility_by_ways(const ElementCaster& caster,
                                                       std::span<const SurfacePoint> points,

@@ -49,7 +49,7 @@ struct ShadowTally {
   }
 };
 
-/// What dims shadow rays instead of blocking them.
+/// Panes and the body around a point, which dim shadow rays instead of blocking them.
 struct ShadowMedium {
   const ClearPanes* panes = nullptr;  ///< null: none
   /// Absorption coefficient, 1/m, of the body that the rays run in; null: none absorbs.

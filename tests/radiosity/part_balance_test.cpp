@@ -176,8 +176,9 @@ TEST(BalanceParts, BalancesEachChannelByItself) {
                 {.parts = parts, .rays = std::vector<int>(3, 512)}, balanced);
   for (int p = 0; p < parts.count(); ++p) {
     for (int c = 0; c < 3; ++c) {
-      // As in UndoesTheFactorsOfParts. One factor for the three channels, which give about the same
-      // light, would be 3 / (1 + 2 + 0.5) and leave the first channel off by 14 %.
+      // The bound is that of UndoesTheFactorsOfParts, for the same rooms and rays. One factor for
+      // the three channels, which give about the same light, would be 3 / (1 + 2 + 0.5) and leave
+      // the first channel off by 14 %.
       EXPECT_NEAR(power_in(solved, balanced.middleCols(c * bands, bands), p) /
                       power_in(solved, right.middleCols(c * bands, bands), p),
                   1.0, 0.08)

@@ -227,7 +227,7 @@ std::vector<SurfacePoint> points_below_a_hole(double height_of_floor) {
   return points;
 }
 
-// As seen from 4 m, a hole of 0.03 m is 0.9 % of a cell of the dome, so that of sites that look
+// A hole of 0.03 m, seen from 4 m, is 0.9 % of a cell of the dome, so that of sites that look
 // through each cell once few see it.
 TEST(SkyLight, HoleGivesItsLightHoweverSmallItIs) {
   for (const double size : {0.3, 0.1, 0.03}) {
@@ -254,8 +254,8 @@ TEST(SkyLight, RoundingOfAPlaneThroughTheOriginDoesNotMatter) {
   for (const double z : {0.0, -1e-17}) {
     const LightOfHole light = light_of_hole(room, size, points_below_a_hole(z));
     EXPECT_NEAR(light.found, light.expected, 4.0 * light.error * light.expected) << z;
-    // As above: 23 rays get through 5.5e-4 sr, so that the sum is off by 0.75 %, and half as much
-    // again.
+    // Rays of the same number: 23 of them get through 5.5e-4 sr, so that the sum is off by 0.75 %;
+    // half as much again is for points that know more cells than nine.
     EXPECT_LT(light.error, 0.012) << z;
   }
 }

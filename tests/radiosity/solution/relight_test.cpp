@@ -29,11 +29,18 @@ Spectrum even(float factor) {
 // through vertices, pilot and final gather, of values no larger than the largest. Caustics add some
 // hundred floats at a vertex, with ten times the rounding of one. The bound is twice that.
 constexpr double rounding = 1.2e-6;
-// Refined elements read light with the power that the patches' equations balanced, of each channel
-// or of the sum. Both undo what interpolation loses, which refinement holds below its tolerance.
-// The power of the sum is the same; of light that is moved by this share the 64 rays at a vertex
-// miss no more than their noise.
-constexpr double refinement = 0.02, of_power = refinement / 8.0;
+// Refined elements combine gathers with predictions of pilot gathers by weights from their
+// variances. Variances are squares of differences of a percent or two, in which about four
+// roundings of 6e-8 are 1e-5 to 2e-5, and twice that when squared. The excess error of a prediction
+// is a small difference of several variances, accurate to 1e-4. An error of a weight acts on the
+// difference between gather and prediction: a tenth of the light at most.
+constexpr double weighted = 1e-5;
+// The final gather aims a quarter more rays at bright patches, drawn from running sums of the
+// combined light. One of 1e5 draws changes for a sum that is off by 1e-5. 5000 vertices draw 16 to
+// 128 times each, so about five vertices see another sample point; four times as many are allowed
+// for chance. Such a ray carries at most a 64th of the light at a vertex and may be twice as bright
+// as the rest.
+constexpr double redrawn = 0.004, one_ray = 0.03;
 
 void expect_same_light(const BandArray& a, const BandArray& b, const char* what) {
   ASSERT_EQ(a.rows(), b.rows()) << what;
@@ -42,15 +49,15 @@ void expect_same_light(const BandArray& a, const BandArray& b, const char* what)
   EXPECT_LE((a - b).abs().maxCoeff(), rounding * b.abs().maxCoeff()) << what;
 }
 
-// Light at the vertices of a mesh whose means over elements have the same power.
-void expect_same_power(const PatchMesh& mesh, const BandArray& a, const BandArray& b) {
-  ASSERT_EQ(a.rows(), b.rows());
-  ASSERT_EQ(a.cols(), b.cols());
-  EXPECT_LE((a - b).abs().maxCoeff(), refinement * b.abs().maxCoeff());
-  const Eigen::ArrayXXd power = patch_integral(mesh, a), expected = patch_integral(mesh, b);
-  for (Eigen::Index k = 0; k < power.cols(); ++k) {
-    EXPECT_NEAR(power.col(k).sum() / expected.col(k).sum(), 1.0, of_power);
-  }
+void expect_same_but_for_rays(const BandArray& a, const BandArray& b, const char* what) {
+  ASSERT_EQ(a.rows(), b.rows()) << what;
+  ASSERT_EQ(a.cols(), b.cols()) << what;
+  const Eigen::ArrayXf off = (a - b).abs().rowwise().maxCoeff() / b.abs().maxCoeff();
+  const auto count = (off > static_cast<float>(weighted)).count();
+  std::printf("%s: %ld of %ld vertices differ, by up to %.2g\n", what, static_cast<long>(count),
+              static_cast<long>(off.size()), double{off.maxCoeff()});
+  EXPECT_LE(static_cast<double>(count), redrawn * static_cast<double>(off.size())) << what;
+  EXPECT_LE(off.maxCoeff(), one_ray) << what;
 }
 
 void expect_same_light(const SolvedScene& a, const SolvedScene& b) {
@@ -63,15 +70,37 @@ void expect_same_light(const SolvedScene& a, const SolvedScene& b) {
   if (t.provenance.refinement.empty()) {
     expect_same_light(s.indirect_irradiance, t.indirect_irradiance, "indirect");
   } else {
-    expect_same_power(a.mesh, s.indirect_irradiance, t.indirect_irradiance);
+    expect_same_but_for_rays(s.indirect_irradiance, t.indirect_irradiance, "indirect");
   }
   expect_same_light(s.caustic_irradiance, t.caustic_irradiance, "caustic");
   EXPECT_NEAR(s.energy.emitted / t.energy.emitted, 1.0, rounding);
   EXPECT_NEAR(s.energy.absorbed / t.energy.absorbed, 1.0, rounding);
-  // The estimate compares two readings of the same light, so their difference changes by the share
-  // of that light.
-  const double same = t.provenance.refinement.empty() ? 1e-4 : refinement;
-  EXPECT_NEAR(s.error_estimate, t.error_estimate, same * t.error_estimate);
+  EXPECT_NEAR(s.error_estimate, t.error_estimate, 1e-4 * t.error_estimate);
+}
+
+// Refined elements read light with the power that the patches' equations balanced, of each channel
+// or of the sum. Both undo what interpolation loses, which refinement holds below its tolerance: so
+// light at a vertex differs by no more, and so does the error estimate, which compares two readings
+// of that light. The power of the sum is the same; of light that is moved by this share the 64 rays
+// at a vertex miss no more than their noise, an eighth.
+constexpr double refinement = 0.02, of_power = refinement / 8.0;
+
+void expect_same_power(const SolvedScene& a, const SolvedScene& b) {
+  ASSERT_EQ(a.mesh.vertex_count(), b.mesh.vertex_count());
+  const BandArray &E = a.solution.indirect_irradiance, &expected = b.solution.indirect_irradiance;
+  const double off = double{(E - expected).abs().maxCoeff() / expected.abs().maxCoeff()};
+  std::printf("light of channels that differ adds up to within %.2g at vertices\n", off);
+  EXPECT_LE(off, refinement);
+  const Eigen::ArrayXd power = patch_integral(a.mesh, E).colwise().sum();
+  const Eigen::ArrayXd of_expected = patch_integral(b.mesh, expected).colwise().sum();
+  EXPECT_LE((power / of_expected - 1.0).abs().maxCoeff(), of_power);
+  EXPECT_NEAR(a.solution.error_estimate, b.solution.error_estimate,
+              refinement * b.solution.error_estimate);
+  expect_same_light(a.solution.patch_radiosity, b.solution.patch_radiosity, "patches");
+  expect_same_light(a.solution.direct_irradiance, b.solution.direct_irradiance, "direct");
+  expect_same_light(a.solution.caustic_irradiance, b.solution.caustic_irradiance, "caustic");
+  EXPECT_NEAR(a.solution.energy.emitted / b.solution.energy.emitted, 1.0, rounding);
+  EXPECT_NEAR(a.solution.energy.absorbed / b.solution.energy.absorbed, 1.0, rounding);
 }
 
 struct Room {
@@ -95,6 +124,23 @@ TEST_P(ChannelsOf, AddUpToTheSolutionWithoutThem) {
   EXPECT_TRUE(plain.solution.channels.empty());
   ASSERT_GE(apart.solution.channels.size(), 2u);
   EXPECT_EQ(plain.solution.interpolation_error.size(), plain.mesh.element_count());
+  if (GetParam().refined) {
+    expect_same_power(apart, plain);
+  } else {
+    expect_same_light(apart, plain);
+  }
+}
+
+// Light in columns of its own beside those of a dark channel is that of a solve without channels.
+TEST_P(ChannelsOf, IsTheSolutionIfOneHasAllLight) {
+  const Scene scene = test::two_lamps(GetParam().is);
+  SolveOptions options = test::exact_and_even();
+  if (GetParam().refined) options.refine.tolerance = 0.02;
+  const SolvedScene plain = solve_scene(scene, options);
+  options.channels = channels_per_luminaire(scene);
+  for (int& channel : options.channels.of_surface) channel = std::min(channel, 0);
+  const SolvedScene apart = solve_scene(scene, options);
+  ASSERT_GE(apart.solution.channels.size(), 2u);
   expect_same_light(apart, plain);
 }
 
