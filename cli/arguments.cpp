@@ -48,55 +48,6 @@ std::pair<int, int> parse_size(const std::string& text) {
                             text, max_picture_edge));
 }
 
-}  // namespace
-
-std::optional<double> parsed_number(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
-CLI::Validator whole_number(int least, int most) {
-  return CLI::Validator(
-      [least, most](std::string& text) -> std::string {
-        const auto value = parsed_number(text);
-        return value && *value >= least && *value <= most && *value == std::floor(*value)
-                   ? std::string()
-                   : fmt::format("a whole number from {} to {} is needed, not '{}'", least, most,
-                                 text);
-      },
-      std::string{});
-}
-
-CLI::Validator positive() {
-  return CLI::Validator(
-      [](std::string& text) -> std::string {
-        const auto value = parsed_number(text);
-        return value && *value > 0.0 && std::isfinite(*value)
-                   ? std::string()
-                   : fmt::format("a number above 0 is needed, not '{}'", text);
-      },
-      std::string{});
-}
-
-CLI::Validator power_of_two() {
-  return CLI::Validator(
-      [](std::string& text) -> std::string {
-        constexpr int most = 1 << 20;
-        int value = 0;
-        const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        const bool whole = error == std::errc() && end == text.data() + text.size();
-        return whole && value >= 1 && value <= most && (value & (value - 1)) == 0
-                   ? std::string()
-                   : fmt::format("'{}' is not a power of two from 1 to {}, such as 256, 512, 1024",
-                                 text, most);
-      },
-      std::string{});
-}
-
-namespace {
-
 // Beginning of the name of a validator of one_of(), which goes on with the names that it accepts.
 constexpr std::string_view accepts = "accepts ";
 

@@ -10,6 +10,7 @@
 #include "cli/channels.h"
 #include "cli/film.h"
 #include "cli/look_from.h"
+#include "cli/numbers.h"
 #include "cli/projection.h"
 #include "mesh/build_patches.h"
 #include "radiosity/solve.h"
@@ -96,18 +97,6 @@ void add_exposure(CLI::App& command, double& exposure_ev);
 /// of help to every option involved.
 void refuse_beside(const CLI::App& command, const char* option,
                    const std::vector<const char*>& others);
-
-/// Accepts whole numbers from `least` to `most`.
-CLI::Validator whole_number(int least, int most);
-
-/// The number that all of a text is; empty if it is none.
-std::optional<double> parsed_number(const std::string& text);
-
-/// Accepts finite numbers above zero.
-CLI::Validator positive();
-
-/// Accepts powers of two up to 2^20, for ray counts: sample points are stratified in powers of two.
-CLI::Validator power_of_two();
 
 /// Accepts the `known` names; `what` ("solver") is their kind in the error message.
 CLI::Validator one_of(std::string what, std::vector<std::string> known);

@@ -62,6 +62,7 @@ void add_rooms(CLI::App& command, const std::shared_ptr<DaylightArguments>& argu
 
 // Options on what people do and see.
 void add_people(CLI::App& command, const std::shared_ptr<DaylightArguments>& arguments) {
+  constexpr double highest_sun = 89.0;
   command
       .add_option("--windows", arguments->windows,
                   "states of windows and their operation, beside those of a native scene file")
@@ -93,7 +94,7 @@ void add_people(CLI::App& command, const std::shared_ptr<DaylightArguments>& arg
       .add_option("--least-sun", arguments->sun_day.least_altitude_degrees,
                   "least altitude of the sun that counts for --sun-points (default 0)")
       ->type_name("DEGREES")
-      ->check(CLI::Range(0.0, 89.0).description(""))
+      ->check(number_within(0.0, highest_sun, "an altitude in degrees"))
       ->needs(sun_points);
   command
       .add_option_function<std::string>(
@@ -140,7 +141,7 @@ Action add_daylight(CLI::App& command) {
       .add_option("--ground", arguments->ground,
                   "reflectance of the ground outside of the scene (default 0.2)")
       ->type_name("RHO")
-      ->check(CLI::Range(0.0, 1.0).description(""));
+      ->check(number_within(0.0, 1.0, "a reflectance"));
   command
       .add_option_function<std::string>(
           "--occupied",

@@ -40,11 +40,12 @@ void GridArguments::add_to(CLI::App& command) {
       ->type_name("NAME@HEIGHT")
       ->type_size(1)
       ->allow_extra_args(false);
+  constexpr double farthest = 1e9;  // as points of scenes
   command
       .add_option("--margin", request.margin,
                   "strip along the outline of planes that is left out (default 0.5 m)")
       ->type_name("LENGTH")
-      ->check(CLI::NonNegativeNumber.description(""));  // no ":NONNEGATIVE" in --help
+      ->check(number_within(0.0, farthest, "a length"));
   command
       .add_option("--spacing", request.spacing,
                   "largest distance between points (default: by EN 12464-1)")

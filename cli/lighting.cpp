@@ -140,13 +140,14 @@ Action add_report(CLI::App& command) {
       ->allow_extra_args(false)
       ->check(with_extension({".pdf", ".html", ".json", ".csv"}));
   arguments->grids.add_to(command);
+  constexpr double least_factor = 1e-6;
   command
       .add_option(
           "--maintenance", arguments->maintenance_factor,
           "maintenance factor of electric light, above 0 up to 1 (default: the scene file's, or "
           "1)")
       ->type_name("FACTOR")
-      ->check(CLI::Range(1e-6, 1.0).description(""));  // no ":FLOAT in ..." in --help
+      ->check(number_within(least_factor, 1.0, "a factor"));
   command
       .add_option("--observer", arguments->observers,
                   "camera for whose eye UGR is computed; may be repeated")

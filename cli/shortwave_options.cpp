@@ -61,17 +61,6 @@ HourOfYear parse_date(const std::string& text) {
       "--date", fmt::format("'{}' is no date; write month and day, such as 06-21", text));
 }
 
-// Accepts numbers from 0 to `most`.
-CLI::Validator from_zero_to(double most, const char* what) {
-  return {[most, what](std::string& text) {
-            const auto value = parsed_number(text);
-            return value && *value >= 0.0 && *value <= most
-                       ? std::string()
-                       : fmt::format("{} from 0 to {:g} is needed, not '{}'", what, most, text);
-          },
-          std::string{}};
-}
-
 void add_sun_and_sky(CLI::App& command, ShortwaveArguments& arguments) {
   constexpr double brightest = 1e6;  // W/m^2
   command
@@ -81,12 +70,12 @@ void add_sun_and_sky(CLI::App& command, ShortwaveArguments& arguments) {
       ->type_name("ALT,AZ");
   command.add_option("--direct", arguments.direct, "irradiance across the sun's rays (default 0)")
       ->type_name("W/m2")
-      ->check(from_zero_to(brightest, "an irradiance"));
+      ->check(number_within(0.0, brightest, "an irradiance"));
   command
       .add_option("--diffuse", arguments.diffuse,
                   "irradiance of open level ground by the sky (default 0)")
       ->type_name("W/m2")
-      ->check(from_zero_to(brightest, "an irradiance"));
+      ->check(number_within(0.0, brightest, "an irradiance"));
   command
       .add_option("--sky", arguments.sky,
                   "radiance of the sky: even (default), or perez, the all-weather sky of sun and "
@@ -190,7 +179,7 @@ void ShortwaveArguments::add_to(CLI::App& command) {
       ->check(with_extension({".csv"}));
   auto* given = command.add_option("--albedo", albedo, "albedo of all facets")
                     ->type_name("A")
-                    ->check(from_zero_to(highest_albedo, "an albedo"));
+                    ->check(number_within(0.0, highest_albedo, "an albedo"));
   command
       .add_option("--surfaces", surfaces,
                   "CSV: surface (a name or a pattern), albedo; in place of --albedo")
