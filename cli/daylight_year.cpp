@@ -86,6 +86,7 @@ int daylight_of_year(const DaylightArguments& arguments, const DaylightStudy& st
                      Console& console, Report& report) {
   std::vector<SkyHour> hours = sky_hours(study.weather, study.up, study.north);
   for (const std::string& note : weather_notes(study.weather, hours)) console.say("note: " + note);
+  require_light(study.weather, hours);
   const std::vector<std::filesystem::path> names = files_of(arguments, study);
   const YearFolders folders(arguments, names);
 

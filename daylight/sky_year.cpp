@@ -110,6 +110,15 @@ std::optional<SkyHour> sky_instant(const Weather& weather, const ClockTime& when
   return sky_at(weather, number, standard, {.up = up, .north = north});
 }
 
+void require_light(const Weather& weather, const std::vector<SkyHour>& hours) {
+  if (!hours.empty()) return;
+  throw InputError(fmt::format(
+      "{}: no hour has the sun above the horizon and light of the dome, so there is no daylight to "
+      "compute; give a file whose diffuse horizontal irradiances are known, and whose latitude, "
+      "longitude and time zone are those of one place",
+      weather.file.string()));
+}
+
 std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour>& hours) {
   double all = 0.0, kept = 0.0;
   int with_light = 0;
@@ -124,10 +133,16 @@ std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour
   }
   const int dark = with_light - static_cast<int>(hours.size());
   if (dark <= 0) return {};
+  const double lost = (all - kept) / all;
+  // An hour of twilight has the sun for less than half of it, lower than 7.5 degrees.
+  constexpr double more_than_twilight = 0.02;
   return fmt::format(
       "{} hours of the file with light, {:.2g} % of the year's irradiance, have the sun below the "
-      "horizon in their middle, or no light of the dome; they count as dark",
-      dark, 100.0 * (all - kept) / all);
+      "horizon in their middle, or no light of the dome; they count as dark{}",
+      dark, 100.0 * lost,
+      lost > more_than_twilight
+          ? ". That is more than twilight: check the file's latitude, longitude and time zone"
+          : "");
 }
 
 Eigen::ArrayXf column_luminances(const SkyPatches& patches, const SkyHour& hour,

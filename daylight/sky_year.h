@@ -46,6 +46,9 @@ std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up
 std::optional<SkyHour> sky_instant(const Weather& weather, const ClockTime& when,
                                    const Eigen::Vector3d& up, const Eigen::Vector3d& north);
 
+/// Throws InputError if `hours` of the weather are none: there is no light to compute with.
+void require_light(const Weather& weather, const std::vector<SkyHour>& hours);
+
 /// A sentence on hours that have light in the file and are dark in `hours`; empty: there are none.
 std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour>& hours);
 

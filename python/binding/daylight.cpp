@@ -95,6 +95,7 @@ SharedYear daylight_year(const SharedStudy& study, const std::filesystem::path& 
     auto made = std::make_shared<DaylightYearData>();
     made->study = study;
     std::vector<SkyHour> hours = sky_hours(study->weather, study->up, study->north);
+    require_light(study->weather, hours);
     if (!walk.empty()) check_walk(*study, hours);
     const StudiedModel of = model_of_year(*study, run);
     made->total = Eigen::ArrayXXf::Zero(static_cast<Eigen::Index>(of.sensors.probes.size()),

@@ -359,6 +359,9 @@ TEST_F(DaylightCommand, WrongInputIsASentence) {
   expect({"--plane", "floor@0.8", "--occupied", "18-8"}, 2, "'18-8' is no span of hours");
   expect({"--plane", "floor@0.8", "--ground", "2"}, 2, "--ground");
   folder.write("p.csv", "x,y,z,nx,ny,nz\n2,2,0.8,0,0,1\n");
+  folder.write("year.wea", weather.substr(0, weather.find("6 21")) + "6 21 0.5 500 150\n");
+  expect({"--points", "p.csv"}, 3, "there is no daylight to compute");
+  folder.write("year.wea", weather);
   const Words with_points = {"--points", "p.csv"},
               with_sun = with_points + Words{"--sun-points", "p.csv"};
   for (const char* day : {"01-31", "03-22", "06-21"}) {

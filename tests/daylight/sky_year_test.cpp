@@ -79,6 +79,34 @@ TEST(SkyYear, HoursWithoutLightOfTheDomeAreDark) {
   EXPECT_EQ(hours[0].number, 12);
 }
 
+TEST(SkyYear, AYearWithoutLightIsRefused) {
+  Weather weather = steady_weather(500.0, 0.0);
+  EXPECT_THROW(require_light(weather, hours_of(weather)), InputError);
+  weather.hours[12].diffuse_horizontal = 100.0;
+  EXPECT_NO_THROW(require_light(weather, hours_of(weather)));
+}
+
+// Light where the sun is up, moved by the six hours of a wrong time zone: a quarter of a day's
+// hours, and not of twilight alone.
+TEST(SkyYear, LightAtNightPointsToTheTimeZone) {
+  Weather weather = steady_weather(0.0, 0.0);
+  for (const SkyHour& hour : hours_of(steady_weather(500.0, 100.0))) {
+    weather.hours[static_cast<std::size_t>(hour.number)] = {.direct_normal = 500.0,
+                                                            .diffuse_horizontal = 100.0};
+  }
+  EXPECT_EQ(note_on_dark_hours(weather, hours_of(weather)), "");
+  weather.hours_east += 6.0;
+  const std::string note = note_on_dark_hours(weather, hours_of(weather));
+  EXPECT_NE(note.find("check the file's latitude, longitude and time zone"), std::string::npos)
+      << note;
+  // Twilight of one hour in a year of 4380 is no sign of a wrong place.
+  weather.hours_east -= 6.0;
+  weather.hours[0] = {.diffuse_horizontal = 100.0};
+  const std::string twilight = note_on_dark_hours(weather, hours_of(weather));
+  EXPECT_EQ(twilight.rfind("1 hours", 0), 0u) << twilight;
+  EXPECT_EQ(twilight.find("time zone"), std::string::npos) << twilight;
+}
+
 // Patches are scaled to the hour's light, so the sum is exact to the rounding of 577 floats.
 TEST(SkyYear, PatchesLightOpenGroundAsTheDomeDoes) {
   const SkyPatches sky = patches();
