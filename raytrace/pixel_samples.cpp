@@ -24,11 +24,17 @@ double blackman_harris(double x) {
 
 bool PixelTally::is_good(float noise) const {
   if (!(noise > 0.0f) || count < 2) return false;
-  const double mean = light / count;
+  const double mean = mean_light();
   // The solution may be coarse where a lamp is near, and light without occluders has no shadows.
   const double variance = std::max(spread, square / count - mean * mean) / (count - 1) +
                           drawn / (static_cast<double>(count) * count);
   return std::sqrt(variance) <= static_cast<double>(noise) * mean;
+}
+
+bool PixelTally::is_good_beside(const NearbyNoise& beside, float noise) const {
+  if (!is_good(noise)) return false;
+  const double missed = std::max(0.0, beside.brightest - brightest) / (std::numbers::e * count);
+  return missed <= static_cast<double>(noise) * std::max(mean_light(), beside.mean);
 }
 
 FilterSampler::FilterSampler() {
@@ -56,26 +62,20 @@ PixelSamples::PixelSamples(const CameraRays& rays, const RayTree& tree,
       filter_(filter),
       gathers_light_(tree.gathers_light()) {}
 
-PixelTally PixelSamples::first_samples(int x, int y) const {
+PixelTally PixelSamples::first_samples(int x, int y, int times) const {
   PixelTally tally;
   Pending pending;
-  take(x, y, std::min(options_.least, options_.most), tally, pending);
+  take(x, y, std::min(times * options_.least, options_.most), tally, pending);
   add_gathered(x, y, std::move(pending), tally);
   return tally;
 }
 
-void PixelSamples::take_more(int x, int y, bool is_beside_noise, PixelTally& tally) const {
-  constexpr int more_beside_noise = 4;
+void PixelSamples::take_more(int x, int y, const NearbyNoise& beside, PixelTally& tally) const {
   const auto is_over = [&] {
-    return tally.count >= options_.most || tally.is_good(options_.noise);
+    return tally.count >= options_.most || tally.is_good_beside(beside, options_.noise);
   };
-  bool is_first = is_beside_noise;
-  while (is_first || !is_over()) {
+  while (!is_over()) {
     Pending pending;
-    if (is_first) {
-      take(x, y, std::min(more_beside_noise * options_.least, options_.most), tally, pending);
-    }
-    is_first = false;
     // The light of all points together takes little more time than that of some.
     while (!is_over()) take(x, y, std::min(2 * tally.count, options_.most), tally, pending);
     add_gathered(x, y, std::move(pending), tally);
@@ -164,6 +164,7 @@ void PixelSamples::add(RaySample sample, double of_points, PixelTally& tally) {
   const double light = static_cast<double>(sample.radiance.mean()) + of_points;
   tally.light += light;
   tally.square += light * light;
+  tally.brightest = std::max(tally.brightest, light);
   if (sample.by_chance.size() > 0) tally.by_chance.push_back(std::move(sample.by_chance));
   if (tally.count == 0) {
     tally.sum = std::move(sample);

@@ -26,6 +26,12 @@ class FilterSampler {
   std::array<double, steps_ + 1> cdf_{};
 };
 
+/// Radiance in the first samples of pixels that are too noisy, mean of the bands.
+struct NearbyNoise {
+  double brightest = 0.0;  ///< of a sample
+  double mean = 0.0;
+};
+
 /// Sums over the samples of one pixel.
 struct PixelTally {
   /// Sum over samples, without what these found by chance; the fingerprint has no meaning.
@@ -35,14 +41,23 @@ struct PixelTally {
   /// Sums of the bands' mean radiance and of its square; direct light of points about as the
   /// solution has it.
   double light = 0.0, square = 0.0;
-  double drawn = 0.0;   ///< variance of the sum of gathered light, mean of the bands
-  double spread = 0.0;  ///< of the first samples' gathered light, see GatheredLight
+  double brightest = 0.0;  ///< greatest of these radiances
+  double drawn = 0.0;      ///< variance of the sum of gathered light, mean of the bands
+  double spread = 0.0;     ///< of the first samples' gathered light, see GatheredLight
+
+  /// Mean of the samples' radiances that `light` is the sum of; there is a sample.
+  double mean_light() const { return light / count; }
 
   /// Returns whether the standard error of the mean, without what is found by chance, is at most
   /// the share `noise` of the mean; false for `noise` 0 or fewer than two samples. The standard
   /// error is that of independent samples, with that of gathered light; stratified samples have a
   /// smaller one.
   bool is_good(float noise) const;
+  /// Returns whether is_good(), and whether something as bright as in the pixels `beside`, which no
+  /// sample of this one shows, can be left out within the error `noise` of the brighter of both
+  /// means. A share p of the pixel is missed by n samples with the probability (1 - p)^n, so the
+  /// light that is lost by ending after n samples is p (1 - p)^n <= 1 / (e n) of the brightest.
+  bool is_good_beside(const NearbyNoise& beside, float noise) const;
 };
 
 /// Interval in which a shutter is open; a picture is the mean over the interval.
@@ -66,13 +81,14 @@ class PixelSamples {
   PixelSamples(const CameraRays& rays, const RayTree& tree, const SampleOptions& options,
                PixelFilter filter = PixelFilter::window, std::optional<Exposure> exposure = {});
 
-  /// Takes the first SampleOptions::least samples of pixel (x, y), but at most SampleOptions::most.
-  PixelTally first_samples(int x, int y) const;
+  /// Takes the first samples of pixel (x, y): `times` SampleOptions::least, but at most
+  /// SampleOptions::most.
+  PixelTally first_samples(int x, int y, int times = 1) const;
   /// Takes more samples of pixel (x, y) until the error is at most SampleOptions::noise, and at
-  /// most SampleOptions::most samples in all. Beside a pixel whose first samples are too noisy,
-  /// four times SampleOptions::least samples are taken before the first test of the error, since
-  /// the first samples may have missed something small and bright.
-  void take_more(int x, int y, bool is_beside_noise, PixelTally& tally) const;
+  /// most SampleOptions::most samples in all. The test is PixelTally::is_good_beside(), since
+  /// samples may have missed something small and bright; `beside` is of pixels near by whose first
+  /// samples are too noisy, zero if there are none.
+  void take_more(int x, int y, const NearbyNoise& beside, PixelTally& tally) const;
 
   /// The mean of a pixel's samples: radiance and layers. Light found by chance counts in each
   /// sample up to four times the mean of the other samples, or a tenth of the pixel's other light.

@@ -1,6 +1,7 @@
 #include "raytrace/sampled_rows.h"
 
 #include <algorithm>
+#include <optional>
 #include <vector>
 
 #include "scene/parallel.h"
@@ -34,10 +35,11 @@ void set_pixel(const RaySample& mean, int x, int y, Image& image, LayerFilm& lay
 SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
                         const Progress& progress, double part, Image& image, LayerFilm& layers,
                         const GlossMask* only) {
-  const int top = std::max(0, first_row - 1), bottom = std::min(image.height, first_row + rows + 1);
+  const int top = std::max(0, first_row - sampled_neighbours),
+            bottom = std::min(image.height, first_row + rows + sampled_neighbours);
   std::vector<PixelTally> tallies(static_cast<std::size_t>(bottom - top) *
                                   static_cast<std::size_t>(image.width));
-  std::vector<char> good(tallies.size(), 1);
+  std::vector<std::optional<NearbyNoise>> noisy(tallies.size());
   const auto slot = [&](int x, int y) {
     return static_cast<std::size_t>(y - top) * static_cast<std::size_t>(image.width) +
            static_cast<std::size_t>(x);
@@ -46,20 +48,31 @@ SampledRows sample_rows(const PixelSamples& samples, int first_row, int rows,
   for_each_pixel(image.width, top, bottom, progress, part, [&](int x, int y) {
     if (!is_sampled(x, y)) return;
     PixelTally& tally = tallies[slot(x, y)] = samples.first_samples(x, y);
-    good[slot(x, y)] = tally.is_good(samples.options().noise);
+    if (!tally.is_good(samples.options().noise)) {
+      noisy[slot(x, y)] = NearbyNoise{.brightest = tally.brightest, .mean = tally.mean_light()};
+    }
   });
-  const auto is_beside_noise = [&](int x, int y) {
-    for (int j = std::max(top, y - 1); j < std::min(bottom, y + 2); ++j) {
-      for (int i = std::max(0, x - 1); i < std::min(image.width, x + 2); ++i) {
-        if (!good[slot(i, j)]) return true;
+  const auto noise_beside = [&](int x, int y) {
+    NearbyNoise beside;
+    int count = 0;
+    for (int j = std::max(top, y - sampled_neighbours);
+         j < std::min(bottom, y + sampled_neighbours + 1); ++j) {
+      for (int i = std::max(0, x - sampled_neighbours);
+           i < std::min(image.width, x + sampled_neighbours + 1); ++i) {
+        const std::optional<NearbyNoise>& found = noisy[slot(i, j)];
+        if (!found) continue;
+        beside.brightest = std::max(beside.brightest, found->brightest);
+        beside.mean += found->mean;
+        ++count;
       }
     }
-    return false;
+    if (count > 0) beside.mean /= count;
+    return beside;
   };
   for_each_pixel(image.width, first_row, first_row + rows, progress, part, [&](int x, int y) {
     if (!is_sampled(x, y)) return;
     PixelTally& tally = tallies[slot(x, y)];
-    samples.take_more(x, y, is_beside_noise(x, y), tally);
+    samples.take_more(x, y, noise_beside(x, y), tally);
     set_pixel(samples.mean(tally), x, y, image, layers);
   });
   SampledRows result;

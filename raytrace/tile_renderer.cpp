@@ -76,8 +76,10 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
       const PixelCorners pixel_corners(eye, x, y, corners[row], corners[row + 1]);
       const PixelValue value = pixel_mean(x, y, *pixel_corners);
       if (sampled && pixel_mean.met_gloss()) {
-        PixelTally tally = sampled->samples.first_samples(x, y);
-        sampled->samples.take_more(x, y, true, tally);
+        // What no corner shows is small, and few samples might miss it as well.
+        constexpr int times = 4;
+        PixelTally tally = sampled->samples.first_samples(x, y, times);
+        sampled->samples.take_more(x, y, {}, tally);
         set_pixel(sampled->samples.mean(tally), x, y, image, layers);
         count_samples(tally, counters);
         continue;
@@ -104,8 +106,8 @@ TileRenderer::TileRenderer(const Eye& eye, const PixelSamples& samples, Sampled 
       corners_(tile_rows() + 1, CornerRow(image.width + 1)) {}
 
 int TileRenderer::tile_rows() const {
-  // Each tile also takes, and discards, the first samples of a row on either side.
-  constexpr int sampled_rows = 16;
+  // Each tile also takes, and discards, the first samples of neighbouring rows.
+  constexpr int sampled_rows = 24;
   if (sampled_ != Sampled::none) return sampled_rows;
   constexpr int pixels_per_tile = 8192;
   return std::max(1, pixels_per_tile / image_.width);
@@ -114,8 +116,8 @@ int TileRenderer::tile_rows() const {
 void TileRenderer::render(int first_row, int rows) {
   if (sampled_ == Sampled::all) return sample(first_row, rows, nullptr);
   if (sampled_ == Sampled::none) return subdivide(first_row, rows, nullptr);
-  const int above = std::max(0, first_row - 1);
-  const int below = std::min(image_.height, first_row + rows + 1);
+  const int above = std::max(0, first_row - sampled_neighbours);
+  const int below = std::min(image_.height, first_row + rows + sampled_neighbours);
   const GlossMask mask = eye_.gloss(image_.width, above, below);
   subdivide(first_row, rows, &mask);
   sample(first_row, rows, &mask);
