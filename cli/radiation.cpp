@@ -102,6 +102,19 @@ std::string facts_text(const Json& facts) {
                             facts["to_surroundings"].get<double>());
 }
 
+// The exchange, whose faults are told of the surfaces by the names that the table has.
+RadiantExchange named_exchange(const RadiationArguments& arguments, const Radiating& of) {
+  try {
+    return radiant_exchange(of.areas, of.surfaces, arguments.surroundings);
+  } catch (const RadiatingSurfaceError& error) {
+    const auto row = static_cast<std::size_t>(error.surface);
+    const ViewFactorRows& rows = of.found.rows;
+    throw InputError(fmt::format("{}: surface '{}', facet {}{}: {}", arguments.surfaces,
+                                 rows.name[row], rows.facet[row],
+                                 rows.is_back[row] != 0 ? " (back)" : "", error.fault));
+  }
+}
+
 Radiating exchange_of(const RadiationArguments& arguments, const FacetGeometry& geometry,
                       const Feedback& feedback) {
   const auto& [console, report] = feedback;
@@ -127,7 +140,7 @@ Radiating exchange_of(const RadiationArguments& arguments, const FacetGeometry& 
   stop_if_interrupted();
   of.areas = exchange_areas(of.found.factors);
   of.surfaces = read_radiating_surfaces(arguments.surfaces, of.found.rows, of.found.factors.area);
-  of.exchange = radiant_exchange(of.areas, of.surfaces, arguments.surroundings);
+  of.exchange = named_exchange(arguments, of);
   report.add_phase("exchange", watch.lap());
   return of;
 }

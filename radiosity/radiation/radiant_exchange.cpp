@@ -14,7 +14,7 @@ namespace lightwell {
 namespace {
 
 [[noreturn]] void refuse(Eigen::Index surface, const std::string& what) {
-  throw InputError(fmt::format("surface {}: {}", surface, what));
+  throw RadiatingSurfaceError(static_cast<int>(surface), what);
 }
 
 void check_emittance(Eigen::Index i, double emittance) {
@@ -116,6 +116,11 @@ double temperature_of(Eigen::Index i, const RadiatingSurface& surface, double A,
 }
 
 }  // namespace
+
+RadiatingSurfaceError::RadiatingSurfaceError(int number, const std::string& what_is_wrong)
+    : InputError(fmt::format("surface {}: {}", number, what_is_wrong)),
+      surface(number),
+      fault(what_is_wrong) {}
 
 RadiantExchange radiant_exchange(const ExchangeAreas& areas,
                                  std::span<const RadiatingSurface> surfaces, double surroundings) {

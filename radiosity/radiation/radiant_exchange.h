@@ -3,8 +3,10 @@
 #include <Eigen/Core>
 #include <optional>
 #include <span>
+#include <string>
 
 #include "radiosity/radiation/exchange_areas.h"
+#include "scene/errors.h"
 
 namespace lightwell {
 
@@ -13,6 +15,16 @@ inline constexpr double stefan_boltzmann = 5.670374419e-8;
 
 /// Highest temperature of a surface, K: sigma T^4 times the largest areas is far within a double.
 inline constexpr double hottest_surface = 1e6;
+
+/// A surface whose numbers allow no exchange. The message calls the surface by its number, from 0;
+/// those who know names find both parts of the message here.
+class RadiatingSurfaceError : public InputError {
+ public:
+  RadiatingSurfaceError(int number, const std::string& what_is_wrong);
+
+  const int surface;
+  const std::string fault;
+};
 
 /// A gray and diffuse surface. Either its temperature is known or the heat that it gives off.
 struct RadiatingSurface {
@@ -42,8 +54,8 @@ struct RadiantExchange {
 /// The heats add up to `to_surroundings` to rounding, since each exchange between two surfaces
 /// enters twice with opposite signs. `surroundings`: T_0 in K; black.
 ///
-/// Throws InputError that names the surface
-///   - for numbers out of range, and if there are not as many surfaces as areas;
+/// Throws InputError if there are not as many surfaces as areas, and RadiatingSurfaceError
+///   - for numbers out of range;
 ///   - if heat is given for a surface without area or without emittance;
 ///   - for surfaces of given heat that exchange radiation with no surface of known temperature and
 ///     with no opening: their temperature is unbounded or any;

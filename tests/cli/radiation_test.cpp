@@ -145,6 +145,15 @@ TEST_F(Radiation, WrongTablesAreRefusedWithTheirLine) {
   EXPECT_EQ(radiation(head + "*,1,300,\n", {"--surroundings", "-5"}).code, 2);
 }
 
+// Heat that only a temperature below zero could give: the table has no line at fault alone, so the
+// message names the surface.
+TEST_F(Radiation, HeatsThatCannotBeNameTheSurface) {
+  const Ended ended = radiation("surface,emittance,kelvin,heat\nhigh,1,300,\nlow,1,,-1e6\n");
+  EXPECT_EQ(ended.code, 3) << ended.err;
+  EXPECT_TRUE(
+      says(ended.err, "surfaces.csv: surface 'low', facet 1: to give off -1e+06 W it would"));
+}
+
 TEST_F(Radiation, NamesMayHoldBracketsAndCommas) {
   std::string squares = two_squares();
   squares.replace(squares.find("o high"), 6, "o high, [2]");
