@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <numeric>
 #include <vector>
 
 #include "raytrace/readings/specular_chains.h"
@@ -29,6 +30,30 @@ struct Stratum {
   double own = 0.0;  // standard error of the mean of bands, by the stratum's own rays
 };
 
+// Sum of the light of rays in one stratum.
+struct RaySum {
+  Spectrum light{};
+  double square = 0.0;  // of the mean of bands
+  int count = 0;
+
+  void add(const Spectrum& L) {
+    light += L;
+    square += std::pow(double{L.mean()}, 2);
+    ++count;
+  }
+  void set(Stratum& s) const {
+    s.mean = light / static_cast<float>(count);
+    const double variance = square / count - std::pow(double{s.mean.mean()}, 2);
+    s.own = std::sqrt(std::max(variance, 0.0) / std::max(count - 1, 1));
+  }
+};
+
+// True if the light of a ray depends on chance beside the ray's direction.
+bool has_rough_surfaces(const Scene& scene) {
+  return std::ranges::any_of(scene.materials,
+                             [](const Material& m) { return m.gloss_roughness() > 0.0f; });
+}
+
 class PointLight {
  public:
   PointLight(const LitScene& lit, const RayTree& tree, const GatherPoint& at,
@@ -39,6 +64,7 @@ class PointLight {
         options_(options),
         key_(key),
         bands_(lit.scene.bands.count()),
+        is_rough_(has_rough_surfaces(lit.scene)),
         paths_(tree, at) {
     frame_.col(2) = at.normal;
     Eigen::Vector3d a, b;
@@ -54,7 +80,9 @@ class PointLight {
     choose_chains();
     const Spectrum lamps = lamps_without_surface();
     split_around_emitters();
-    const double variance = refine((lamps / std::numbers::pi_v<float>).mean());
+    const double known = (lamps / std::numbers::pi_v<float>).mean();
+    double variance = refine(known);
+    if (is_rough_) variance = sample_anew(known);
     Spectrum sum = Spectrum::Zero(bands_);
     for (const Stratum& s : strata_) {
       if (s.children < 0) sum += s.mean * static_cast<float>(area(s));
@@ -76,40 +104,41 @@ class PointLight {
   static double side(const Stratum& s) { return std::ldexp(1.0 / first_side, -s.level); }
   static double area(const Stratum& s) { return side(s) * side(s); }
 
-  // Traces a stratum's rays. `chains` gets the paths of these rays; null: not wanted.
-  void sample(Stratum& s, SpecularChains* chains) {
-    s.mean = Spectrum::Zero(bands_);
-    std::array<double, rays_per_stratum> value{};
-    for (int i = 0; i < rays_per_stratum; ++i) {
-      const std::uint64_t key =
-          random_key(key_, RandomPurpose::specular_light, static_cast<std::uint64_t>(rays_++));
-      const double u = side(s) * (s.column + 0.5 * (i % 2 + random_uniform(key)));
-      const double v = side(s) * (s.row + 0.5 * (i / 2 + random_uniform(random_key(key, 1))));
-      const Eigen::Vector3d d = direction(std::min(u, almost_one), std::min(v, almost_one));
-      std::function<void(const SpecularSegment&)> visit;
-      if (chains) {
-        visit = [&](const SpecularSegment& part) {
-          has_specular_ = true;
-          if (part.turns.count == 0) return;
-          SpecularChain& chain = (*chains)[part.chain];
-          chain.turns = part.turns;
-          const double length = part.ray.direction.norm();
-          chain.add({.direction = d.normalized(),
-                     .origin = part.ray.origin,
-                     .exit = part.ray.direction / length,
-                     .end = part.end * length,
-                     .weight = static_cast<double>(part.weight.mean())});
-        };
-      }
-      const Spectrum L = tree_.trace_lamps(ray(d), key, visit);
-      s.mean += L / static_cast<float>(rays_per_stratum);
-      value[static_cast<std::size_t>(i)] = L.mean();
+  // Traces a ray through quarter i of a stratum. `chains` gets the ray's paths; null: not wanted.
+  Spectrum trace_quarter(const Stratum& s, int i, SpecularChains* chains) {
+    const std::uint64_t key =
+        random_key(key_, RandomPurpose::specular_light, static_cast<std::uint64_t>(rays_++));
+    const double u = side(s) * (s.column + 0.5 * (i % 2 + random_uniform(key)));
+    const double v = side(s) * (s.row + 0.5 * (i / 2 + random_uniform(random_key(key, 1))));
+    const Eigen::Vector3d d = direction(std::min(u, almost_one), std::min(v, almost_one));
+    std::function<void(const SpecularSegment&)> visit;
+    if (chains) {
+      visit = [&](const SpecularSegment& part) {
+        has_specular_ = true;
+        if (part.turns.count == 0) return;
+        SpecularChain& chain = (*chains)[part.chain];
+        chain.turns = part.turns;
+        const double length = part.ray.direction.norm();
+        chain.add({.direction = d.normalized(),
+                   .origin = part.ray.origin,
+                   .exit = part.ray.direction / length,
+                   .end = part.end * length,
+                   .weight = static_cast<double>(part.weight.mean())});
+      };
     }
-    double mean = 0.0, square = 0.0;
-    for (const double x : value) mean += x / rays_per_stratum;
-    for (const double x : value) square += (x - mean) * (x - mean);
-    has_specular_ = has_specular_ || mean > 0.0;
-    s.own = std::sqrt(square / (rays_per_stratum * (rays_per_stratum - 1)));
+    return tree_.trace_lamps(ray(d), key, visit);
+  }
+
+  void add_rays(const Stratum& s, SpecularChains* chains, RaySum& sum) {
+    for (int i = 0; i < rays_per_stratum; ++i) sum.add(trace_quarter(s, i, chains));
+  }
+
+  // Traces a stratum's rays.
+  void sample(Stratum& s, SpecularChains* chains) {
+    RaySum sum{.light = Spectrum::Zero(bands_)};
+    add_rays(s, chains, sum);
+    sum.set(s);
+    has_specular_ = has_specular_ || (s.mean > 0.0f).any();
   }
 
   void first_strata() {
@@ -186,19 +215,11 @@ class PointLight {
   // Splits the strata that differ most, in rounds, until the estimated error or the number of rays
   // is reached. `known` is light that strata do not have to find. Returns the variance of the sum.
   double refine(double known) {
-    const int most = rays_ + options_.most_rays;
+    const int most = rays_ + (is_rough_ ? options_.most_rays / 2 : options_.most_rays);
     while (true) {
-      double mean = known, variance = 0.0, worst = 0.0;
-      std::vector<double> deviation(strata_.size(), 0.0);
-      for (std::size_t i = 0; i < strata_.size(); ++i) {
-        const Stratum& s = strata_[i];
-        if (s.children >= 0) continue;
-        deviation[i] = area(s) * error(s);
-        mean += static_cast<double>(s.mean.mean()) * area(s);
-        variance += deviation[i] * deviation[i];
-        worst = std::max(worst, deviation[i]);
-      }
-      if (rays_ >= most || std::sqrt(variance) <= options_.accuracy * mean) return variance;
+      const std::vector<double> deviation = deviations();
+      const double variance = squared_sum(deviation), worst = std::ranges::max(deviation);
+      if (rays_ >= most || is_sure(variance, known)) return variance;
       bool is_split = false;
       for (std::size_t i = 0; i < deviation.size() && rays_ < most; ++i) {
         if (deviation[i] < 0.25 * worst || deviation[i] <= 0.0 || strata_[i].level >= deepest) {
@@ -209,6 +230,56 @@ class PointLight {
       }
       if (!is_split) return variance;
     }
+  }
+
+  // Standard errors of what strata add to the mean; 0 for those that are split.
+  std::vector<double> deviations() const {
+    std::vector<double> deviation(strata_.size(), 0.0);
+    for (std::size_t i = 0; i < strata_.size(); ++i) {
+      if (strata_[i].children < 0) deviation[i] = area(strata_[i]) * error(strata_[i]);
+    }
+    return deviation;
+  }
+  static double squared_sum(const std::vector<double>& deviation) {
+    double sum = 0.0;
+    for (const double d : deviation) sum += d * d;
+    return sum;
+  }
+  bool is_sure(double variance, double known) const {
+    double mean = known;
+    for (const Stratum& s : strata_) {
+      if (s.children < 0) mean += static_cast<double>(s.mean.mean()) * area(s);
+    }
+    return std::sqrt(variance) <= options_.accuracy * mean;
+  }
+
+  // Gives the final strata the means of new rays. Light that chance finds, as off one rough surface
+  // by way of another, is too low before: strata whose rays found much were split, and their parts
+  // have other rays, while strata whose rays missed it stay as they are. The new rays of a stratum
+  // are as many as the first ones decide; half of all are spread evenly. Returns the variance of
+  // the sum.
+  double sample_anew(double known) {
+    const std::vector<double> first = deviations();
+    const double all = std::max(std::accumulate(first.begin(), first.end(), 0.0), 1e-300);
+    const double rays = rays_;
+    std::vector<int> count(strata_.size(), 0);
+    std::vector<RaySum> sum(strata_.size(), RaySum{.light = Spectrum::Zero(bands_)});
+    for (std::size_t i = 0; i < strata_.size(); ++i) {
+      if (strata_[i].children >= 0) continue;
+      const double share = 0.5 * (area(strata_[i]) + first[i] / all);
+      count[i] = std::max(1, static_cast<int>(std::lround(share * rays / rays_per_stratum)));
+    }
+    const int most = first_rays + options_.most_rays;
+    const int round = rays_per_stratum * std::accumulate(count.begin(), count.end(), 0);
+    double variance = 0.0;
+    do {
+      for (std::size_t i = 0; i < strata_.size(); ++i) {
+        for (int k = 0; k < count[i]; ++k) add_rays(strata_[i], nullptr, sum[i]);
+        if (count[i] > 0) sum[i].set(strata_[i]);
+      }
+      variance = squared_sum(deviations());
+    } while (!is_sure(variance, known) && rays_ + round <= most);
+    return variance;
   }
 
   // Light of lamps without surface, and of the sun, by way of smooth surfaces.
@@ -329,6 +400,7 @@ class PointLight {
   const SpecularLightOptions& options_;
   std::uint64_t key_;
   int bands_, rays_ = 0;
+  bool is_rough_;
   SpecularPaths paths_;
   bool has_specular_ = false;
   Eigen::Matrix3d frame_;
