@@ -41,27 +41,33 @@ void add_ranges(const PatchMesh& mesh, const Bands& bands, const BandArray& E, d
 // less.
 const double of_caustic_range = std::sqrt(7.0 / 12.0);
 
+// Adds the error of caustics, times `factor`, to errors, lx per element.
+void add_caustics(const PatchMesh& mesh, const RadiositySolution& solution, double factor,
+                  Eigen::ArrayXf& error) {
+  const BandArray& caustic = solution.caustic_irradiance;
+  if (caustic.size() == 0) return;
+  add_ranges(mesh, solution.bands, caustic, factor * of_caustic_range, error);
+}
+
 }  // namespace
 
 Eigen::ArrayXf illuminance_bounds(const PatchMesh& mesh, const RadiositySolution& solution) {
   const Eigen::ArrayXf relative = error_bound(solution);
   if (relative.size() == 0) return {};
-  return in_lux(mesh, solution, relative);
+  constexpr double of_error = 2.0;  // as in error_bound()
+  Eigen::ArrayXf bound = in_lux(mesh, solution, relative);
+  add_caustics(mesh, solution, of_error, bound);
+  return bound;
 }
 
 Eigen::ArrayXf illuminance_errors(const PatchMesh& mesh, const RadiositySolution& solution) {
   if (solution.gather_noise.size() == 0) return {};
-  const BandArray& caustic = solution.caustic_irradiance;
-  Eigen::ArrayXf error;
-  if (solution.interpolation_error.size() > 0) {
-    error = 0.5f * illuminance_bounds(mesh, solution);
-  } else {
-    error = in_lux(mesh, solution, solution.gather_noise);
-    BandArray E = solution.irradiance();
-    if (caustic.size() > 0) E -= caustic;
-    add_ranges(mesh, solution.bands, E, 0.5, error);
-  }
-  if (caustic.size() > 0) add_ranges(mesh, solution.bands, caustic, of_caustic_range, error);
+  if (solution.interpolation_error.size() > 0) return 0.5f * illuminance_bounds(mesh, solution);
+  Eigen::ArrayXf error = in_lux(mesh, solution, solution.gather_noise);
+  BandArray E = solution.irradiance();
+  if (solution.caustic_irradiance.size() > 0) E -= solution.caustic_irradiance;
+  add_ranges(mesh, solution.bands, E, 0.5, error);
+  add_caustics(mesh, solution, 1.0, error);
   return error;
 }
 

@@ -71,6 +71,10 @@ TEST(IlluminanceErrors, HoldTheEdgeOfACaustic) {
       EXPECT_GE(error.maxCoeff(), (1.0 - roundings) * at_edge) << within;
       if (within == 0.5) {
         EXPECT_NEAR(error.maxCoeff(), at_edge, roundings * at_edge) << "the largest error";
+        if (refined) {
+          EXPECT_NEAR(illuminance_bounds(mesh, solution).maxCoeff(), 2.0 * at_edge,
+                      roundings * 2.0 * at_edge);
+        }
       }
       EXPECT_EQ(error.minCoeff(), 0.0f) << "far from the edge caustics are even";
     }
