@@ -17,9 +17,7 @@ inline constexpr int most_gap_elements = 2048;
 /// interpolated one becomes the element's error where it is greater. An element with a dark corner
 /// has the error of light that the corners' rays may have missed.
 ///
-/// At most `most` elements are measured, and fewer where lights are many: two million rays of
-/// hemispheres and towards lamps, beside those towards the sky. Every second, third, ... element is
-/// measured where there are more, and the others of a surface get the RMS of those that are.
+/// At most `most` elements are measured one by one (see measure_inside()).
 ///
 /// Does nothing without an error estimate. The caster of `lit` is of the solution's mesh; `gather`
 /// decides the shadow rays. Throws Interrupted when progress says stop.

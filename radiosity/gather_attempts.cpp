@@ -20,6 +20,7 @@
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/stopwatch.h"
+#include "radiosity/unjudged_errors.h"
 #include "scene/errors.h"
 #include "scene/name_in_messages.h"
 
@@ -137,6 +138,8 @@ class GatherAttempts {
     constexpr int for_an_early_end = 512;
     add_gap_errors({scene_, *caster_, sources_.all}, gather, solved_.solution,
                    is_finished ? most_gap_elements : for_an_early_end);
+    if (is_finished)
+      add_unjudged_errors({scene_, *caster_, sources_.all}, gather, solved_.solution);
     spent_["error_estimate"] += watch_.lap();
   }
 

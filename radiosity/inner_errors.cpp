@@ -1,0 +1,142 @@
+#include "radiosity/inner_errors.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "radiosity/refine/error_reference.h"
+
+namespace lightwell {
+namespace {
+
+// Elements that two million rays measure: those of the hemisphere, and shadow rays to each light. A
+// cut through many lights asks some 50 of them.
+int elements_in_budget(int rays, int light_count) {
+  constexpr int budget = 1 << 21, most_asked = 50;
+  return std::max(1, budget / (inner_point_count * rays * (1 + std::min(light_count, most_asked))));
+}
+
+// Weights of the corners in point k of an element.
+std::array<double, 4> corner_weights(const PatchMesh& mesh, int element, int k) {
+  if (mesh.corner_count(element) == 4) {
+    const double u = k % 2 == 0 ? 0.25 : 0.75, v = k < 2 ? 0.25 : 0.75;
+    return {(1 - u) * (1 - v), u * (1 - v), u * v, (1 - u) * v};
+  }
+  constexpr double third = 1.0 / 3.0;
+  std::array<double, 4> weights{third, third, third, 0.0};
+  if (k == 3) return weights;
+  for (int c = 0; c < 3; ++c) {
+    weights[static_cast<std::size_t>(c)] = 0.5 * third + (c == k ? 0.5 : 0.0);
+  }
+  return weights;
+}
+
+// Squared difference of interpolated from gathered irradiance at point k, mean of the bands.
+double squared_error(const PatchMesh& mesh, const BandArray& irradiance, const InnerError& of,
+                     int k, const Spectrum& gathered) {
+  const std::array<double, 4> weights = corner_weights(mesh, of.element, k);
+  Spectrum E = Spectrum::Zero(irradiance.cols());
+  for (int c = 0; c < mesh.corner_count(of.element); ++c) {
+    const auto weight = static_cast<float>(weights[static_cast<std::size_t>(c)]);
+    E += weight * irradiance.row(mesh.corners[of.element][c]).transpose();
+  }
+  return (E - gathered).cast<double>().square().mean();
+}
+
+// Gives elements that were not measured the mean square of those of their surface that were, or of
+// all.
+void spread_to_surfaces(const PatchMesh& mesh, std::vector<InnerError>& elements) {
+  struct Mean {
+    double sum = 0.0;
+    int count = 0;
+    void add(double square) {
+      sum += square;
+      ++count;
+    }
+  };
+  std::map<int, Mean> of_surface;
+  Mean of_all;
+  const auto surface = [&](int element) { return mesh.surface[mesh.patch[element]]; };
+  for (const auto& [element, square] : elements) {
+    if (square < 0.0) continue;
+    of_surface[surface(element)].add(square);
+    of_all.add(square);
+  }
+  if (of_all.count == 0) return;
+  for (auto& [element, square] : elements) {
+    if (!(square < 0.0)) continue;
+    const auto own = of_surface.find(surface(element));
+    const Mean& mean = own != of_surface.end() ? own->second : of_all;
+    square = mean.sum / mean.count;
+  }
+}
+
+GatherOptions gather_inside(const GatherOptions& gather, const InnerEffort& effort) {
+  GatherOptions options = gather;
+  options.rays = effort.rays;
+  options.shadows.max_rays = std::min(options.shadows.max_rays, effort.rays);
+  options.shadows.min_rays = std::min(options.shadows.min_rays, options.shadows.max_rays);
+  options.replica += effort.replica;
+  return options;
+}
+
+}  // namespace
+
+Eigen::Vector3d inner_position(const PatchMesh& mesh, int element, int k) {
+  const std::array<double, 4> weights = corner_weights(mesh, element, k);
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  for (int c = 0; c < mesh.corner_count(element); ++c) {
+    at += weights[static_cast<std::size_t>(c)] * mesh.position(mesh.corners[element][c]);
+  }
+  return at;
+}
+
+void measure_inside(const LitScene& lit, const GatherOptions& gather,
+                    const RadiositySolution& solution, const InnerEffort& effort,
+                    std::vector<InnerError>& elements) {
+  const PatchMesh& mesh = lit.mesh();
+  BandArray irradiance = solution.irradiance();
+  const Eigen::ArrayXd reference = error_references(mesh, irradiance, solution.parts);
+  std::erase_if(elements, [&](const InnerError& of) { return !(reference[of.element] > 0.0); });
+  if (elements.empty()) return;
+  const auto all = static_cast<int>(elements.size());
+  const int most =
+      std::min(effort.most, elements_in_budget(effort.rays, lit.direct_light.light_count()));
+  const int step = std::max(1, (all + most - 1) / most);
+  const int measured = (all + step - 1) / step;
+  const BandArray radiosity =
+      gatherable_radiosity(mesh, lit.direct_light, irradiance, solution.direct_irradiance);
+  if (solution.caustic_irradiance.size() > 0) irradiance -= solution.caustic_irradiance;
+  const auto of = [&](int i) -> InnerError& {
+    return elements[static_cast<std::size_t>(step) * static_cast<std::size_t>(i)];
+  };
+  const GatherPoints points(inner_point_count * measured, [&](int i) {
+    const int e = of(i / inner_point_count).element;
+    return GatherPoint{.position = inner_position(mesh, e, i % inner_point_count),
+                       .normal = element_center(mesh, e).normal,
+                       .facet = mesh.facet[e]};
+  });
+  const GatheredIrradiance found =
+      gather_irradiance(lit, radiosity, points, gather_inside(gather, effort));
+  for (int i = 0; i < measured; ++i) {
+    double square = 0.0;
+    for (int k = 0; k < inner_point_count; ++k) {
+      const Eigen::Index row = inner_point_count * i + k;
+      const Spectrum E = (found.direct.row(row) + found.indirect.row(row)).transpose();
+      square += squared_error(mesh, irradiance, of(i), k, E) / inner_point_count;
+      if (!effort.counts_noise) square -= double{found.variance[row]} / inner_point_count;
+    }
+    of(i).square = std::max(square, 0.0) / std::pow(reference[of(i).element], 2);
+  }
+  spread_to_surfaces(mesh, elements);
+}
+
+void raise_to_measured(const std::vector<InnerError>& elements, RadiositySolution& solution) {
+  for (const auto& [element, square] : elements) {
+    float& error = solution.interpolation_error[element];
+    error = std::max(error, static_cast<float>(std::sqrt(std::max(square, 0.0))));
+  }
+}
+
+}  // namespace lightwell
