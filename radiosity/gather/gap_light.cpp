@@ -129,8 +129,11 @@ bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const Elem
          normal_towards(across, opposite).dot(across.direction) < facing;
 }
 
-void GapLight::add_direct(const ElementCaster& caster, const LightQuery& query,
-                          const Spectrum& share, Eigen::ArrayXd& sum) const {
+void GapLight::add_direct(const ElementCaster& caster, const Stop& stop,
+                          Eigen::ArrayXd& sum) const {
+  const LightQuery query{
+      .at = stop.at, .key = stop.key, .shadows = shadows, .one_stands_for_all = true};
+  const Spectrum& share = stop.share;
   const Eigen::Index bands = share.size();
   Eigen::ArrayXf E = Eigen::ArrayXf::Zero(sum.size());
   if (lit_.direct_light.column_count() == sum.size()) {
@@ -242,15 +245,16 @@ double GapLight::next_ray(const ElementCaster& caster, const GapAims& aims,
 }
 
 void GapLight::follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
-                      std::uint64_t key, const GapAims& aims,
-                      const std::function<void(const Stop&)>& at_surface,
-                      const std::function<void(const Stop&)>& at_end) const {
+                      std::uint64_t key, const GapAims& aims, const Visitor& visitor) const {
   const PatchMesh& mesh = lit_.mesh();
   const GapExits* const exits = aims.exits;
   Stop stop{.ray = ray, .hit = hit, .share = Spectrum::Ones(lit_.scene.bands.count())};
   for (int bounce = 0; bounce < most_bounces; ++bounce) {
-    dim(stop.ray, stop.hit, stop.share);
     stop.key = random_key(key, RandomPurpose::gap_rays, static_cast<std::uint64_t>(bounce));
+    stop.bounce = bounce;
+    if (paths_.is_specular(stop.hit.facet)) visitor.at_coat(stop);
+    dim(stop.ray, stop.hit, stop.share);
+    stop.share *= static_cast<float>(paths_.base_factor(caster, stop.ray, stop.hit));
     const Eigen::Vector3d normal = normal_towards(stop.ray, stop.hit);
     stop.at = {.position = stop.ray.origin + stop.hit.t * stop.ray.direction,
                .normal = normal,
@@ -267,31 +271,85 @@ void GapLight::follow(const ElementCaster& caster, const Ray& ray, const Element
     if (random_uniform(random_key(stop.key, 3)) >= static_cast<double>(survival)) return;
     stop.share *= rho.transpose() / survival;
     if (bounce < deep) {
-      at_surface(stop);
+      visitor.at_surface(stop);
     } else if (random_uniform(random_key(stop.key, 8)) * surfaces_for_one < 1.0) {
       Stop for_all = stop;
       for_all.share *= static_cast<float>(surfaces_for_one);
-      at_surface(for_all);
+      visitor.at_surface(for_all);
     }
     const double weight = next_ray(caster, aims, view, double{aimed}, stop);
     if (!(weight > 0.0)) return;
     stop.share *= static_cast<float>(weight);
     if (bounce + 1 < most_bounces && stays_in(caster, exits, normal, stop.ray, stop.hit)) continue;
-    at_end(stop);
+    visitor.at_end(stop);
     return;
   }
 }
 
 void GapLight::add(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                    std::uint64_t key, Eigen::ArrayXd& sum, const GapAims& aims) const {
-  follow(
-      caster, ray, hit, key, aims,
-      [&](const Stop& stop) {
-        const LightQuery query{
-            .at = stop.at, .key = stop.key, .shadows = shadows, .one_stands_for_all = true};
-        add_direct(caster, query, stop.share, sum);
+  follow(caster, ray, hit, key, aims,
+         {.at_surface = [&](const Stop& stop) { add_direct(caster, stop, sum); },
+          .at_coat = [&](const Stop& stop) { add_mirrored(caster, stop, sum); },
+          .at_end =
+              [&](const Stop& stop) {
+                add_end(caster, stop.ray, stop.hit, stop.key, stop.share, sum);
+              }});
+}
+
+// Adds the radiosity of the diffuse base where a mirrored ray ends in a gap, with the share and key
+// of `from`. Weak light goes on by chance (Arvo & Kirk 1990): paths between two coats would grow
+// without end otherwise. The coat at the end, if any, is left to the mirrored path.
+void GapLight::add_base(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                        const Stop& from, Eigen::ArrayXd& sum) const {
+  const float chance = std::min(from.share.maxCoeff(), 1.0f);
+  if (!(random_uniform(random_key(from.key, 9)) < static_cast<double>(chance))) return;
+  const Spectrum share = from.share / chance;
+  Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+  follow(caster, ray, hit, random_key(from.key, 10), {},
+         {.at_surface = [&](const Stop& stop) { add_direct(caster, stop, found); },
+          .at_coat =
+              [&](const Stop& stop) {
+                if (stop.bounce > 0) add_mirrored(caster, stop, found);
+              },
+          .at_end =
+              [&](const Stop& stop) {
+                add_end(caster, stop.ray, stop.hit, stop.key, stop.share, found);
+              }});
+  for (Eigen::Index k = 0; k < sum.size(); k += share.size()) {
+    sum.segment(k, share.size()) += share.cast<double>() * found.segment(k, share.size());
+  }
+}
+
+// Adds light that a coat in a gap mirrors. Mirrored rays that end in the gap do not read the mesh
+// there either.
+void GapLight::add_mirrored(const ElementCaster& caster, const Stop& stop,
+                            Eigen::ArrayXd& sum) const {
+  Eigen::Vector3d from = stop.ray.origin + stop.hit.t * stop.ray.direction;
+  Eigen::Vector3d normal = normal_towards(stop.ray, stop.hit);
+  Stop next{.key = random_key(stop.key, 11)};
+  const PathLosses losses = paths_.follow(
+      caster, stop.ray, stop.hit, next.key,
+      [&](const LightArrival& arrival) {
+        if (arrival.hit.element < 0) return;
+        next.share = stop.share * arrival.throughput;
+        next.key = random_key(next.key, 12);
+        const Ray ray{.origin = from, .direction = arrival.position - from};
+        ElementHit hit = arrival.hit;
+        hit.t = 1.0f;
+        // The path has dimmed its light in absorbing bodies, which a path in a gap would do again.
+        if (is_gap(normal, ray, hit) && paths_.left_by_body(ray, hit).size() == 0) {
+          add_base(caster, ray, hit, next, sum);
+        } else {
+          radiosity_.add(arrival.hit,
+                         Spectrum(static_cast<float>(arrival.base_factor) * next.share), sum);
+        }
+        add_lamp(lit_, arrival, next.share, sum);
+        from = arrival.position;
+        normal = normal_towards(ray, hit);
       },
-      [&](const Stop& stop) { add_end(caster, stop.ray, stop.hit, stop.key, stop.share, sum); });
+      PathQuantity::radiance);
+  add_dome(lit_, losses, stop.share, sum);
 }
 
 bool GapLight::is_near_portal(const Portals& portals, const Ray& ray, const ElementHit& hit) const {
@@ -309,9 +367,17 @@ void GapLight::add_near_portal(const ElementCaster& caster, const Portals& porta
                         .facet = first_hit.facet};
   const std::uint64_t portal_key = random_key(key, RandomPurpose::gap_rays, near_portal);
   Spectrum rho = mesh.reflectance.row(mesh.patch[first_hit.element]).transpose();
+  if (paths_.is_specular(first_hit.facet)) {
+    add_mirrored(caster,
+                 {.ray = first_ray,
+                  .hit = first_hit,
+                  .share = Spectrum::Ones(rho.size()),
+                  .key = portal_key},
+                 sum);
+  }
   dim(first_ray, first_hit, rho);
-  add_direct(caster, {.at = at, .key = portal_key, .shadows = shadows, .one_stands_for_all = true},
-             rho, sum);
+  rho *= static_cast<float>(paths_.base_factor(caster, first_ray, first_hit));
+  add_direct(caster, {.at = at, .share = rho, .key = portal_key}, sum);
   const Portals::View view =
       portals.view_near(at.position, at.normal, portal_reach(mesh, first_hit));
   const GapAims aims{.portals = &portals};

@@ -32,6 +32,8 @@ struct GapAims {
 /// further instead, until they leave it:
 ///
 ///     B = rho (E_direct + B'),   B' at the end of one cosine-distributed ray
+///
+/// What a coat mirrors comes beside that from where the mirrored ray ends, in the gap or outside.
 class GapLight {
  public:
   /// `radiosity` is that of gather_irradiance(). Keeps references to the scene and the paths.
@@ -74,16 +76,23 @@ class GapLight {
     ElementHit hit{};   // its end
     Spectrum share{};   // of the radiosity here in that where the path began
     std::uint64_t key = 0;
+    int bounce = 0;  // surfaces of the path before this one
+  };
+  /// What a path is for.
+  struct Visitor {
+    /// On surfaces, with the share that the irradiance there has. (After some bounces one surface
+    /// of several stands for all.)
+    std::function<void(const Stop&)> at_surface;
+    /// Where a ray has met a coat: the light that the coat mirrors has the share, and the path does
+    /// not follow it. `at` is not set.
+    std::function<void(const Stop&)> at_coat;
+    /// At the end of the last ray, unless the path ends before or meets nothing.
+    std::function<void(const Stop&)> at_end;
   };
   /// Follows a path from the end of a ray in a gap until a ray leaves the gap. `key` decides the
-  /// path. Calls `at_surface` on surfaces, with the share that the irradiance there has, and
-  /// `at_end` at the end of the last ray, unless the path ends before or meets nothing. (After some
-  /// bounces one surface of several stands for all.)
-  ///
-  /// Some of the rays are aimed as `aims` says, weighed by the balance heuristic.
+  /// path. Some of the rays are aimed as `aims` says, weighed by the balance heuristic.
   void follow(const ElementCaster& caster, const Ray& ray, const ElementHit& hit, std::uint64_t key,
-              const GapAims& aims, const std::function<void(const Stop&)>& at_surface,
-              const std::function<void(const Stop&)>& at_end) const;
+              const GapAims& aims, const Visitor& visitor) const;
 
   /// Adds the radiosity B at the end of a ray in a gap to the columns of `sum`. `key` decides the
   /// further rays. `caster` is that of the scene or its ElementCaster::at().
@@ -105,13 +114,15 @@ class GapLight {
   };
   std::optional<GapSize> gap_around(const ElementCaster& caster, const SurfacePoint& at,
                                     std::uint64_t key) const;
-  void add_direct(const ElementCaster& caster, const LightQuery& query, const Spectrum& share,
-                  Eigen::ArrayXd& sum) const;
+  void add_direct(const ElementCaster& caster, const Stop& stop, Eigen::ArrayXd& sum) const;
   void dim(const Ray& ray, const ElementHit& hit, Spectrum& share) const;
   double next_ray(const ElementCaster& caster, const GapAims& aims, const Portals::View& view,
                   double share, Stop& stop) const;
   void add_end(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
                std::uint64_t key, const Spectrum& share, Eigen::ArrayXd& sum) const;
+  void add_base(const ElementCaster& caster, const Ray& ray, const ElementHit& hit,
+                const Stop& from, Eigen::ArrayXd& sum) const;
+  void add_mirrored(const ElementCaster& caster, const Stop& stop, Eigen::ArrayXd& sum) const;
   bool is_closed_end(const ElementCaster& caster, const Eigen::Vector3d& across, double width,
                      const Ray& ray, const ElementHit& hit) const;
   bool may_be_followed(const ElementHit& hit) const;

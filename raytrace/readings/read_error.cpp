@@ -105,11 +105,16 @@ class ReadErrors {
       return end(ray, hit, 1.0, key);
     }
     double sum = gap && !gap->is_closed() ? 0.0 : missed_[mesh_.patch[hit.element]];
-    gaps_.follow(
-        caster_, ray, hit, key, {.exits = gap}, [](const GapLight::Stop&) {},
-        [&](const GapLight::Stop& stop) {
-          sum += end(stop.ray, stop.hit, double{stop.share.mean()}, stop.key);
-        });
+    gaps_.follow(caster_, ray, hit, key, {.exits = gap},
+                 {.at_surface = [](const GapLight::Stop&) {},
+                  .at_coat =
+                      [&](const GapLight::Stop& stop) {
+                        sum += mirrored(stop.ray, stop.hit, double{stop.share.mean()}, stop.key);
+                      },
+                  .at_end =
+                      [&](const GapLight::Stop& stop) {
+                        sum += end(stop.ray, stop.hit, double{stop.share.mean()}, stop.key);
+                      }});
     return sum;
   }
 
@@ -120,7 +125,12 @@ class ReadErrors {
       const double dimmed = left.size() > 0 ? double{left.mean()} : 1.0;
       sum += share * dimmed * reflected(hit.element);
     }
-    if (!paths_.is_specular(hit.facet)) return sum;
+    return paths_.is_specular(hit.facet) ? sum + mirrored(ray, hit, share, key) : sum;
+  }
+
+  // rho e where light ends that the surface at the end of a ray mirrors or passes.
+  double mirrored(const Ray& ray, const ElementHit& hit, double share, std::uint64_t key) const {
+    double sum = 0.0;
     paths_.follow(
         ray, hit, key,
         [&](const ElementHit& end, const Spectrum& throughput) {

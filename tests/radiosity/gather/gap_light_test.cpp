@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "radiosity/gather/final_gather.h"
+#include "scene/coat.h"
 #include "tests/radiosity/gather/test_plates.h"
+#include "tests/sample_mean.h"
 
 namespace lightwell::gap_light_test {
 namespace {
@@ -69,13 +71,14 @@ TEST(GapLight, SurfacesOfPathsCountInFull) {
   double sum = 0.0, squares = 0.0, deep = 0.0;
   for (int i = 0; i < count; ++i) {
     double shares = 0.0;
-    gaps.follow(
-        plates.caster, ray, hit, static_cast<std::uint64_t>(i), {},
-        [&](const GapLight::Stop& stop) {
-          shares += double{stop.share[0]};
-          deep += stop.share[0] > 1.5f ? 1.0 : 0.0;
-        },
-        [](const GapLight::Stop&) {});
+    gaps.follow(plates.caster, ray, hit, static_cast<std::uint64_t>(i), {},
+                {.at_surface =
+                     [&](const GapLight::Stop& stop) {
+                       shares += double{stop.share[0]};
+                       deep += stop.share[0] > 1.5f ? 1.0 : 0.0;
+                     },
+                 .at_coat = {},
+                 .at_end = [](const GapLight::Stop&) {}});
     sum += shares;
     squares += shares * shares;
   }
@@ -84,6 +87,29 @@ TEST(GapLight, SurfacesOfPathsCountInFull) {
   constexpr double leaving = 2.0 / (200.0 * 200.0);
   EXPECT_NEAR(mean, 1.0, 4.0 * noise + leaving);
   EXPECT_GT(deep, 0.0);
+}
+
+// Base and coat of a white plate reflect all light together, at every angle. Between two of them,
+// in a room of radiosity B0, all light is B0.
+TEST(GapLight, BetweenWhiteCoatedPlatesIsEven) {
+  constexpr double gap = 0.004;
+  Scene room = Plates::room(gap);
+  Material& white = room.materials.back();
+  white.coat = Coat{.index_of_refraction = 1.5f};
+  white.specular.setOnes();
+  white.reflectance.setConstant(1.0f - static_cast<float>(CoatedBase(white).mean_mirrored()));
+  const Plates plates(room);
+  for (const double depth : {1.0, 4.0}) {
+    constexpr int rays = 512, replicas = 32;
+    std::vector<double> found;
+    for (int i = 0; i < replicas; ++i) {
+      found.push_back(plates.gathered(depth * gap, rays, static_cast<std::uint64_t>(i)));
+    }
+    const test::SampleMean E = test::mean_of(found);
+    EXPECT_NEAR(E.value, double{B0}, 4.0 * E.standard_error)
+        << "four standard errors, at " << depth;
+    EXPECT_LT(E.standard_error, 0.03 * B0) << "the test sees losses of 12 %";
+  }
 }
 
 TEST(GapLight, IsNotLookedForBetweenPlatesFarApart) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "mesh/build_patches.h"
@@ -17,8 +18,10 @@ inline constexpr int desk_facet = 6;  // facet, after the six walls
 // Two plates that face each other across `gap`, in the middle of a wide room whose walls emit B0.
 // The light of the plates' vertices is that of plates in the open, as coarse meshes have it.
 struct Plates {
-  explicit Plates(double gap)
-      : scene(room(gap)),
+  explicit Plates(double gap) : Plates(room(gap)) {}
+  /// Plates in another room.
+  explicit Plates(Scene of)
+      : scene(std::move(of)),
         mesh(build_patches(scene, {.max_patch_size = 2.0})),
         caster(mesh),
         light(scene, mesh),
