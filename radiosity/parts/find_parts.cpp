@@ -358,6 +358,52 @@ void name_parts(const Scene& scene, const PatchMesh& mesh, SceneParts& parts) {
   }
 }
 
+// The numbers of clusters from 0 on without gaps, in the order in which they are met.
+void renumber(std::vector<int>& cluster) {
+  std::map<int, int> number;
+  for (int& c : cluster) c = number.try_emplace(c, static_cast<int>(number.size())).first->second;
+}
+
+// Parts the outside from rooms that it was not cut from, since a window is wide or walls mirror.
+// Where little light leaves a room for the outside and the sky, its light is a small share of that
+// outside, and errors that count as shares of both are no measure of it.
+void part_outside(const PatchMesh& mesh, const std::vector<PatchArrivals>& arrivals,
+                  const std::vector<int>& node, const std::vector<ExchangeLink>& links,
+                  std::vector<int>& cluster) {
+  constexpr double most_open = 0.2;  // a room of 4 m x 5 m x 3 m with a wall of glass has 0.13
+  int outside = -1;
+  std::vector<double> area(cluster.size(), 0.0), escaped(area);
+  for (int i = 0; i < mesh.patch_count(); ++i) {
+    if (node[i] < 0) continue;
+    area[node[i]] += mesh.area[i];
+    escaped[node[i]] += mesh.area[i] * arrivals[i].escaped;
+    if (arrivals[i].is_outside) outside = node[i];
+  }
+  if (outside < 0) return;
+  const auto is_joined = [&](int n) { return cluster[n] == cluster[outside]; };
+  std::vector<ExchangeLink> inside;
+  for (const ExchangeLink& link : links) {
+    const bool leads_out = link.a == outside || link.b == outside;
+    if (!leads_out && is_joined(link.a) && is_joined(link.b)) inside.push_back(link);
+  }
+  const std::vector<int> part = cut_graph(ExchangeGraph(area, inside));
+  std::vector<double> all(cluster.size(), 0.0), open(all);  // of the new parts
+  for (std::size_t n = 0; n < cluster.size(); ++n) {
+    all[part[n]] += area[n];
+    open[part[n]] += escaped[n];
+  }
+  for (const auto& [a, b, exchange] : links) {
+    if (part[a] == part[b] || !is_joined(a) || !is_joined(b)) continue;
+    for (const int n : {a, b}) open[part[n]] += double{exchange};
+  }
+  const int others = *std::ranges::max_element(cluster) + 1, with_outside = cluster[outside];
+  for (int n = 0; n < static_cast<int>(cluster.size()); ++n) {
+    if (n == outside || cluster[n] != with_outside) continue;
+    if (open[part[n]] <= most_open * all[part[n]]) cluster[n] = others + part[n];
+  }
+  renumber(cluster);
+}
+
 std::vector<int> to_patches(const std::vector<int>& node, const std::vector<int>& cluster) {
   std::vector<int> of(node.size(), -1);
   for (std::size_t i = 0; i < node.size(); ++i) of[i] = node[i] < 0 ? -1 : cluster[node[i]];
@@ -385,8 +431,10 @@ SceneParts find_parts(const Scene& scene, const ElementCaster& caster, const Lig
   for (int i = 0; i < mesh.patch_count(); ++i) {
     if (node[i] >= 0) area[node[i]] += mesh.area[i];
   }
-  const ExchangeGraph graph(std::move(area), links_of(mesh, node, arrivals));
+  const std::vector<ExchangeLink> links = links_of(mesh, node, arrivals);
+  const ExchangeGraph graph(std::move(area), links);
   std::vector<int> cluster = cut_graph(graph);
+  part_outside(mesh, arrivals, node, links, cluster);
   const TinyClusters tiny(mesh, arrivals);
   join_clusters(graph, tiny.find(to_patches(node, cluster)), cluster);
   parts.of_patch = to_patches(node, cluster);

@@ -153,6 +153,31 @@ TEST(FindParts, TheGroundOutsideAWindowIsAPart) {
   EXPECT_NE(by_name.at("ground"), by_name.at("office"));
 }
 
+// A window that takes up all of a wall has 14 % of the room's area.
+TEST(FindParts, TheGroundOutsideAWallOfGlassIsAPart) {
+  Scene scene = rooms_with_doors(
+      {{"office", {0, 0, 0}, {5, 6, 3}}},
+      {{.x = 5.0, .thickness = 0.2, .y = 0.1, .width = 5.8, .z = 0.1, .height = 2.8}});
+  const int ground = add_material(scene, diffuse(scene.bands, 0.2f));
+  add_polygon(scene, "ground", ground, {{5.2, -60, 0}, {125, -60, 0}, {125, 60, 0}, {5.2, 60, 0}});
+  const Found found = found_in(scene);
+  const auto by_name = parts_by_name(scene, found);
+  EXPECT_EQ(by_name.at("ground").size(), 1u);
+  EXPECT_EQ(by_name.at("office").size(), 1u);
+  EXPECT_NE(by_name.at("ground"), by_name.at("office"));
+}
+
+// Half of the light of a passage under the open sky leaves it, and light there is much like that
+// outside.
+TEST(FindParts, APassageUnderTheOpenSkyIsNoPart) {
+  Scene scene;
+  const int wall = add_material(scene, diffuse(scene.bands, 0.5f));
+  add_polygon(scene, "ground", wall, {{-60, -60, 0}, {60, -60, 0}, {60, 60, 0}, {-60, 60, 0}});
+  add_polygon(scene, "left", wall, {{-2, -5, 0}, {-2, 5, 0}, {-2, 5, 3}, {-2, -5, 3}});
+  add_polygon(scene, "right", wall, {{2, -5, 0}, {2, -5, 3}, {2, 5, 3}, {2, 5, 0}});
+  EXPECT_EQ(found_in(scene).parts.count(), 1);
+}
+
 // The room has less than 1/1024 of the area of a dome of 60 m, and beside the dome it is a hollow.
 TEST(FindParts, ADomeForTheSkyIsOutside) {
   for (const double radius : {40.0, 300.0, 2000.0}) {
