@@ -23,10 +23,11 @@ constexpr double least_coverage = 0.25;
 // Step of the widest grid, in steps of the narrowest one.
 constexpr int widest_step = 16;
 
-// Relative RMS error of the solution's light, by its own estimate, over what the picture shows.
+// Relative RMS error of the solution's light, by its own estimate: over what the picture shows, or,
+// for light of patches, whose elements have no estimates, over the worst part.
 double error_of_solution(const PatchMesh& mesh, const RadiositySolution& solution,
                          const SeenPlaces& seen) {
-  if (solution.interpolation_error.size() != mesh.element_count()) return 0.0;
+  if (solution.interpolation_error.size() != mesh.element_count()) return solution.error_estimate;
   const bool has_noise = solution.gather_noise.size() == mesh.element_count();
   constexpr int step = 8;
   double squares = 0.0, count = 0.0;
@@ -47,13 +48,16 @@ double least_radius(const SeenPlace& place) {
   return share_of_spacing * place.spacing;
 }
 
-// A share of the harmonic mean distance to what the place sees, within limits by the grid. Twice
-// the share raised the error of a furnished room's picture from 3.0 to 3.5 %.
+// Radius of a record over the harmonic mean distance to what its place sees. Twice the share raised
+// the error of a furnished room's picture from 3.0 to 3.5 %.
+constexpr double share_of_distance = 0.05;
+
+// The share of that distance, within limits by the grid.
 double radius_of(const ElementCaster& caster, const SeenPlace& place) {
   // 32 rays tell the mean of 1 / t to some 10 %, as well as the share is known.
   constexpr std::size_t count = 32;
   // Four steps of the widest grid: a record that serves farther is found no sooner.
-  constexpr double share_of_distance = 0.05, most_steps = 4.0 * widest_step;
+  constexpr double most_steps = 4.0 * widest_step;
   const SobolPoints points(count);
   const PatchPoint from{place.element, place.at.position, place.at.normal};
   std::array<Ray, count> rays;
@@ -89,9 +93,15 @@ class PictureRecords {
         gather_(lit.scene, lit.caster, lit.direct_light, solution, options.gather_rays,
                 options.max_depth) {}
 
-  std::vector<IrradianceRecord> find() {
+  // Returns no records if their relative noise is more than `most_noise`.
+  std::vector<IrradianceRecord> find(double most_noise) {
     for (int step = widest_step; step >= 1; step /= 2) {
-      add(thinned(uncovered(step)), step);
+      std::vector<Candidate> candidates = uncovered(step);
+      clamp(candidates);
+      add(thinned(candidates), step);
+      if (step == widest_step &&
+          (std::fprintf(stderr, "NOISE %g\n", noise()), noise() > most_noise))
+        return {};
       narrow();
     }
     even_out(records_);
@@ -126,6 +136,32 @@ class PictureRecords {
     return left;
   }
 
+  // Lowers the radii of candidates and of the records so far to what all of them allow. Narrowed
+  // records count by the radius that they had at first: light changes there, and not what a place
+  // sees.
+  void clamp(std::vector<Candidate>& candidates) {
+    // The 32 rays of a place tell the mean distance to some 10 %, which half of this leaves room
+    // for.
+    constexpr double growth = 2.0 * share_of_distance;
+    std::vector<IrradianceRecord> all = at_first_;
+    for (const Candidate& candidate : candidates) all.push_back(candidate.record);
+    const RecordNeighbours neighbours(std::move(all), growth);
+    parallel_for(static_cast<int>(candidates.size()), records_together, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        auto& [place, record] = candidates[static_cast<std::size_t>(i)];
+        record.radius = std::max(least_radius(place), neighbours.allowed_radius(record));
+      }
+    });
+    parallel_for(static_cast<int>(records_.size()), records_together, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        IrradianceRecord& record = records_[k];
+        const double allowed = neighbours.allowed_radius(at_first_[k]);
+        record.radius = std::min(record.radius, std::max(least_radii_[k], allowed));
+      }
+    });
+  }
+
   // The candidates that those before them leave uncovered.
   static std::vector<Candidate> thinned(const std::vector<Candidate>& candidates) {
     std::vector<BoxTree::Box> boxes;
@@ -156,6 +192,7 @@ class PictureRecords {
     const std::size_t first = records_.size();
     for (const Candidate& candidate : candidates) {
       records_.push_back(candidate.record);
+      at_first_.push_back(candidate.record);
       least_radii_.push_back(least_radius(candidate.place));
     }
     for (int done = 0; done < count; done += between_reports) {
@@ -180,6 +217,16 @@ class PictureRecords {
     const Spectrum first = half(0), second = half(1);
     record.irradiance = 0.5f * (first + second);
     record.variance = 0.25 * std::pow(static_cast<double>(first.mean() - second.mean()), 2);
+  }
+
+  // RMS noise of all records over their RMS light.
+  double noise() const {
+    double variance = 0.0, square = 0.0;
+    for (const IrradianceRecord& record : records_) {
+      variance += record.variance;
+      square += std::pow(static_cast<double>(record.irradiance.mean()), 2);
+    }
+    return square > 0.0 ? std::sqrt(variance / square) : 0.0;
   }
 
   // A narrower grid has about twice the records of the one before.
@@ -216,7 +263,8 @@ class PictureRecords {
   Progress progress_;
   PixelGather gather_;
   std::vector<IrradianceRecord> records_{};
-  std::vector<double> least_radii_{};  // m, to which records may be narrowed
+  std::vector<IrradianceRecord> at_first_{};  // without light, and as wide as they were at first
+  std::vector<double> least_radii_{};         // m, to which records may be narrowed
 };
 
 }  // namespace
@@ -229,8 +277,10 @@ std::shared_ptr<const IrradianceRecords> find_records(const LitScene& lit,
   const SeenPlaces seen(lit, camera, rays, options.max_depth);
   const double error = error_of_solution(lit.mesh(), solution, seen);
   if (!(error > IrradianceRecords::usual_error)) return nullptr;
-  return std::make_shared<const IrradianceRecords>(
-      PictureRecords(lit, solution, seen, options).find());
+  std::fprintf(stderr, "SOLUTION %g\n", error);
+  std::vector<IrradianceRecord> records = PictureRecords(lit, solution, seen, options).find(error);
+  if (records.empty()) return nullptr;
+  return std::make_shared<const IrradianceRecords>(std::move(records));
 }
 
 }  // namespace lightwell

@@ -11,12 +11,16 @@
 namespace lightwell {
 
 /// Records of the indirect light of what a camera sees, for Pass::automatic. Null where the
-/// solution's own light is as good: where its estimate says so, or says nothing.
+/// solution's own light is as good:
+/// - its estimate says so, or says nothing;
+/// - the noise of the records of the widest grid is more than that estimate, as where much of the
+///   light comes through a solid pane, which few rays of a record meet.
 ///
 /// Places are sought on grids of pixels, from wide to narrow ones: a place that no record covers
 /// gets a record, whose radius is a share of the harmonic mean of the distances to what the place
 /// sees (Ward, Rubinstein & Clear 1988), but at least 0.8 of a step of the narrowest grid. What is
-/// seen by way of smooth mirrors and glass gets records as well. E is that of PixelGather with
+/// seen by way of smooth mirrors and glass gets records as well. RecordNeighbours keep a record in
+/// the open from serving in a room that stands on the same ground. E is that of PixelGather with
 /// RenderOptions::gather_rays.
 std::shared_ptr<const IrradianceRecords> find_records(const LitScene& lit,
                                                       const RadiositySolution& solution,

@@ -18,6 +18,15 @@ BoxTree tree_of(const std::vector<IrradianceRecord>& records) {
   return BoxTree(std::move(boxes));
 }
 
+BoxTree places_of(const std::vector<IrradianceRecord>& records) {
+  std::vector<BoxTree::Box> boxes;
+  boxes.reserve(records.size());
+  for (const IrradianceRecord& record : records) {
+    boxes.emplace_back(record.position, record.position);
+  }
+  return BoxTree(std::move(boxes));
+}
+
 std::vector<IrradianceRecord> widened(std::vector<IrradianceRecord> records, double widening) {
   for (IrradianceRecord& record : records) record.radius *= widening;
   return records;
@@ -58,6 +67,22 @@ double record_weight(const IrradianceRecord& record, const Eigen::Vector3d& posi
   const double height = 0.5 * std::abs(way.dot(normal + record.normal));
   if (height > highest * record.radius) return 0.0;
   return 1.0 - std::max(apart, turned);
+}
+
+RecordNeighbours::RecordNeighbours(std::vector<IrradianceRecord> records, double growth)
+    : records_(std::move(records)), growth_(growth), places_(places_of(records_)) {}
+
+double RecordNeighbours::allowed_radius(const IrradianceRecord& record) const {
+  thread_local std::vector<int> found;
+  places_.find_overlaps(reach(record), found);
+  double radius = record.radius;
+  for (const int i : found) {
+    const IrradianceRecord& other = records_[static_cast<std::size_t>(i)];
+    if (!(record_weight(record, other.position, other.normal) > 0.0)) continue;
+    const double distance = (other.position - record.position).norm();
+    radius = std::min(radius, other.radius + growth_ * distance);
+  }
+  return radius;
 }
 
 IrradianceRecords::IrradianceRecords(std::vector<IrradianceRecord> records, double widening)

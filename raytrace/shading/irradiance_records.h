@@ -28,6 +28,25 @@ BoxTree::Box reach(const IrradianceRecord& record);
 double record_weight(const IrradianceRecord& record, const Eigen::Vector3d& position,
                      const Eigen::Vector3d& normal);
 
+/// What records may serve beside others. The distance to the nearest surfaces grows by no more than
+/// the way that one goes, and so do radii that are a share of such a distance. A place in the open
+/// whose rays miss a house far away has a radius that reaches into the house; the places seen there
+/// say so (neighbour clamping; Křivánek, Bouatouch, Pattanaik & Žára 2006).
+class RecordNeighbours {
+ public:
+  /// `growth` is the most by which a radius may grow for each metre, > 0.
+  RecordNeighbours(std::vector<IrradianceRecord> records, double growth);
+
+  /// The radius of a record, m, or less: R_i + growth d_i at most, for each record i of the radius
+  /// R_i that the record would serve, d_i away.
+  double allowed_radius(const IrradianceRecord& record) const;
+
+ private:
+  std::vector<IrradianceRecord> records_;
+  double growth_;
+  BoxTree places_;
+};
+
 /// Irradiance that a plane through records tells.
 struct RecordFit {
   Spectrum irradiance{};  ///< W/m^2

@@ -101,6 +101,20 @@ TEST(EvenOut, CalmsNoiseAndKeepsAnEdge) {
   EXPECT_LT(worst, (3.0 + std::sqrt(3.0)) * noise);
 }
 
+// A record of radius 44 m, 20 m from one of 0.2 m.
+TEST(IrradianceRecords, ReachNoFartherThanNeighboursAllow) {
+  constexpr double growth = 0.1, roundings = 1e-14;
+  const IrradianceRecord in_the_open = record({20, 0, 0}, 1.0f, 44.0);
+  const IrradianceRecord in_a_room = record({0, 0, 0}, 4.0f, 0.2);
+  const RecordNeighbours neighbours({in_the_open, in_a_room}, growth);
+  EXPECT_NEAR(neighbours.allowed_radius(in_the_open), 0.2 + growth * 20.0, roundings);
+  EXPECT_EQ(neighbours.allowed_radius(in_a_room), 0.2);
+  IrradianceRecord wall = in_the_open;
+  wall.normal = Vector3d::UnitX();
+  EXPECT_EQ(neighbours.allowed_radius(wall), 44.0) << "which serves no floor";
+  EXPECT_EQ(neighbours.allowed_radius(record({20, 0, 0}, 1.0f, 19.0)), 19.0) << "too far away";
+}
+
 // A room with a block, lit by a lamp in the ceiling, on a coarse mesh.
 struct CoarseRoom {
   Scene scene;
@@ -147,6 +161,80 @@ TEST(PictureRecords, AreNearerToAGatherThanACoarseMesh) {
               100 * without);
   EXPECT_LT(with, IrradianceRecords::usual_error);
   EXPECT_GT(without, IrradianceRecords::usual_error) << "the mesh is too fine for this test";
+}
+
+// A room of 4 m x 4 m on open ground, which is its floor too, with a hole of 2 m x 1.2 m in the
+// wall y = 4.
+struct RoomOnGround {
+  static constexpr double left = 1.0, right = 3.0, low = 0.6, high = 1.8, height = 2.5;
+  Scene scene;
+  SolvedScene solved;
+  // The ground that shows in the hole is 20 m away.
+  Camera camera{.position = {2.0, 0.5, 1.5},
+                .direction = Vector3d(0.0, 1.0, -0.3).normalized(),
+                .up = up,
+                .fov_degrees = 80.0,
+                .width = 64,
+                .height = 64};
+
+  explicit RoomOnGround(SceneBuilder lamps, double patch_size, std::optional<Sky> sky = {}) {
+    const Paint wall{.reflectance = 0.7f};
+    const auto part = [&](double x0, double x1, double z0, double z1) {
+      lamps.polygon(wall, {{x0, 4, z0}, {x1, 4, z0}, {x1, 4, z1}, {x0, 4, z1}});
+    };
+    part(0, left, 0, height);
+    part(right, 4, 0, height);
+    part(left, right, 0, low);
+    part(left, right, high, height);
+    lamps.polygon(wall, {{0, 0, 0}, {4, 0, 0}, {4, 0, height}, {0, 0, height}})
+        .polygon(wall, {{0, 0, 0}, {0, 4, 0}, {0, 4, height}, {0, 0, height}})
+        .polygon(wall, {{4, 0, 0}, {4, 4, 0}, {4, 4, height}, {4, 0, height}})
+        .polygon(wall, {{0, 0, height}, {4, 0, height}, {4, 4, height}, {0, 4, height}})
+        .polygon({.reflectance = 0.3f, .one_sided = true},
+                 {{-30, -30, 0}, {30, -30, 0}, {30, 30, 0}, {-30, 30, 0}});
+    scene = lamps.build();
+    scene.sky = std::move(sky);
+    SolveOptions options;
+    camera.up = (up - up.dot(camera.direction) * camera.direction).normalized();
+    options.mesh.max_patch_size = patch_size;
+    options.mesh.elements_per_patch_edge = 1;
+    options.refine.tolerance = 0.0;
+    solved = solve_scene(scene, options);
+  }
+  Image picture(const RenderOptions& options) const {
+    return SceneRenderer(scene, solved.mesh, solved.solution).render(camera, options);
+  }
+};
+
+// The rays of places in the open miss the room, and their radii are as wide as the grid allows.
+TEST(PictureRecords, OfTheOpenDoNotServeInARoomOnTheSameGround) {
+  const RoomOnGround room(
+      SceneBuilder().square({.exitance = 20.0f, .one_sided = true}, {2, 2, 2.45}, -up, 0.3), 1.5);
+  const Image gathered = room.picture({.pass = Pass::gather, .gather_rays = 1024});
+  const Image by_records = room.picture({});
+  constexpr int floor = 64 * 24;  // pixels of the lowest rows
+  const auto mean = [&](const Image& image) { return image.radiance.bottomRows(floor).mean(); };
+  const auto ratio = static_cast<double>(mean(by_records) / mean(gathered));
+  std::printf("the floor by records over a gather %.4f\n", ratio);
+  EXPECT_NEAR(ratio, 1.0, IrradianceRecords::usual_error);
+}
+
+// Light of the sky comes through a solid pane, which few of the 64 rays of a record meet; their
+// noise is 17 % of the light. The error of the mesh, of gathers of 1024 rays, is 9 %.
+TEST(PictureRecords, AreLeftOutWhereTheyAreNoisierThanTheMesh) {
+  using Room = RoomOnGround;
+  const Paint glass{.index_of_refraction = 1.5f};
+  const Room room(SceneBuilder().box(glass, {Room::left, 3.9, Room::low},
+                                     {Room::right, 3.95, Room::high}, false),
+                  0.5,
+                  Sky{.up = up,
+                      .north = Vector3d::UnitY(),
+                      .bright = up,
+                      .scale = constant_spectrum(rgb_bands(), 10.0f),
+                      .ground = constant_spectrum(rgb_bands(), 1.0f)});
+  const Image by_default = room.picture({.gather_rays = 64});
+  const Image by_mesh = room.picture({.has_records = false});
+  EXPECT_TRUE((by_default.radiance == by_mesh.radiance).all());
 }
 
 TEST(PictureRecords, AreTheSameForAnyNumberOfThreads) {
