@@ -366,7 +366,8 @@ void renumber(std::vector<int>& cluster) {
 
 // Parts the outside from rooms that it was not cut from, since a window is wide or walls mirror.
 // Where little light leaves a room for the outside and the sky, its light is a small share of that
-// outside, and errors that count as shares of both are no measure of it.
+// outside, and errors that count as shares of both are no measure of it. An outside that is smaller
+// than the room, such as what stands before the open side of a box, counts little beside it.
 void part_outside(const PatchMesh& mesh, const std::vector<PatchArrivals>& arrivals,
                   const std::vector<int>& node, const std::vector<ExchangeLink>& links,
                   std::vector<int>& cluster) {
@@ -399,7 +400,8 @@ void part_outside(const PatchMesh& mesh, const std::vector<PatchArrivals>& arriv
   const int others = *std::ranges::max_element(cluster) + 1, with_outside = cluster[outside];
   for (int n = 0; n < static_cast<int>(cluster.size()); ++n) {
     if (n == outside || cluster[n] != with_outside) continue;
-    if (open[part[n]] <= most_open * all[part[n]]) cluster[n] = others + part[n];
+    const double room = all[part[n]];
+    if (open[part[n]] <= most_open * room && room <= area[outside]) cluster[n] = others + part[n];
   }
   renumber(cluster);
 }

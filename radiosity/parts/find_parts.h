@@ -22,7 +22,8 @@ int rays_per_patch_for_parts(int patches);
 ///    around this box but for one side, such as a dome that stands for the sky.
 /// 2. cut_graph() parts the patches where the exchange is less than 5 % of the smaller side's area
 ///    and where the passage is a bottleneck. What is left with the outside is cut without it, and
-///    rooms that lose at most a fifth of their light to what lies outside are parts.
+///    rooms that lose at most a fifth of their light to what lies outside, and are not larger than
+///    the outside, are parts.
 /// 3. These join the part that they exchange most with; without such, the largest:
 ///     * a part of fewer than four patches, or of less than 1/1024 of all area but the outside;
 ///     * a crack: the mean length of the rays within is below 1/32 of the root of the area;

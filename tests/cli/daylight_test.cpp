@@ -399,22 +399,6 @@ TEST_F(DaylightCommand, APageOfTooManyVerticesIsRefusedAtOnce) {
 }
 
 // A year whose every hour is dark has states of windows, and no light in them.
-TEST_F(DaylightCommand, AYearWithoutLightHasNoMeasures) {
-  folder.write("court.toml", glazed_court(roof_states));
-  std::string dark = weather.substr(0, weather.find("6 21"));
-  dark += "6 21 12.5 0 0\n";
-  folder.write("year.wea", dark);
-  const Json json = run_json(command({}));
-  EXPECT_EQ(json["hours_with_light"], 0);
-  EXPECT_EQ(json["rooms"][0]["mean_lux"]["value"], 0.0);
-  EXPECT_EQ(json["windows"][0]["states"][0]["hours_with_light"], 0);
-  EXPECT_EQ(json["states"].size(), 1u);
-  const Ended ended = run(command({"--walk", "walk.html"}));
-  EXPECT_EQ(ended.code, 3);
-  EXPECT_NE(ended.err.find("the weather has no hour with daylight"), std::string::npos)
-      << ended.err;
-}
-
 TEST_F(DaylightCommand, SaysThatAClosedRoomGetsNoDaylight) {
   folder.write("court.toml", court(true));
   const Ended ended = run(command({"--plane", "floor@0.8"}));

@@ -167,6 +167,20 @@ TEST(FindParts, TheGroundOutsideAWallOfGlassIsAPart) {
   EXPECT_NE(by_name.at("ground"), by_name.at("office"));
 }
 
+// A box that is open on one side, as for a picture of it, and a block: most rays of the block's
+// face leave through the opening.
+TEST(FindParts, WhatStandsBeforeAnOpenSideIsNoOutside) {
+  Scene scene;
+  const int wall = add_material(scene, diffuse(scene.bands, 0.5f));
+  add_polygon(scene, "floor", wall, {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}});
+  add_polygon(scene, "ceiling", wall, {{0, 0, 4}, {0, 4, 4}, {4, 4, 4}, {4, 0, 4}});
+  add_polygon(scene, "back", wall, {{0, 4, 0}, {4, 4, 0}, {4, 4, 4}, {0, 4, 4}});
+  add_polygon(scene, "left", wall, {{0, 0, 0}, {0, 4, 0}, {0, 4, 4}, {0, 0, 4}});
+  add_polygon(scene, "right", wall, {{4, 0, 0}, {4, 0, 4}, {4, 4, 4}, {4, 4, 0}});
+  add_polygon(scene, "face", wall, {{1.5, 0.5, 1}, {2.5, 0.5, 1}, {2.5, 0.5, 2}, {1.5, 0.5, 2}});
+  EXPECT_EQ(found_in(scene).parts.count(), 1);
+}
+
 // Half of the light of a passage under the open sky leaves it, and light there is much like that
 // outside.
 TEST(FindParts, APassageUnderTheOpenSkyIsNoPart) {
