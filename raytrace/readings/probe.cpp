@@ -94,25 +94,32 @@ struct MirroredLight {
   Eigen::ArrayXd lux_within{};  // lx, with odds of about 19 to 1
 };
 
+// Points and their light.
+struct LitPoints {
+  const std::vector<GatherPoint>& points;
+  const BandArray& irradiance;  // without that of lamps by way of mirrors and glass, W/m^2
+};
+
 // Light of lamps by way of mirrors and glass at the points that lie on no surface: the mesh holds
 // such light for surfaces. `accuracy` is that of ProbeBounds.
 MirroredLight mirrored_in_air(const LitScene& lit, const RadiositySolution& solution,
-                              const std::vector<GatherPoint>& points, const GatherOptions& options,
-                              double accuracy) {
+                              const LitPoints& at, const GatherOptions& options, double accuracy) {
+  const std::vector<GatherPoint>& points = at.points;
+  SpecularLightOptions effort{
+      .most_rays = 32 * options.rays, .replica = options.replica, .progress = options.run.progress};
   std::vector<GatherPoint> in_air;
   std::vector<Eigen::Index> row;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].facet >= 0) continue;
     row.push_back(static_cast<Eigen::Index>(i));
     in_air.push_back(points[i]);
+    effort.other_light.push_back(at.irradiance.row(row.back()).cast<double>().mean());
     if (!in_air.back().key) in_air.back().key = i;
   }
   const auto count = static_cast<Eigen::Index>(points.size());
   MirroredLight result{.irradiance = BandArray::Zero(count, lit.scene.bands.count()),
                        .lux_within = Eigen::ArrayXd::Zero(count)};
   if (in_air.empty()) return result;
-  SpecularLightOptions effort{
-      .most_rays = 32 * options.rays, .replica = options.replica, .progress = options.run.progress};
   if (accuracy > 0.0) {
     // A quarter of the bound, which is two standard errors.
     effort.accuracy = std::min(effort.accuracy, accuracy / 8.0);
@@ -157,10 +164,11 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   }
   const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution);
   const LitScene lit{scene, caster, direct_light};
-  const MirroredLight mirrored =
-      mirrored_in_air(lit, solution, points, options, bounds ? bounds->accuracy : 0.0);
   BandArray E = probe_gather(lit, B, points, options, caustics, solution, bounds);
-  E += caustics.irradiance + mirrored.irradiance;
+  E += caustics.irradiance;
+  const MirroredLight mirrored =
+      mirrored_in_air(lit, solution, {points, E}, options, bounds ? bounds->accuracy : 0.0);
+  E += mirrored.irradiance;
   if (bounds) {
     bounds->lux_within = (bounds->lux_within.square() + mirrored.lux_within.square()).sqrt();
   }

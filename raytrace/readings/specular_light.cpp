@@ -73,14 +73,15 @@ class PointLight {
     frame_.col(1) = b;
   }
 
-  // Adds the light to E and returns the variance of the mean of its bands.
-  double gather(Spectrum& E) {
+  // Adds the light to E and returns the variance of the mean of its bands. `other_light` is that of
+  // SpecularLightOptions at the point.
+  double gather(double other_light, Spectrum& E) {
     first_strata();
     if (!has_specular_) return 0.0;
     choose_chains();
     const Spectrum lamps = lamps_without_surface();
     split_around_emitters();
-    const double known = (lamps / std::numbers::pi_v<float>).mean();
+    const double known = (static_cast<double>(lamps.mean()) + other_light) * std::numbers::inv_pi;
     double variance = refine(known);
     if (is_rough_) variance = sample_anew(known);
     Spectrum sum = Spectrum::Zero(bands_);
@@ -435,7 +436,10 @@ SpecularIrradiance specular_irradiance(const LitScene& lit, const RadiositySolut
       const std::uint64_t key = random_key(at.key.value_or(static_cast<std::uint64_t>(i)),
                                            RandomPurpose::specular_light, options.replica);
       Spectrum E = Spectrum::Zero(bands);
-      result.variance[i] = static_cast<float>(PointLight(lit, tree, at, options, key).gather(E));
+      const double other =
+          options.other_light.empty() ? 0.0 : options.other_light[static_cast<std::size_t>(i)];
+      PointLight light(lit, tree, at, options, key);
+      result.variance[i] = static_cast<float>(light.gather(other, E));
       result.irradiance.row(i) = E.transpose();
       report(options.progress, "mirrored light", static_cast<double>(++done) / count);
     }

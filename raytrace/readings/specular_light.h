@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
@@ -11,8 +12,11 @@ namespace lightwell {
 
 /// Effort of specular_irradiance().
 struct SpecularLightOptions {
-  int most_rays = 1 << 15;    ///< per point, in addition to the first 4096
-  double accuracy = 0.003;    ///< standard error at which a point is done, share of its light here
+  int most_rays = 1 << 15;  ///< per point, in addition to the first 4096
+  double accuracy = 0.003;  ///< standard error at which a point is done, share of all its light
+  /// Light that a point gets by other ways, which counts for the accuracy, mean of the bands,
+  /// W/m^2; empty: none.
+  std::vector<double> other_light{};
   int max_depth = 16;         ///< most mirrors and clear surfaces along a path
   std::uint64_t replica = 0;  ///< another number gives an independent estimate
   Progress progress{};

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::size_t fields_needed = 16;  // up to the diffuse irradiance
 constexpr std::size_t month_field = 1, day_field = 2, hour_field = 3;
-constexpr std::size_t dew_point_field = 7, direct_field = 14, diffuse_field = 15;
+constexpr std::size_t dew_point_field = 7, global_field = 13, direct_field = 14, diffuse_field = 15;
 constexpr double highest_dew_point = 70.0;  // of the data dictionary; 99.9: missing
 
 double heading_number(const TextFile& file, int line, std::string_view field, const char* name) {
@@ -92,7 +92,10 @@ Weather read_epw(const std::filesystem::path& path) {
                           .day = whole(file, line, fields[day_field], "day"),
                           // The label is the end of the hour, 1 to 24.
                           .hour = whole(file, line, fields[hour_field], "hour") - 1};
-    rows.set(line, hour, fields[direct_field], fields[diffuse_field]);
+    rows.set(line, hour,
+             {.direct_normal = fields[direct_field],
+              .diffuse_horizontal = fields[diffuse_field],
+              .global_horizontal = fields[global_field]});
     const auto dew_point = parse_finite(fields[dew_point_field]);
     const bool is_known = dew_point && std::abs(*dew_point) <= highest_dew_point;
     without_dew_point += is_known ? 0 : 1;

@@ -97,7 +97,7 @@ Weather read_wea(const std::filesystem::path& path) {
              {.month = static_cast<int>(*month),
               .day = static_cast<int>(*day),
               .hour = static_cast<int>(std::floor(*hour))},
-             words[3], words[4]);
+             {.direct_normal = words[3], .diffuse_horizontal = words[4]});
   });
   if (heading.found < needed) file.fail(1, "has no latitude, longitude and time_zone");
   check_place(file, 1, weather);

@@ -5,9 +5,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
+
+#include "scene/io/weather/sun_hours.h"
+#include "scene/sun_position.h"
 
 namespace lightwell {
 namespace {
+
+constexpr double most_direct = 1100.0;  // W/m^2 across the rays, at noon on a high mountain
 
 constexpr std::array<int, 12> days_of_months = {31, 28, 31, 30, 31, 30, 31, 31, 30, 31, 30, 31};
 
@@ -39,8 +45,7 @@ WeatherRows::WeatherRows(const TextFile& file, Weather& weather)
   weather.hours.resize(is_set_.size());
 }
 
-void WeatherRows::set(int line, const HourOfYear& hour, std::string_view direct,
-                      std::string_view diffuse) {
+void WeatherRows::set(int line, const HourOfYear& hour, const IrradianceWords& words) {
   const int number = number_of(hour, weather_.is_leap_year);
   if (number < 0) {
     file_.fail(line, fmt::format("month {}, day {}, hour {} is no hour of {}", hour.month, hour.day,
@@ -55,11 +60,37 @@ void WeatherRows::set(int line, const HourOfYear& hour, std::string_view direct,
   is_set_[at] = 1;
   ++count_;
   last_ = number;
-  weather_.hours[at].direct_normal = light(line, direct, "direct normal");
-  weather_.hours[at].diffuse_horizontal = light(line, diffuse, "diffuse horizontal");
+  auto direct = light(line, words.direct_normal, "direct normal");
+  auto diffuse = light(line, words.diffuse_horizontal, "diffuse horizontal");
+  const bool is_one_missing = direct.has_value() != diffuse.has_value();
+  const auto global = is_one_missing ? light(line, words.global_horizontal, "global horizontal")
+                                     : std::optional<double>();
+  const double sine = global ? sine_of_altitude(hour) : 0.0;
+  if (global && !diffuse && sine > 0.0) {
+    diffuse = std::max(0.0, *global - sine * *direct);
+    ++derived_;
+  } else if (global && !direct && sine > 0.0 && *global >= *diffuse) {
+    // Rounded irradiances of a sun on the horizon would tell any direct light.
+    direct = std::min((*global - *diffuse) / sine, most_direct);
+    ++derived_;
+  }
+  missing_ += (direct ? 0 : 1) + (diffuse ? 0 : 1);
+  weather_.hours[at].direct_normal = direct.value_or(0.0);
+  weather_.hours[at].diffuse_horizontal = diffuse.value_or(0.0);
 }
 
-double WeatherRows::light(int line, std::string_view word, const char* name) {
+// Sine of the altitude of the sun in the middle of an hour.
+double WeatherRows::sine_of_altitude(const HourOfYear& hour) const {
+  const SunPosition sun = sun_position({.year = year_of_dates(weather_.is_leap_year),
+                                        .month = hour.month,
+                                        .day = hour.day,
+                                        .hour = hour.hour + 0.5,
+                                        .hours_east = weather_.hours_east},
+                                       weather_.latitude, weather_.longitude);
+  return std::sin(sun.altitude_degrees * std::numbers::pi / 180.0);
+}
+
+std::optional<double> WeatherRows::light(int line, std::string_view word, const char* name) const {
   // The files' mark of a missing irradiance.
   constexpr double missing = 9999.0;
   const auto value = word.empty() ? std::optional<double>(missing) : parse_finite(word);
@@ -68,12 +99,16 @@ double WeatherRows::light(int line, std::string_view word, const char* name) {
                                  "9999 where it is missing",
                                  name, excerpt(word)));
   }
-  if (*value < missing) return *value;
-  ++missing_;
-  return 0.0;
+  return *value < missing ? value : std::nullopt;
 }
 
 void WeatherRows::note_missing() const {
+  if (derived_ > 0) {
+    weather_.notes.push_back(
+        fmt::format("{}: {} irradiances, direct or diffuse, are missing (9999) and follow from the "
+                    "global ones",
+                    file_.path().filename().string(), derived_));
+  }
   if (missing_ == 0) return;
   weather_.notes.push_back(
       fmt::format("{}: {} irradiances are missing (9999) and count as 0, so the year is too dark",

@@ -265,6 +265,27 @@ TEST(SpecularLight, OffOneRoughMirrorByWayOfAnotherIsThatOfEvenRays) {
   EXPECT_NEAR(a_point.value, expected.value, 4.0 * error);
 }
 
+// Other light a hundred times as strong as that of the mirror: a hundredth of the accuracy is
+// enough.
+TEST(SpecularLight, IsAsExactAsAllLightOfAPointNeeds) {
+  const TracedScene lit(
+      over_a_mirror(0.8f)
+          .square({.exitance = 10.0f, .one_sided = true}, {0.0, 0.5, 2.0}, -up, 0.05)
+          .build());
+  const std::vector<GatherPoint> points = {{.position = {0.3, 0.2, 1.0}, .normal = -up}};
+  const auto light = [&](const std::vector<double>& other) {
+    return specular_irradiance({lit.scene, lit.caster, lit.direct_light}, lit.solution, points,
+                               {.accuracy = 1e-3, .other_light = other});
+  };
+  const SpecularIrradiance alone = light({});
+  const auto E = static_cast<double>(alone.irradiance.row(0).mean());
+  const double other = 100.0 * E;
+  const SpecularIrradiance beside = light({other});
+  EXPECT_LE(std::sqrt(double{alone.variance[0]}), 1e-3 * E);
+  EXPECT_LE(std::sqrt(double{beside.variance[0]}), 1e-3 * (E + other));
+  EXPECT_GT(beside.variance[0], alone.variance[0]) << "fewer rays";
+}
+
 TEST(SpecularLight, ThroughAThinPaneAloneIsDirectLight) {
   Scene scene = SceneBuilder()
                     .square({.index_of_refraction = 1.5f, .thin = true}, {0, 0, 1}, up, 4.0)

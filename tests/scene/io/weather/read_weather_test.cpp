@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "scene/errors.h"
 #include "scene/io/weather/weather_file.h"
 #include "tests/scene/expected_messages.h"
@@ -109,6 +112,45 @@ TEST(ReadWeather, MissingValuesAreDarkAndSaidOnce) {
   ASSERT_EQ(weather.notes.size(), 2u);
   EXPECT_NE(weather.notes[0].find("9 irradiances are missing"), std::string::npos)
       << weather.notes[0];
+}
+
+// 21 June, 12:30 in the zone of UTC - 8, at 37.72 degrees north and 122.22 west, is 12:19.6 by the
+// sun: 8.9 min earlier by the longitude, and 1.5 by the equation of time. The declination is 23.44
+// degrees. The last digits of these are 0.03 degrees at most, of which the sine of the altitude, 75
+// degrees, changes by 0.03 pi / 180 cos 75 = 1.4e-4.
+TEST(ReadWeather, GlobalLightTellsDirectOrDiffuseLight) {
+  const int noon = number_of({6, 21, 12}, false), night = number_of({6, 21, 0}, false);
+  const auto hours_of = [&](const std::string& global, const std::string& direct,
+                            const std::string& diffuse) {
+    std::string text = epw_heading;
+    for (int n = 0; n < 8760; ++n) {
+      const auto [month, day, hour] = hour_of_year(n, false);
+      text += fmt::format("1999,{},{},{},0,?9,9.0,7.0,87,102000,0,0,305,{},{},{},0,0\n", month, day,
+                          hour + 1, n == noon || n == night ? global : "0",
+                          n == noon || n == night ? direct : "0",
+                          n == noon || n == night ? diffuse : "0");
+    }
+    const TemporaryFolder folder;
+    return read_weather(folder.write("a.epw", text));
+  };
+  const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180.0; };
+  const double latitude = radians(37.72), declination = radians(23.44),
+               hour_angle = radians(15.0 * 19.6 / 60.0);
+  const double sine = std::sin(latitude) * std::sin(declination) +
+                      std::cos(latitude) * std::cos(declination) * std::cos(hour_angle);
+  constexpr double of_sine = 1.4e-4;
+  const Weather without_direct = hours_of("800", "9999", "100");
+  EXPECT_NEAR(without_direct.hours[static_cast<std::size_t>(noon)].direct_normal, 700.0 / sine,
+              700.0 / sine * of_sine / sine);
+  EXPECT_EQ(without_direct.hours[static_cast<std::size_t>(night)].direct_normal, 0.0);
+  ASSERT_EQ(without_direct.notes.size(), 2u);
+  EXPECT_NE(without_direct.notes[0].find("1 irradiances, direct or diffuse"), std::string::npos);
+  EXPECT_NE(without_direct.notes[1].find("1 irradiances are missing"), std::string::npos);
+  const Weather without_diffuse = hours_of("800", "600", "");
+  EXPECT_NEAR(without_diffuse.hours[static_cast<std::size_t>(noon)].diffuse_horizontal,
+              800.0 - 600.0 * sine, 600.0 * of_sine);
+  EXPECT_EQ(hours_of("50", "9999", "100").hours[static_cast<std::size_t>(noon)].direct_normal, 0.0)
+      << "less than the diffuse light";
 }
 
 TEST(ReadWeather, HoursThatAWeaFileLeavesOutAreDark) {
