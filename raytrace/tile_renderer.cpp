@@ -76,7 +76,7 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
       const PixelCorners pixel_corners(eye, x, y, corners[row], corners[row + 1]);
       const PixelValue value = pixel_mean(x, y, *pixel_corners);
       if (sampled && pixel_mean.met_gloss()) {
-        // What no corner shows is small, and few samples might miss it as well.
+        // Gloss that no corner shows is small, and few samples might miss it as well.
         constexpr int times = 4;
         PixelTally tally = sampled->samples.first_samples(x, y, times);
         sampled->samples.take_more(x, y, {}, tally);

@@ -33,7 +33,8 @@ struct GapAims {
 ///
 ///     B = rho (E_direct + B'),   B' at the end of one cosine-distributed ray
 ///
-/// What a coat mirrors comes beside that from where the mirrored ray ends, in the gap or outside.
+/// Light that a coat mirrors comes beside that, from the end of the mirrored ray in the gap or
+/// outside.
 class GapLight {
  public:
   /// `radiosity` is that of gather_irradiance(). Keeps references to the scene and the paths.
@@ -78,15 +79,15 @@ class GapLight {
     std::uint64_t key = 0;
     int bounce = 0;  // surfaces of the path before this one
   };
-  /// What a path is for.
+  /// Callbacks of follow().
   struct Visitor {
-    /// On surfaces, with the share that the irradiance there has. (After some bounces one surface
-    /// of several stands for all.)
+    /// Called on surfaces, with the share that the irradiance there has. (After some bounces one
+    /// surface of several stands for all.)
     std::function<void(const Stop&)> at_surface;
-    /// Where a ray has met a coat: the light that the coat mirrors has the share, and the path does
-    /// not follow it. `at` is not set.
+    /// Called where a ray has met a coat: the light that the coat mirrors has the share, and the
+    /// path does not follow it. `at` is not set.
     std::function<void(const Stop&)> at_coat;
-    /// At the end of the last ray, unless the path ends before or meets nothing.
+    /// Called at the end of the last ray, unless the path ends before or meets nothing.
     std::function<void(const Stop&)> at_end;
   };
   /// Follows a path from the end of a ray in a gap until a ray leaves the gap. `key` decides the

@@ -365,9 +365,10 @@ void renumber(std::vector<int>& cluster) {
 }
 
 // Parts the outside from rooms that it was not cut from, since a window is wide or walls mirror.
-// Where little light leaves a room for the outside and the sky, its light is a small share of that
-// outside, and errors that count as shares of both are no measure of it. An outside that is smaller
-// than the room, such as what stands before the open side of a box, counts little beside it.
+// The light of a room that loses little of it to the outside and the sky is a small share of the
+// light outside, and errors that count as shares of both are no measure of it. An outside that is
+// smaller than the room, such as what stands before the open side of a box, counts little beside
+// it.
 void part_outside(const PatchMesh& mesh, const std::vector<PatchArrivals>& arrivals,
                   const std::vector<int>& node, const std::vector<ExchangeLink>& links,
                   std::vector<int>& cluster) {

@@ -28,10 +28,10 @@ BoxTree::Box reach(const IrradianceRecord& record);
 double record_weight(const IrradianceRecord& record, const Eigen::Vector3d& position,
                      const Eigen::Vector3d& normal);
 
-/// What records may serve beside others. The distance to the nearest surfaces grows by no more than
-/// the way that one goes, and so do radii that are a share of such a distance. A place in the open
-/// whose rays miss a house far away has a radius that reaches into the house; the places seen there
-/// say so (neighbour clamping; Křivánek, Bouatouch, Pattanaik & Žára 2006).
+/// Limits of the radii of records by records around. The distance to the nearest surfaces grows by
+/// no more than the way that one goes, and so do radii that are a share of such a distance. A place
+/// in the open whose rays miss a house far away has a radius that reaches into the house; the
+/// places seen there say so (neighbour clamping; Křivánek, Bouatouch, Pattanaik & Žára 2006).
 class RecordNeighbours {
  public:
   /// `growth` is the most by which a radius may grow for each metre, > 0.
