@@ -7,6 +7,7 @@
 #include "mesh/build_patches.h"
 #include "radiosity/refine/error_reference.h"
 #include "tests/mesh/mesh_scenes.h"
+#include "tests/radiosity/even_light.h"
 
 namespace lightwell::gap_errors_test {
 namespace {
@@ -24,16 +25,6 @@ Scene lamp_over_plate(double height) {
   return scene;
 }
 
-/// A solution whose irradiance is 1 at each vertex, without error.
-RadiositySolution even_light(const Scene& scene, const PatchMesh& mesh) {
-  RadiositySolution solution{.bands = scene.bands};
-  solution.direct_irradiance = BandArray::Ones(mesh.vertex_count(), scene.bands.count());
-  solution.indirect_irradiance = 0.0f * solution.direct_irradiance;
-  solution.interpolation_error = Eigen::ArrayXf::Zero(mesh.element_count());
-  solution.gather_noise = Eigen::ArrayXf::Zero(mesh.element_count());
-  return solution;
-}
-
 TEST(GapErrors, AreTheDifferenceFromDarknessInTheGapAlone) {
   // The gap is 16 % of an element wide, too wide for gap_lines(), and 4 % of a patch.
   const double height = 0.02;
@@ -42,7 +33,7 @@ TEST(GapErrors, AreTheDifferenceFromDarknessInTheGapAlone) {
       build_patches(scene, {.max_patch_size = 0.5, .elements_per_patch_edge = 4});
   const ElementCaster caster(mesh);
   const DirectLight direct_light(scene, mesh);
-  RadiositySolution solution = even_light(scene, mesh);
+  RadiositySolution solution = test::even_light(scene, mesh);
   add_gap_errors({scene, caster, direct_light}, {}, solution);
   int in_gap = 0;
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -69,7 +60,7 @@ TEST(GapErrors, LeaveOpenScenesAlone) {
   const Scene scene = lamp_over_plate(0.6);
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.5});
   const ElementCaster caster(mesh);
-  RadiositySolution solution = even_light(scene, mesh);
+  RadiositySolution solution = test::even_light(scene, mesh);
   add_gap_errors({scene, caster, DirectLight(scene, mesh)}, {}, solution);
   EXPECT_TRUE((solution.interpolation_error == 0.0f).all());
 }

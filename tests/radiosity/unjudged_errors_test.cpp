@@ -7,6 +7,7 @@
 #include "mesh/build_patches.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/inner_errors.h"
+#include "tests/radiosity/even_light.h"
 #include "tests/radiosity/test_scenes.h"
 
 namespace lightwell::unjudged_errors_test {
@@ -30,16 +31,6 @@ Scene dark_floor(float specular) {
   add_polygon(scene, "wall", add_material(scene, diffuse(scene.bands, 0.5f)),
               {{5, 0, 0}, {5, 1, 0}, {5, 1, 1}, {5, 0, 1}});
   return scene;
-}
-
-/// A solution whose irradiance is 1 at each vertex, without error.
-RadiositySolution even_light(const Scene& scene, const PatchMesh& mesh) {
-  RadiositySolution solution{.bands = scene.bands};
-  solution.direct_irradiance = BandArray::Ones(mesh.vertex_count(), scene.bands.count());
-  solution.indirect_irradiance = 0.0f * solution.direct_irradiance;
-  solution.interpolation_error = Eigen::ArrayXf::Zero(mesh.element_count());
-  solution.gather_noise = Eigen::ArrayXf::Zero(mesh.element_count());
-  return solution;
 }
 
 TEST(UnjudgedErrors, AreTheDifferenceFromTheLightOfTheLamp) {

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
 #include "radiosity/solve.h"
 #include "raytrace/scene_renderer.h"
@@ -115,36 +117,42 @@ TEST(IrradianceRecords, ReachNoFartherThanNeighboursAllow) {
   EXPECT_EQ(neighbours.allowed_radius(record({20, 0, 0}, 1.0f, 19.0)), 19.0) << "too far away";
 }
 
-// A room with a block, lit by a lamp in the ceiling, on a coarse mesh.
-struct CoarseRoom {
-  Scene scene;
-  SolvedScene solved;
-  Camera camera{.position = {0.3, 0.4, 1.6},
-                .direction = Vector3d(1.0, 0.8, -0.35).normalized(),
-                .up = up,
-                .fov_degrees = 75.0,
-                .width = 64,
-                .height = 48};
+// A room, solved on a mesh of one element a patch that is not refined.
+struct SolvedRoom {
+  Scene scene{};
+  Camera camera{};
+  SolvedScene solved{};
 
-  CoarseRoom()
-      : scene(
-            SceneBuilder()
-                .box({.reflectance = 0.7f, .one_sided = true}, {0, 0, 0}, {4, 3, 2.5}, true)
-                .box({.reflectance = 0.6f, .one_sided = true}, {1.6, 1, 0}, {2.2, 1.7, 1.1}, false)
-                .square({.exitance = 20.0f, .one_sided = true}, {2.9, 1.5, 2.45}, -up, 0.3)
-                .build()) {
-    SolveOptions options;
+  void solve(double patch_size, int rays) {
     camera.up = (up - up.dot(camera.direction) * camera.direction).normalized();
-    options.mesh.max_patch_size = 1.5;
+    SolveOptions options;
+    options.mesh.max_patch_size = patch_size;
     options.mesh.elements_per_patch_edge = 1;
     options.refine.tolerance = 0.0;
-    options.gather.rays = 64;
+    options.gather.rays = rays;
     solved = solve_scene(scene, options);
   }
   Image picture(const RenderOptions& options) const {
     return SceneRenderer(scene, solved.mesh, solved.solution).render(camera, options);
   }
 };
+
+// A room with a block, lit by a lamp in the ceiling, on a coarse mesh.
+SolvedRoom coarse_room() {
+  SolvedRoom room{
+      SceneBuilder()
+          .box({.reflectance = 0.7f, .one_sided = true}, {0, 0, 0}, {4, 3, 2.5}, true)
+          .box({.reflectance = 0.6f, .one_sided = true}, {1.6, 1, 0}, {2.2, 1.7, 1.1}, false)
+          .square({.exitance = 20.0f, .one_sided = true}, {2.9, 1.5, 2.45}, -up, 0.3)
+          .build(),
+      {.position = {0.3, 0.4, 1.6},
+       .direction = Vector3d(1.0, 0.8, -0.35).normalized(),
+       .fov_degrees = 75.0,
+       .width = 64,
+       .height = 48}};
+  room.solve(1.5, 64);
+  return room;
+}
 
 double difference(const Image& a, const Image& b) {
   return std::sqrt((a.radiance - b.radiance).square().mean()) / b.radiance.mean();
@@ -153,7 +161,7 @@ double difference(const Image& a, const Image& b) {
 // Records have the light that a gather at every pixel finds, but for their noise of 3 %; the mesh
 // lacks the shadow of the block in indirect light.
 TEST(PictureRecords, AreNearerToAGatherThanACoarseMesh) {
-  const CoarseRoom room;
+  const SolvedRoom room = coarse_room();
   const Image gathered = room.picture({.pass = Pass::gather, .gather_rays = 1024});
   const double with = difference(room.picture({}), gathered),
                without = difference(room.picture({.has_records = false}), gathered);
@@ -163,53 +171,44 @@ TEST(PictureRecords, AreNearerToAGatherThanACoarseMesh) {
   EXPECT_GT(without, IrradianceRecords::usual_error) << "the mesh is too fine for this test";
 }
 
-// A room of 4 m x 4 m on open ground, which is its floor too, with a hole of 2 m x 1.2 m in the
-// wall y = 4.
-struct RoomOnGround {
-  static constexpr double left = 1.0, right = 3.0, low = 0.6, high = 1.8, height = 2.5;
-  Scene scene;
-  SolvedScene solved;
-  // The ground that shows in the hole is 20 m away.
-  Camera camera{.position = {2.0, 0.5, 1.5},
-                .direction = Vector3d(0.0, 1.0, -0.3).normalized(),
-                .up = up,
-                .fov_degrees = 80.0,
-                .width = 64,
-                .height = 64};
+// Corners of a hole of 2 m x 1.2 m in a wall.
+constexpr double left = 1.0, right = 3.0, low = 0.6, high = 1.8;
 
-  explicit RoomOnGround(SceneBuilder lamps, double patch_size, std::optional<Sky> sky = {}) {
-    const Paint wall{.reflectance = 0.7f};
-    const auto part = [&](double x0, double x1, double z0, double z1) {
-      lamps.polygon(wall, {{x0, 4, z0}, {x1, 4, z0}, {x1, 4, z1}, {x0, 4, z1}});
-    };
-    part(0, left, 0, height);
-    part(right, 4, 0, height);
-    part(left, right, 0, low);
-    part(left, right, high, height);
-    lamps.polygon(wall, {{0, 0, 0}, {4, 0, 0}, {4, 0, height}, {0, 0, height}})
-        .polygon(wall, {{0, 0, 0}, {0, 4, 0}, {0, 4, height}, {0, 0, height}})
-        .polygon(wall, {{4, 0, 0}, {4, 4, 0}, {4, 4, height}, {4, 0, height}})
-        .polygon(wall, {{0, 0, height}, {4, 0, height}, {4, 4, height}, {0, 4, height}})
-        .polygon({.reflectance = 0.3f, .one_sided = true},
-                 {{-30, -30, 0}, {30, -30, 0}, {30, 30, 0}, {-30, 30, 0}});
-    scene = lamps.build();
-    scene.sky = std::move(sky);
-    SolveOptions options;
-    camera.up = (up - up.dot(camera.direction) * camera.direction).normalized();
-    options.mesh.max_patch_size = patch_size;
-    options.mesh.elements_per_patch_edge = 1;
-    options.refine.tolerance = 0.0;
-    solved = solve_scene(scene, options);
-  }
-  Image picture(const RenderOptions& options) const {
-    return SceneRenderer(scene, solved.mesh, solved.solution).render(camera, options);
-  }
-};
+// A room of 4 m x 4 m on open ground, which is its floor too, with the hole in the wall y = 4.
+SolvedRoom room_on_ground(SceneBuilder lamps, double patch_size, int rays,
+                          std::optional<Sky> sky = {}) {
+  constexpr double height = 2.5;
+  const Paint wall{.reflectance = 0.7f};
+  const auto part = [&](double x0, double x1, double z0, double z1) {
+    lamps.polygon(wall, {{x0, 4, z0}, {x1, 4, z0}, {x1, 4, z1}, {x0, 4, z1}});
+  };
+  part(0, left, 0, height);
+  part(right, 4, 0, height);
+  part(left, right, 0, low);
+  part(left, right, high, height);
+  lamps.polygon(wall, {{0, 0, 0}, {4, 0, 0}, {4, 0, height}, {0, 0, height}})
+      .polygon(wall, {{0, 0, 0}, {0, 4, 0}, {0, 4, height}, {0, 0, height}})
+      .polygon(wall, {{4, 0, 0}, {4, 4, 0}, {4, 4, height}, {4, 0, height}})
+      .polygon(wall, {{0, 0, height}, {4, 0, height}, {4, 4, height}, {0, 4, height}})
+      .polygon({.reflectance = 0.3f, .one_sided = true},
+               {{-30, -30, 0}, {30, -30, 0}, {30, 30, 0}, {-30, 30, 0}});
+  // The ground that shows in the hole is up to 26 m away.
+  SolvedRoom room{lamps.build(),
+                  {.position = {2.0, 0.5, 1.5},
+                   .direction = Vector3d(0.0, 1.0, -0.3).normalized(),
+                   .fov_degrees = 80.0,
+                   .width = 64,
+                   .height = 64}};
+  room.scene.sky = std::move(sky);
+  room.solve(patch_size, rays);
+  return room;
+}
 
 // The rays of places in the open miss the room, and their radii are as wide as the grid allows.
 TEST(PictureRecords, OfTheOpenDoNotServeInARoomOnTheSameGround) {
-  const RoomOnGround room(
-      SceneBuilder().square({.exitance = 20.0f, .one_sided = true}, {2, 2, 2.45}, -up, 0.3), 1.5);
+  const SolvedRoom room = room_on_ground(
+      SceneBuilder().square({.exitance = 20.0f, .one_sided = true}, {2, 2, 2.45}, -up, 0.3), 1.5,
+      256);
   const Image gathered = room.picture({.pass = Pass::gather, .gather_rays = 1024});
   const Image by_records = room.picture({});
   constexpr int floor = 64 * 24;  // pixels of the lowest rows
@@ -222,23 +221,21 @@ TEST(PictureRecords, OfTheOpenDoNotServeInARoomOnTheSameGround) {
 // Light of the sky comes through a solid pane, which few of the 64 rays of a record meet; their
 // noise is 17 % of the light. The error of the mesh, of gathers of 1024 rays, is 9 %.
 TEST(PictureRecords, AreLeftOutWhereTheyAreNoisierThanTheMesh) {
-  using Room = RoomOnGround;
   const Paint glass{.index_of_refraction = 1.5f};
-  const Room room(SceneBuilder().box(glass, {Room::left, 3.9, Room::low},
-                                     {Room::right, 3.95, Room::high}, false),
-                  0.5,
-                  Sky{.up = up,
-                      .north = Vector3d::UnitY(),
-                      .bright = up,
-                      .scale = constant_spectrum(rgb_bands(), 10.0f),
-                      .ground = constant_spectrum(rgb_bands(), 1.0f)});
+  const Sky sky{.up = up,
+                .north = Vector3d::UnitY(),
+                .bright = up,
+                .scale = constant_spectrum(rgb_bands(), 10.0f),
+                .ground = constant_spectrum(rgb_bands(), 1.0f)};
+  const SolvedRoom room = room_on_ground(
+      SceneBuilder().box(glass, {left, 3.9, low}, {right, 3.95, high}, false), 0.5, 1024, sky);
   const Image by_default = room.picture({.gather_rays = 64});
   const Image by_mesh = room.picture({.has_records = false});
   EXPECT_TRUE((by_default.radiance == by_mesh.radiance).all());
 }
 
 TEST(PictureRecords, AreTheSameForAnyNumberOfThreads) {
-  const CoarseRoom room;
+  const SolvedRoom room = coarse_room();
   const auto with_threads = [&](int n) {
     const ThreadLimit limit(n);
     return room.picture({});
