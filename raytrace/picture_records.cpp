@@ -140,8 +140,7 @@ class PictureRecords {
   // records count by the radius that they had at first: light changes there, and not what a place
   // sees.
   void clamp(std::vector<Candidate>& candidates) {
-    // The 32 rays of a place tell the mean distance to some 10 %, which half of this leaves room
-    // for.
+    // Twice the share, since the 32 rays of a place tell the distance to some 10 % alone.
     constexpr double growth = 2.0 * share_of_distance;
     std::vector<IrradianceRecord> all = at_first_;
     for (const Candidate& candidate : candidates) all.push_back(candidate.record);

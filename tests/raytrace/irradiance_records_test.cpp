@@ -105,7 +105,8 @@ TEST(EvenOut, CalmsNoiseAndKeepsAnEdge) {
 
 // A record of radius 44 m, 20 m from one of 0.2 m.
 TEST(IrradianceRecords, ReachNoFartherThanNeighboursAllow) {
-  constexpr double growth = 0.1, roundings = 1e-14;
+  constexpr double growth = 0.1;
+  const double roundings = std::ldexp(4.0 * 2.2, -53);  // of growth, distance, product and sum
   const IrradianceRecord in_the_open = record({20, 0, 0}, 1.0f, 44.0);
   const IrradianceRecord in_a_room = record({0, 0, 0}, 4.0f, 0.2);
   const RecordNeighbours neighbours({in_the_open, in_a_room}, growth);

@@ -108,7 +108,8 @@ TEST(GapLight, BetweenWhiteCoatedPlatesIsEven) {
     const test::SampleMean E = test::mean_of(found);
     EXPECT_NEAR(E.value, double{B0}, 4.0 * E.standard_error)
         << "four standard errors, at " << depth;
-    EXPECT_LT(E.standard_error, 0.03 * B0) << "the test sees losses of 12 %";
+    // Losses of an eighth show; without what coats mirror, 43 and 76 % of the light are lost.
+    EXPECT_LT(E.standard_error, B0 / (4.0 * 8.0));
   }
 }
 
