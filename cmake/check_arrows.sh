@@ -2,7 +2,8 @@
 # Holds every #include of the house to the tables of allowed arrows: arrows.txt for rooms, ROOM/arrows.txt for the rooms
 # within one. Each line of a table names a folder and, behind a colon, the folders above it that it may include, so no
 # table can hold a cycle. Prints one sentence for each arrow that is not allowed, for each one allowed that no file
-# needs, and for each folder that no table names; exits with 1 if there is any.
+# needs, for each folder that no table names, and for each line of a library that writes to the terminal, which only
+# programs do (cli/); exits with 1 if there is any.
 #   cmake/check_arrows.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -68,5 +69,11 @@ check arrows.txt "" || status=1
 for table in */arrows.txt; do
   check "$table" "${table%arrows.txt}" || status=1
 done
-[ $status = 0 ] && echo "Every #include follows the tables of arrows."
+libraries=(scene mesh radiosity standards daylight raytrace viewer design validation)
+if written=$(grep -rnE --include='*.h' --include='*.cpp' \
+    '\bstd(err|out)\b|std::(cerr|cout|clog)|\b(f?printf|puts|perror)\(|fmt::print\("' "${libraries[@]}"); then
+  printf '%s\n' "$written" | sed 's/^\([^:]*:[0-9]*\):.*/\1: a library may not write to the terminal./'
+  status=1
+fi
+[ $status = 0 ] && echo "Every #include follows the tables of arrows, and no library writes to the terminal."
 exit $status

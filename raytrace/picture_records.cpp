@@ -99,9 +99,7 @@ class PictureRecords {
       std::vector<Candidate> candidates = uncovered(step);
       clamp(candidates);
       add(thinned(candidates), step);
-      if (step == widest_step &&
-          (std::fprintf(stderr, "NOISE %g\n", noise()), noise() > most_noise))
-        return {};
+      if (step == widest_step && noise() > most_noise) return {};
       narrow();
     }
     even_out(records_);
@@ -276,7 +274,6 @@ std::shared_ptr<const IrradianceRecords> find_records(const LitScene& lit,
   const SeenPlaces seen(lit, camera, rays, options.max_depth);
   const double error = error_of_solution(lit.mesh(), solution, seen);
   if (!(error > IrradianceRecords::usual_error)) return nullptr;
-  std::fprintf(stderr, "SOLUTION %g\n", error);
   std::vector<IrradianceRecord> records = PictureRecords(lit, solution, seen, options).find(error);
   if (records.empty()) return nullptr;
   return std::make_shared<const IrradianceRecords>(std::move(records));
