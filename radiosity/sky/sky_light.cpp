@@ -1,6 +1,7 @@
 #include "radiosity/sky/sky_light.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -105,8 +106,8 @@ SkyLight::Shares SkyLight::shares_of(const SkySites::Weights& site,
   return shares;
 }
 
-// The shares of the point before serve again where both lie in the same site and face the same way,
-// as most vertices of a facet do.
+// The shares of a point before serve again where both lie in the same site and face the same way,
+// as most vertices of a facet and neighbouring pixels do.
 std::shared_ptr<const SkyLight::Shares> SkyLight::shares_at(const ElementCaster& caster,
                                                             const SurfacePoint& at,
                                                             std::uint64_t key) const {
@@ -116,18 +117,22 @@ std::shared_ptr<const SkyLight::Shares> SkyLight::shares_at(const ElementCaster&
         sites_.sample(caster, at, random_key(key, RandomPurpose::sky_point_rays));
     return std::make_shared<const Shares>(shares_of(own, at.normal));
   }
-  struct Last {
+  struct Known {
     std::uint64_t sky = 0;
     const SkySites::Site* site = nullptr;
     Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     std::shared_ptr<const Shares> shares{};
   };
-  thread_local Last last;
-  if (last.sky != number_ || last.site != site || last.normal != at.normal) {
-    last = {number_, site, at.normal,
-            std::make_shared<const Shares>(shares_of(site->weights, at.normal))};
+  constexpr std::size_t size = 64;  // some 30 kB each
+  thread_local std::array<Known, size> all_known;
+  const auto bits = [&](int i) { return std::bit_cast<std::uint64_t>(at.normal[i]); };
+  const std::uint64_t facing = random_key(bits(0), bits(1), bits(2));
+  Known& known = all_known[random_key(facing, std::bit_cast<std::uintptr_t>(site)) % size];
+  if (known.sky != number_ || known.site != site || known.normal != at.normal) {
+    known = {number_, site, at.normal,
+             std::make_shared<const Shares>(shares_of(site->weights, at.normal))};
   }
-  return last.shares;
+  return known.shares;
 }
 
 // The estimate at one point.

@@ -48,6 +48,9 @@ struct RaySample {
   /// A rough mirror or a rough clear surface was met, at first or behind smooth ones. (The light of
   /// coats is a small share of a pixel's.)
   bool sees_gloss = false;
+  /// About the variance of the radiance, mean of the bands, by the noise of shadow rays to the sky
+  /// and of lights drawn from clusters, (W/(m^2 sr))^2.
+  float variance = 0.0f;
   std::int64_t depth_cut = 0;  ///< branches that ended at max_depth
   float cut_weight = 0.0f;     ///< sum over these branches of the largest weight of any band
 };
@@ -196,7 +199,7 @@ class RayTree {
   /// Returns RaySample::sees_gloss of a ray, without shadow rays.
   bool sees_gloss(const Ray& ray) const { return outline(ray, {}).sees_gloss; }
   /// Takes indirect light from records where these serve, in place of the solution; null: nowhere.
-  /// Precondition: Pass::automatic.
+  /// Precondition: Pass::automatic or Pass::interpolate.
   void set_records(std::shared_ptr<const IrradianceRecords> records);
   /// The caster of everything at rest.
   const ElementCaster& caster() const { return caster_; }
@@ -266,6 +269,7 @@ class RayTree {
     Spectrum direct{}, indirect{};
     /// Direct light on the facet, before coat and relief, for layers; empty: as `direct`.
     Spectrum direct_on_facet{};
+    float noise = 0.0f;  ///< standard error of `direct`, mean of the bands, W/m^2
   };
   /// Diffuse radiosity towards a ray without emission, W/m^2, of direct and of indirect light.
   struct Scattered {
@@ -408,6 +412,7 @@ class RayTree {
   Arriving arriving_from_one_light(const ElementHit& hit, const ShadingPoint& at,
                                    const Branch& branch, LightQuery query,
                                    const TreeState& state) const;
+  NoiseGoal sky_noise(float share, const Spectrum& indirect) const;
   Spectrum indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
                             const std::optional<ReliefSlope>& relief) const;
   std::optional<Spectrum> indirect_of_records(const ElementHit& hit, const ShadingPoint& at,

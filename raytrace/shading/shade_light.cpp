@@ -145,10 +145,12 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   Arriving E{.direct = Spectrum::Zero(M.size()), .indirect = Spectrum::Zero(M.size())};
   if (with_layers_ || (rho > 0.0f).any()) E = arriving(hit, at, branch, base, rho, state);
   Scattered scattered{.direct = rho * E.direct, .indirect = rho * E.indirect};
+  float noise = rho.mean() * E.noise;
   if (is_translucent) {
     const Arriving behind = arriving_behind(hit, at, branch, base, tau, state);
     scattered.direct += tau * behind.direct;
     scattered.indirect += tau * behind.indirect;
+    noise = std::hypot(noise, tau.mean() * behind.noise);
   }
   if (is_by_chance(branch, state) && direct_light_.owns(hit.facet, hit.from_back)) {
     *state.by_chance += branch.weight * one_over_pi * M;
@@ -157,6 +159,7 @@ void RayTree::shade(const Branch& branch, const ElementHit& hit, const ShadingPo
   const Spectrum seen = branch.weight * one_over_pi * (M + scattered.direct + scattered.indirect);
   if (is_apart(branch, state)) return add_apart(seen, state);
   state.result.radiance += seen;
+  state.result.variance += std::pow(branch.weight.mean() * one_over_pi * noise, 2.0f);
   if (with_layers_) note_layers(branch, hit, M, rho, scattered, E, state);
 }
 
@@ -174,9 +177,14 @@ RayTree::Arriving RayTree::arriving_from_mesh(const ElementHit& hit, const Shadi
                                               const CoatedBase* base,
                                               const std::optional<ReliefSlope>& relief) const {
   const PatchMesh& mesh = caster_.mesh();
-  Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit),
-             .indirect = interpolate(mesh, solution_.indirect_irradiance, hit)};
-  if (!is_dim) E.indirect *= indirect_gain(hit, at, relief);
+  Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit)};
+  const auto recorded =
+      is_dim ? std::optional<Spectrum>() : indirect_of_records(hit, at, normal, relief);
+  E.indirect = recorded ? *recorded : interpolate(mesh, solution_.indirect_irradiance, hit);
+  if (recorded && solution_.caustic_irradiance.size() > 0) {
+    E.indirect += interpolate(mesh, solution_.caustic_irradiance, hit);
+  }
+  if (!is_dim && !recorded) E.indirect *= indirect_gain(hit, at, relief);
   if (is_dim || !(base || relief)) return E;
   E.direct_on_facet = E.direct;
   const SurfacePoint point{at.position, normal, hit.facet};
@@ -225,17 +233,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
                    .shadows = shadows,
                    .lights = has_dome ? Lights::all_but_dome : Lights::all};
   if (is_dim) return arriving_from_one_light(hit, at, branch, query, state);
-  const auto direct = [&] {
-    const bool is_left = leaves_point(query, hit, branch, scattering, state);
-    Spectrum sum = is_left ? Spectrum(Spectrum::Zero(scene_.bands.count()))
-                           : direct_light_.irradiance(*state.caster, query);
-    if (has_dome) sum += interpolate(mesh, dome_.irradiance, hit);
-    return sum;
-  };
-  if ((base || relief) && with_layers_) E.direct_on_facet = direct();
-  query.base = base;
   query.relief = relief ? &*relief : nullptr;
-  E.direct = direct();
   bool is_gathered = gather_.has_value();
   if (gather_) {
     E.indirect = gather_->indirect_irradiance(
@@ -257,7 +255,32 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
     is_gathered = recorded.has_value();
   }
   add_caustics(hit, at, is_gathered, E.indirect);
+  if (!state.number) query.sky_noise = sky_noise(share, E.indirect);
+  const auto direct = [&](const LightQuery& asked) {
+    const bool is_left = leaves_point(asked, hit, branch, scattering, state);
+    EmitterVisibility found;
+    Spectrum sum = is_left ? Spectrum(Spectrum::Zero(scene_.bands.count()))
+                           : direct_light_.irradiance(*state.caster, asked, &found);
+    E.noise = static_cast<float>(found.drawn_noise);
+    if (has_dome) sum += interpolate(mesh, dome_.irradiance, hit);
+    return sum;
+  };
+  if ((base || relief) && with_layers_) {
+    LightQuery on_facet = query;
+    on_facet.relief = nullptr;
+    E.direct_on_facet = direct(on_facet);
+  }
+  query.base = base;
+  E.direct = direct(query);
   return E;
+}
+
+// The noise that the sky's light may have in a sample of a pixel of which it is a `share`, (0, 1]:
+// twice that of the pixel, which is the mean of four samples and more.
+NoiseGoal RayTree::sky_noise(float share, const Spectrum& indirect) const {
+  constexpr double samples = 4.0, least = 1e-6;
+  const double noise = double{options_.sampling.noise} * std::sqrt(samples / std::max(double{share}, least));
+  return {.irradiance = noise * double{indirect.mean()}, .share = noise, .most_times = 1};
 }
 
 // Leaves the direct light of a point to gathered_light(), if the sample may.
