@@ -22,11 +22,6 @@ constexpr double recall_seconds = 0.5;
 
 bool is_silent = false;
 
-double seconds_between(std::chrono::steady_clock::time_point a,
-                       std::chrono::steady_clock::time_point b) {
-  return std::chrono::duration<double>(b - a).count();
-}
-
 }  // namespace
 
 std::string plain_lines(std::string_view text) {
@@ -49,17 +44,6 @@ void print_error(std::string_view text) {
   if (is_silent) return;
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
-}
-
-double Stopwatch::seconds() const {
-  return seconds_between(start_, std::chrono::steady_clock::now());
-}
-
-double Stopwatch::lap() {
-  const auto now = std::chrono::steady_clock::now();
-  const double seconds = seconds_between(start_, now);
-  start_ = now;
-  return seconds;
 }
 
 Console::Console(const CommonOptions& options)

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <chrono>
 #include <functional>
 #include <string>
 #include <string_view>
@@ -10,6 +9,7 @@
 #include "radiosity/processes/processes.h"
 #include "scene/progress.h"
 #include "scene/scene.h"
+#include "scene/stopwatch.h"
 
 namespace lightwell {
 
@@ -34,18 +34,6 @@ void be_silent();
 /// Prints to standard error. A failure, such as a full disk behind a log file, is left out: no
 /// place remains that would report the failure.
 void print_error(std::string_view text);
-
-/// A clock that starts with its construction.
-class Stopwatch {
- public:
-  /// Seconds since the start.
-  double seconds() const;
-  /// Seconds since the start, and starts again.
-  double lap();
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Progress and messages on standard error. A terminal shows one line that is redrawn (phase,
 /// percent, time left); a file or pipe gets one line per finished phase.

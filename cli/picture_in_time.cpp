@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "radiosity/journal/pace.h"
 
 namespace lightwell {
 namespace {
@@ -28,27 +29,6 @@ std::vector<RenderArguments> from_best_to_quickest(const RenderArguments& argume
   interpolated.pass = "interpolate";
   return {arguments, draft, interpolated};
 }
-
-// Says when a picture is to be given up for a quicker one: when its rows so far tell that they will
-// take much more than the time that was left at its beginning.
-class Pace {
- public:
-  explicit Pace(double allowed) : allowed_(allowed) {}
-
-  bool is_too_slow(std::string_view phase, double share) {
-    if (phase != "render") return false;  // the photons of caustics, which all pictures share
-    if (!watch_) watch_.emplace();
-    // A tenth of the time shows some rows in any picture. Rows from the top, often of a ceiling,
-    // may be cheaper or dearer than the rest, so a fifth too much is no reason yet.
-    constexpr double enough_to_judge = 0.1, too_much = 1.2;
-    const double spent = watch_->seconds();
-    return spent > enough_to_judge * allowed_ && spent > too_much * share * allowed_;
-  }
-
- private:
-  double allowed_;
-  std::optional<Stopwatch> watch_{};
-};
 
 // Records of indirect light, which the picture and its draft share; null: there are none, or they
 // take more than half of the time.
@@ -94,11 +74,12 @@ bool is_given_up(SceneRenderer& renderer, const Camera& camera, const RenderOpti
                  bool may_give_up, PictureInTime& picture) {
   RenderOptions options = options_of(picture.arguments, given);
   if (given.run.has_limit()) options.has_records = given.records != nullptr;
+  // Rows tell the pace; the photons of caustics come first, and all pictures share them.
   Pace pace(given.run.time_left());
   bool gave_up = false;
   RunControl run = given.run;
   run.progress = [&](std::string_view phase, double share) {
-    gave_up = may_give_up && pace.is_too_slow(phase, share);
+    gave_up = may_give_up && phase == "render" && pace.is_too_slow(share);
     return !gave_up && (!given.run.progress || given.run.progress(phase, share));
   };
   Image rows;

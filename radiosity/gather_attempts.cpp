@@ -19,10 +19,10 @@
 #include "radiosity/reconstruct.h"
 #include "radiosity/rows/memory_budget.h"
 #include "radiosity/solution/relight.h"
-#include "radiosity/stopwatch.h"
 #include "radiosity/unjudged_errors.h"
 #include "scene/errors.h"
 #include "scene/name_in_messages.h"
+#include "scene/stopwatch.h"
 
 namespace lightwell {
 namespace {
@@ -122,14 +122,17 @@ class GatherAttempts {
   // Ends with the best result so far once the time is up.
   void run() {
     const RunControl run = options_.run;
-    const bool is_finished = finishes_in_time(run, [this](const RunControl& in_time) {
+    bool is_finished = true;
+    const bool is_in_time = finishes_in_time(run, [&](const RunControl& in_time) {
       options_.run = in_time;
       do {
-        if (!pilot_) refine();
+        is_finished = pilot_ || refines();
+        if (!is_finished) return;
         gather();
         estimate();
       } while (raise_effort());
     });
+    is_finished = is_finished && is_in_time;
     options_.run = run;
     if (!is_finished) end_early();
     if (!caster_) caster_.emplace(solved_.mesh);
@@ -188,10 +191,12 @@ class GatherAttempts {
     return noise_share(std::max(target_of_sky_rays(rays), left));
   }
 
-  // Splits elements and gathers to their vertices with few rays.
-  void refine() {
+  // Splits elements and gathers to their vertices with few rays. Returns false if there is not
+  // enough time for that.
+  bool refines() {
     caster_.reset();
     pilot_ = pilot_gathers_->gather(options_);
+    if (!pilot_) return false;
     if (attempt_ == 0 && target_ > 0.0) {
       std::vector<Effort> efforts = efforts_;
       for (std::size_t p = 0; p < efforts.size(); ++p) {
@@ -205,6 +210,7 @@ class GatherAttempts {
     if (may_save_rays_) save_rays();
     give_back_free_pages();  // splitting elements leaves many
     if (pilot_->tree) spent_["refine"] += watch_.lap();
+    return true;
   }
 
   // Fewer rays of the final gather where the elements leave a large error that rays do not reduce.

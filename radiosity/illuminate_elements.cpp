@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "radiosity/gather_attempts.h"
-#include "radiosity/stopwatch.h"
+#include "scene/stopwatch.h"
 
 namespace lightwell {
 namespace {

@@ -8,10 +8,12 @@
 #include "radiosity/even_caustics.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/gather/vertex_points.h"
+#include "radiosity/journal/pace.h"
 #include "radiosity/patch_light.h"
 #include "radiosity/point_lists.h"
 #include "radiosity/refine/refine_solution.h"
 #include "radiosity/refine/shared_gathers.h"
+#include "scene/errors.h"
 
 namespace lightwell {
 namespace {
@@ -58,6 +60,7 @@ struct PilotGathers::Impl {
   PilotGather at_patches(const SolveOptions& options);
   PilotGather at_base(const SolveOptions& options);
   void prepare(const SolveOptions& options);
+  bool prepares_in_time(const SolveOptions& options);
   PilotGather refined(const SolveOptions& options);
 
   const Scene& scene;
@@ -89,8 +92,10 @@ PatchMesh& PilotGathers::base() {
   return impl_->base;
 }
 
-PilotGather PilotGathers::gather(const SolveOptions& options) {
-  return options.refine.tolerance > 0.0 ? impl_->refined(options) : impl_->unrefined(options);
+std::optional<PilotGather> PilotGathers::gather(const SolveOptions& options) {
+  if (!(options.refine.tolerance > 0.0)) return impl_->unrefined(options);
+  if (!impl_->refinement && !impl_->prepares_in_time(options)) return std::nullopt;
+  return impl_->refined(options);
 }
 
 PilotGather PilotGathers::gather_in_haste(const SolveOptions& options) {
@@ -125,14 +130,25 @@ PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
   gather.rays = std::min(few_rays, gather.rays);
   gather.shadows = Effort{.gather_rays = gather.rays}.shadows(gather.shadows.many_lights);
   gather.replica += pilot_replica;
+  const LitScene lit{scene, caster, direct_light};
   std::vector<int> patches(static_cast<std::size_t>(base.patch_count()));
   std::iota(patches.begin(), patches.end(), 0);
-  const GatheredIrradiance found = gather_irradiance({scene, caster, direct_light}, radiosity,
-                                                     points_on_patches(base, patches), gather);
-  return {.direct = to_vertices(base, found.direct),
-          .indirect = to_vertices(base, found.indirect),
-          .shadows = gather.shadows,
-          .gather_rays = rays_by_part(options)};
+  const auto points = points_on_patches(base, patches);
+  PilotGather pilot{.shadows = gather.shadows, .gather_rays = rays_by_part(options)};
+  // Beside a window the light of the sky changes within a patch more than its noise by few rays.
+  GatherOptions few = gather;
+  few.shadows.min_rays /= 2;
+  few.shadows.max_rays /= 4;
+  SharedGathers shared = find_shared_gathers(scene, base);
+  std::vector<InterpolatedVertex> interpolated = std::move(shared.unread);
+  interpolated.insert(interpolated.end(), shared.read.begin(), shared.read.end());
+  const bool is_finished = finishes_in_time(options.run, [&](const RunControl& in_time) {
+    few.run = in_time;
+    pilot.direct = direct_beside(lit, interpolated, few);
+  });
+  if (!is_finished) pilot.direct = to_vertices(base, gather_direct(lit, points, gather));
+  pilot.indirect = to_vertices(base, gather_indirect(lit, radiosity, points, gather).indirect);
+  return pilot;
 }
 
 // Precondition: refinement has begun.
@@ -165,8 +181,41 @@ void PilotGathers::Impl::prepare(const SolveOptions& options) {
   }
 }
 
+// Returns false if the pace of a gather tells that there is not enough time.
+bool PilotGathers::Impl::prepares_in_time(const SolveOptions& options) {
+  if (!options.run.has_limit()) {
+    prepare(options);
+    return true;
+  }
+  // There are three gathers at least: direct light, and indirect light twice.
+  constexpr double most_of_time = 0.5;
+  const double allowed = most_of_time * options.run.time_left();
+  struct Watch {
+    Pace pace;
+    double before = 0.0;
+    bool is_on = true, gave_up = false;
+  };
+  // The refinement keeps its progress, and with it the watch.
+  const auto watch = std::make_shared<Watch>(Watch{Pace(allowed)});
+  SolveOptions watched = options;
+  watched.run.progress = [allowed, watch, progress = options.run.progress](std::string_view phase,
+                                                                         double share) {
+    if (share < watch->before) watch->pace = Pace(allowed);  // the next gather
+    watch->before = share;
+    watch->gave_up = watch->gave_up || (watch->is_on && watch->pace.is_too_slow(share));
+    return !watch->gave_up && (!progress || progress(phase, share));
+  };
+  try {
+    prepare(watched);
+  } catch (const Interrupted&) {
+    if (!watch->gave_up) throw;
+    return false;
+  }
+  watch->is_on = false;
+  return true;
+}
+
 PilotGather PilotGathers::Impl::refined(const SolveOptions& options) {
-  if (!refinement) prepare(options);
   const ChannelLight by_channel{direct_light, radiosity, caustic};
   RefinedSolution found = refinement->refine(options.refine, all_light ? &by_channel : nullptr);
   BandArray at_vertices = even_caustics->at(*elements, found.refined.vertex);

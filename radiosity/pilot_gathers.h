@@ -59,14 +59,17 @@ class PilotGathers {
 
   /// Refines the elements if `options.refine` has a tolerance, and gathers at their vertices. If
   /// its efforts limit the noise, the rays of the final gather are chosen for that. A further call
-  /// with a smaller tolerance refines the same elements further. Throws InputError if the base has
+  /// with a smaller tolerance refines the same elements further. Empty in limited time if the pace
+  /// of the gather at the base tells that it would not be ready. Throws InputError if the base has
   /// more elements than allowed, Interrupted when progress says stop.
-  PilotGather gather(const SolveOptions& options);
+  std::optional<PilotGather> gather(const SolveOptions& options);
 
   /// Light at the vertices of the base, for want of time in place of gather(): what a gather() that
   /// was stopped has found there. If that one was stopped too early, or light is kept apart by
-  /// channels, a gather of few rays at one point of each patch, which the vertices of the base
-  /// share, without caustics. Throws Interrupted when progress says stop.
+  /// channels, without caustics: indirect light by a gather of few rays at one point of each patch,
+  /// which the vertices of the base share, and direct light by few rays at vertices, of crumbs at
+  /// their records, or at the points of patches if there is not enough time for that. Throws
+  /// Interrupted when progress says stop.
   PilotGather gather_in_haste(const SolveOptions& options);
 
   /// The mesh before refinement; may be moved from after the last pilot gather.

@@ -25,9 +25,9 @@
 #include "radiosity/solve_equations.h"
 #include "radiosity/solvers/solve_channels.h"
 #include "radiosity/solvers/solve_radiosity.h"
-#include "radiosity/stopwatch.h"
 #include "scene/errors.h"
 #include "scene/name_in_messages.h"
+#include "scene/stopwatch.h"
 
 namespace lightwell {
 

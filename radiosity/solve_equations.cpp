@@ -15,7 +15,7 @@
 #include "radiosity/solvers/solve_channels.h"
 #include "radiosity/solvers/solve_radiosity.h"
 #include "radiosity/start_radiosity.h"
-#include "radiosity/stopwatch.h"
+#include "scene/stopwatch.h"
 
 namespace lightwell {
 namespace {

@@ -11,6 +11,7 @@
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
+#include "scene/stopwatch.h"
 
 namespace lightwell {
 namespace {
@@ -89,17 +90,22 @@ class PictureRecords {
                  const RenderOptions& options)
       : lit_(lit),
         seen_(seen),
-        progress_(options.run.progress),
+        run_(options.run),
         gather_(lit.scene, lit.caster, lit.direct_light, solution, options.gather_rays,
                 options.max_depth) {}
 
-  // Returns no records if their relative noise is more than `most_noise`.
+  // Returns no records if their relative noise is more than `most_noise`, and those of wider grids
+  // if there is not enough time for all.
   std::vector<IrradianceRecord> find(double most_noise) {
+    // A narrower grid has about twice the records of the one before.
+    constexpr double growth = 2.0;
+    Stopwatch watch;
     for (int step = widest_step; step >= 1; step /= 2) {
       std::vector<Candidate> candidates = uncovered(step);
       clamp(candidates);
       add(thinned(candidates), step);
       if (step == widest_step && noise() > most_noise) return {};
+      if (growth * watch.lap() > run_.time_left()) break;
       narrow();
     }
     even_out(records_);
@@ -193,7 +199,7 @@ class PictureRecords {
       least_radii_.push_back(least_radius(candidate.place));
     }
     for (int done = 0; done < count; done += between_reports) {
-      report(progress_, "records", share_done(step, static_cast<double>(done) / count));
+      report(run_.progress, "records", share_done(step, static_cast<double>(done) / count));
       parallel_for(std::min(between_reports, count - done), 1, [&](int begin, int end) {
         for (int i = done + begin; i < done + end; ++i) {
           const auto k = static_cast<std::size_t>(i);
@@ -226,7 +232,7 @@ class PictureRecords {
     return square > 0.0 ? std::sqrt(variance / square) : 0.0;
   }
 
-  // A narrower grid has about twice the records of the one before.
+  // By the growth of find().
   static double share_done(int step, double of_step) {
     const double before = static_cast<double>(widest_step) / step - 1.0;
     return (before + of_step * (before + 1.0)) / (2.0 * widest_step - 1.0);
@@ -257,7 +263,7 @@ class PictureRecords {
 
   LitScene lit_;
   const SeenPlaces& seen_;
-  Progress progress_;
+  RunControl run_;
   PixelGather gather_;
   std::vector<IrradianceRecord> records_{};
   std::vector<IrradianceRecord> at_first_{};  // without light, and as wide as they were at first
