@@ -46,11 +46,14 @@ std::vector<Eigen::AlignedBox3d> surface_boxes(const Scene& scene, const PatchMe
   return boxes;
 }
 
-// True if a box holds `scenery` far inside, but for one side: domes may end on the ground.
+// True if a box holds `scenery` far inside, but for one side: domes may end on the ground, or a
+// little above what stands there. A wall beside a lamp is around the lamp on five sides as well,
+// and wholly beyond it on the sixth.
 bool is_around(const Eigen::AlignedBox3d& box, const Eigen::AlignedBox3d& scenery) {
   const double away = scenery.diagonal().norm();
   const Eigen::Array3d below = scenery.min() - box.min(), above = box.max() - scenery.max();
-  return (below >= away).count() + (above >= away).count() >= 5;
+  const bool is_within = (below > -away).all() && (above > -away).all();
+  return is_within && (below >= away).count() + (above >= away).count() >= 5;
 }
 
 // 1 for each patch of a dome that stands for the sky, or another surface far around all that is

@@ -208,6 +208,22 @@ TEST(FindParts, ADomeForTheSkyIsOutside) {
   }
 }
 
+// Each wall is more than ten times as large as the bulb, and around it on five sides, but beyond it
+// on the sixth.
+TEST(FindParts, AWallBesideABulbIsNoBackdrop) {
+  Scene scene;
+  const int wall = add_two_sided(scene), bulb = add_material(scene, diffuse(scene.bands, 0.5f));
+  add_box(scene, {0, 0, 0}, {4, 5, 3}, {wall, wall, wall, wall, wall, wall}, true);
+  add_box(scene, {1, 1.5, 1.2}, {1.1, 1.6, 1.3}, {bulb, bulb, bulb, bulb, bulb, bulb}, false);
+  const Found found = found_in(scene);
+  ASSERT_EQ(found.parts.count(), 2);
+  for (int p = 0; p < found.mesh.patch_count(); ++p) {
+    if (found.mesh.material[p] != wall) continue;
+    EXPECT_EQ(found.parts.of_patch[p] == found.parts.of_patch[0],
+              found.mesh.is_back[p] == found.mesh.is_back[0]);
+  }
+}
+
 TEST(FindParts, ACabinetIsAPartAndACrackIsNone) {
   Scene scene;
   const int m = add_material(scene, diffuse(scene.bands, 0.5f)), board = add_two_sided(scene);
