@@ -26,7 +26,7 @@ struct Opening {
 /// the medial axis). Where P and Q lie opposite each other on the ball, the segment PQ crosses an
 /// opening at its narrowest place, since the ball is empty. At a concave edge no ball fits.
 ///
-/// Openings are at most a tenth of the scene's diagonal wide and at least a millionth. Only the
+/// Openings are at most a tenth of the scene's diagonal wide and at least 5e-6 of it. Only the
 /// 4096 longest edges are looked at, and those longer than 0.2 % of the diagonal. Clear surfaces
 /// leave light through and are looked through; surfaces that move are left out. The processes of
 /// `run` share the edges; no journal keeps them. Throws Interrupted when progress says stop.

@@ -71,5 +71,11 @@ TEST(FindOpenings, HasNoneInAnEmptyRoomOrWhereAllTouches) {
   EXPECT_TRUE(find_openings(closed.scene).empty());
 }
 
+// The rooms' box is 9.8 m long: 20 um are 2e-6 of it, which vertices are rounded by.
+TEST(FindOpenings, HasNoneWhereVerticesAreRounded) {
+  const test::RoomsWithSlit rooms(2e-5);
+  EXPECT_TRUE(find_openings(rooms.scene).empty());
+}
+
 }  // namespace
 }  // namespace lightwell::find_openings_test
