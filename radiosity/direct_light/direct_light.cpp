@@ -162,11 +162,12 @@ const FreeSource* DirectLight::dome() const {
 SkyGlow DirectLight::dome_glow(const ElementCaster& caster, const LightQuery& query, double full,
                                std::uint64_t key) const {
   NoiseGoal goal = query.sky_noise;
+  const ReceiverGain receiver{.base = query.base, .relief = query.relief};
   if (!goal.is_set() && query.shadows.is_one_ray()) {
-    return {sky_->irradiance_by_one_ray(caster, query.at, key, query.relief)};
+    return {sky_->irradiance_by_one_ray(caster, query.at, key, receiver)};
   }
   if (full > 0.0) goal.irradiance /= full;
-  return sky_->irradiance(caster, query.at, key, sky_effort(query.shadows, goal), query.relief);
+  return sky_->irradiance(caster, query.at, key, sky_effort(query.shadows, goal), receiver);
 }
 
 struct DirectLight::Shadows {
@@ -315,7 +316,7 @@ std::vector<LightSample> DirectLight::chosen_emitters(const SurfacePoint& at, st
 template <class Add>
 void DirectLight::for_each_light(const ElementCaster& caster, const LightQuery& query,
                                  EmitterVisibility* visibility, Add&& add) const {
-  const Receiver receiver{.base = query.base, .relief = query.relief};
+  const ReceiverGain receiver{.base = query.base, .relief = query.relief};
   const auto [shadows, tallies, members, dome] =
       this->shadows(caster, query, chosen_lights(caster, query));
   if (visibility) *visibility = {};

@@ -13,7 +13,7 @@
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/coat.h"
-#include "scene/relief.h"
+#include "scene/receiver_gain.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/surface_point.h"
@@ -75,12 +75,12 @@ struct LightQuery {
   /// of them, drawn in proportion to about what each would give, besides the sky's dome. The mean
   /// over keys is the same; a point costs one closed form and one set of shadow rays.
   bool one_stands_for_all = false;
-  /// Base under a coat, by whose CoatedBase::factor() at its angle each light counts: irradiance as
-  /// the base gets it. The light of the sky's dome is taken as even. Null: no coat.
+  /// Base under a coat, by whose CoatedBase::factor() at its angle light counts: irradiance as the
+  /// base gets it. That of an emitter or a lamp counts by the mean over some of its points, as if
+  /// all of it were visible; the dome's by what its rays find. Null: no coat.
   const CoatedBase* base = nullptr;
-  /// Relief by whose ReliefSlope::gain() of its direction light counts: that of an emitter or a
-  /// lamp by the mean over some of its points, as if all of it were visible; the dome's by what its
-  /// rays find. Null: no relief.
+  /// Relief by whose ReliefSlope::gain() of its direction light counts, in the same way. Null: no
+  /// relief.
   const ReliefSlope* relief = nullptr;
   /// Lights that are asked in place of a choice, each over its chance. Null: lights are chosen.
   const std::vector<LightSample>* asked = nullptr;
@@ -190,10 +190,11 @@ class DirectLight {
   const CoatedBase* base_of(int material) const { return bases_.of(material); }
   bool has_coats() const { return !bases_.empty(); }
   /// Direct light that a coated base gets at a point over that of a base without a coat: the mean
-  /// of CoatedBase::factor() over emitters and lamps, by their unoccluded light. Of more than 64
-  /// lights some stand for all. 1 under a sky, whose light is not known here.
+  /// of CoatedBase::factor() over emitters and lamps, by their unoccluded light, and over the dome
+  /// as the surfaces near by see it (see SkyLight::by_cosine). The sun counts as far as the
+  /// surfaces near by see its part of the dome. Of more than 64 lights some stand for all.
   double base_gain(const SurfacePoint& at, const CoatedBase& base) const;
-  /// The same for ReliefSlope::gain().
+  /// The same for ReliefSlope::gain(). 1 under a sky, whose light on slopes is not known here.
   double relief_gain(const SurfacePoint& at, const ReliefSlope& relief) const;
   /// The same for the light of each channel.
   Eigen::ArrayXd base_gains(const SurfacePoint& at, const CoatedBase& base) const;
@@ -213,17 +214,10 @@ class DirectLight {
   std::optional<LightPilot> pilot(const ElementCaster& caster, const LightQuery& query) const;
   std::vector<LightSample> chosen_lights(const ElementCaster& caster,
                                          const LightQuery& query) const;
-  /// Factor of the light that arrives from a direction: that of a coated base, of relief, or both.
-  struct Receiver {
-    const CoatedBase* base = nullptr;
-    const ReliefSlope* relief = nullptr;
-
-    bool is_plain() const { return !base && !relief; }
-    double factor(const Eigen::Vector3d& direction, const Eigen::Vector3d& normal) const;
-  };
-  double factor(int light, const SurfacePoint& at, const Receiver& receiver) const;
-  Eigen::ArrayX2d light_with_factor(const SurfacePoint& at, const Receiver& receiver) const;
-  double gain(const SurfacePoint& at, const Receiver& receiver) const;
+  double factor(int light, const SurfacePoint& at, const ReceiverGain& receiver) const;
+  Eigen::ArrayX2d light_with_factor(const SurfacePoint& at, const ReceiverGain& receiver) const;
+  double arriving_unoccluded(int light, const SurfacePoint& at) const;
+  double gain(const SurfacePoint& at, const ReceiverGain& receiver) const;
   SkyGlow dome_glow(const ElementCaster& caster, const LightQuery& query, double full,
                     std::uint64_t key) const;
   template <class Add>

@@ -7,18 +7,12 @@
 #include "radiosity/emitters/emission_tree.h"
 #include "radiosity/emitters/emitter_shadows.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
+#include "radiosity/sky/sky_light.h"
 
 namespace lightwell {
 
-double DirectLight::Receiver::factor(const Eigen::Vector3d& direction,
-                                     const Eigen::Vector3d& normal) const {
-  double result = base ? base->factor(direction.normalized().dot(normal)) : 1.0;
-  if (relief) result *= relief->gain(direction);
-  return result;
-}
-
 // Mean of the receiver's factor over four points of a light, by the light that they send.
-double DirectLight::factor(int light, const SurfacePoint& at, const Receiver& receiver) const {
+double DirectLight::factor(int light, const SurfacePoint& at, const ReceiverGain& receiver) const {
   const Emitter* emitter = lights_->is_emitter(light) ? &emitters()[light] : nullptr;
   const SolidAngleSampler sampler =
       emitter ? SolidAngleSampler(*emitter, at.position) : SolidAngleSampler();
@@ -35,31 +29,47 @@ double DirectLight::factor(int light, const SurfacePoint& at, const Receiver& re
   return all > 0.0 ? sum / all : 1.0;
 }
 
-// Light per channel that arrives at a point, with the receiver's factor and without, unoccluded.
+// Light of an emitter, a lamp or the sun that arrives at a point without occluders, W/m^2, mean of
+// the bands. Walls hide the sun from most of a room, so it counts by the share of points near by
+// that see it.
+double DirectLight::arriving_unoccluded(int light, const SurfacePoint& at) const {
+  if (const FreeSource* source = lights_->is_emitter(light) ? nullptr : &lights_->source(light)) {
+    if (source->is_dome()) return 0.0;
+    const double kernel = unoccluded_kernel(*source, at.position, at.normal);
+    if (!(kernel > 0.0)) return 0.0;
+    double E = kernel * double{light_towards(*source, at.position).mean()};
+    if (sky_ && source->is_distant()) {
+      E *= sky_->open_share(at, shadow_sample(*source, at, 0.5, 0.5).ray.direction.normalized());
+    }
+    return E;
+  }
+  const Emitter& emitter = emitters()[light];
+  const double F = unoccluded_form_factor(emitter, at);
+  if (!(F > 0.0)) return 0.0;
+  if (!emitter.picture) return F * double{emitter.exitance.mean()};
+  return F * double{pictured_light(emitter, emitter.picture->view(at, F), F).mean()};
+}
+
+// Light per channel that arrives at a point, with the receiver's factor and without, unoccluded but
+// for sky and sun. The dome counts for a base alone.
 Eigen::ArrayX2d DirectLight::light_with_factor(const SurfacePoint& at,
-                                               const Receiver& receiver) const {
+                                               const ReceiverGain& receiver) const {
   Eigen::ArrayX2d sum = Eigen::ArrayX2d::Zero(channel_count(), 2);
-  if (dome() && dome()->is_on()) return sum;
   constexpr int most = 64;
   const int step = std::max(1, (light_count() + most - 1) / most);
   for (int i = 0; i < light_count(); i += step) {
-    const Emitter* emitter = lights_->is_emitter(i) ? &emitters()[i] : nullptr;
-    const FreeSource* source = emitter ? nullptr : &lights_->source(i);
-    const double F = emitter ? unoccluded_form_factor(*emitter, at)
-                             : unoccluded_kernel(*source, at.position, at.normal);
-    if (!(F > 0.0)) continue;
-    Spectrum light = emitter ? emitter->exitance : light_towards(*source, at.position);
-    if (emitter && emitter->picture) {
-      light = pictured_light(*emitter, emitter->picture->view(at, F), F);
-    }
-    const double E = F * static_cast<double>(light.mean());
+    const double E = step * arriving_unoccluded(i, at);
     if (!(E > 0.0)) continue;
     sum.row(lights_->channel(i)) += Eigen::Array2d(E * factor(i, at, receiver), E).transpose();
   }
+  const FreeSource* const dome = this->dome();
+  if (!dome || !dome->is_on() || !receiver.base) return sum;
+  sum.row(dome->channel) +=
+      double{dome->light.mean()} * sky_->by_cosine(at)->at_base(*receiver.base).transpose();
   return sum;
 }
 
-double DirectLight::gain(const SurfacePoint& at, const Receiver& receiver) const {
+double DirectLight::gain(const SurfacePoint& at, const ReceiverGain& receiver) const {
   const Eigen::Array2d all = light_with_factor(at, receiver).colwise().sum();
   return all[1] > 0.0 ? all[0] / all[1] : 1.0;
 }
@@ -69,6 +79,7 @@ double DirectLight::base_gain(const SurfacePoint& at, const CoatedBase& base) co
 }
 
 double DirectLight::relief_gain(const SurfacePoint& at, const ReliefSlope& relief) const {
+  if (dome() && dome()->is_on()) return 1.0;
   return gain(at, {.relief = &relief});
 }
 

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <tuple>
 
-#include "mesh/patches/patch_patterns.h"
 #include "mesh/patches/patch_textures.h"
 #include "mesh/patches/pictured_emission.h"
 #include "mesh/patches/translucency.h"
+#include "radiosity/direct_light/patch_base.h"
 #include "radiosity/gather/hemisphere_gather.h"
 #include "radiosity/gather/vertex_points.h"
 #include "radiosity/journal/journal_phase.h"
@@ -193,12 +193,8 @@ BandArray direct_gains(const PatchMesh& mesh, const DirectLight& direct_light,
   constexpr int grain = 256;
   parallel_for(mesh.vertex_count(), grain, [&](int begin, int end) {
     for (int v = begin; v < end; ++v) {
-      const CoatedBase* base = direct_light.base_of(mesh.material[patch[v]]);
+      const std::optional<CoatedBase> base = base_of_patch(direct_light, mesh, patch[v]);
       if (!base) continue;
-      const bool has_pattern = mesh.patterns && mesh.patterns->is_given(patch[v]);
-      std::optional<CoatedBase> own;
-      if (has_pattern) own = mesh.patterns->base_of(patch[v]);
-      if (own) base = &*own;
       const GatherPoint point = points[v];
       const SurfacePoint at{point.position, point.normal, point.facet};
       if (channels == direct_light.channel_count()) {

@@ -139,16 +139,16 @@ std::shared_ptr<const SkyLight::Shares> SkyLight::shares_at(const ElementCaster&
 class SkyLight::Estimate {
  public:
   Estimate(const SkyLight& sky, const ElementCaster& caster, const SurfacePoint& at,
-           std::uint64_t key, const ReliefSlope* relief)
+           std::uint64_t key, const ReceiverGain& gain)
       : sky_(sky),
         caster_(caster),
         at_(at),
         key_(key),
-        relief_(relief),
+        receiver_(gain),
         shares_(sky.shares_at(caster, at, key)) {}
 
-  // Mean of the relief's gain over the light that all rays so far have found.
-  float gain() const { return found_ > 0.0 ? static_cast<float>(gained_ / found_) : 1.0f; }
+  // Mean of the receiver's factor over the light that all rays so far have found.
+  double gain() const { return found_ > 0.0 ? gained_ / found_ : 1.0; }
 
   SkyGlow glow(const SkyEffort& effort) {
     if (cells().empty()) return {Spectrum::Zero(sky_.bands_)};
@@ -277,10 +277,10 @@ class SkyLight::Estimate {
       add(sample, passed, seen);
       ++tally.clear;
     }
-    for (std::size_t i = 0; relief_ && i < ray.size(); ++i) {
+    for (std::size_t i = 0; !receiver_.is_plain() && i < ray.size(); ++i) {
       const double found = samples[i].weight * passed_share[i];
       found_ += found;
-      gained_ += found * relief_->gain(ray[i].direction);
+      gained_ += found * receiver_.factor(ray[i].direction, at_.normal);
     }
     const double visible = tally.all_open.sum() > 0.0 ? seen_share(tally).mean() : 0.0;
     const auto term = [&](std::size_t i) {
@@ -309,17 +309,81 @@ class SkyLight::Estimate {
   const ElementCaster& caster_;
   const SurfacePoint& at_;
   std::uint64_t key_;
-  const ReliefSlope* relief_;
+  ReceiverGain receiver_;
   double found_ = 0.0, gained_ = 0.0;
   std::shared_ptr<const Shares> shares_;
 };
 
 SkyGlow SkyLight::irradiance(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key,
-                             const SkyEffort& effort, const ReliefSlope* relief) const {
-  Estimate estimate(*this, caster, at, key, relief);
+                             const SkyEffort& effort, const ReceiverGain& gain) const {
+  Estimate estimate(*this, caster, at, key, gain);
   SkyGlow glow = estimate.glow(effort);
-  glow.irradiance *= estimate.gain();
+  glow.gain = estimate.gain();
+  glow.irradiance *= static_cast<float>(glow.gain);
   return glow;
+}
+
+Eigen::Array2d SkyByCosine::at_base(const CoatedBase& base) const {
+  Eigen::Array2d sum = Eigen::Array2d::Zero();
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    if (light[i] > 0.0) sum += light[i] * Eigen::Array2d(base.factor(cosine[i]), 1.0);
+  }
+  return sum;
+}
+
+SkyByCosine SkyLight::light_by_cosine(const SkySites::Site& site,
+                                      const Eigen::Vector3d& normal) const {
+  thread_local RecentNormals recent;
+  const Eigen::ArrayXf& E = recent.irradiances(cells_, number_, normal.cast<float>());
+  SkyByCosine sum;
+  for (int c = 0; c < SkyCells::count; ++c) {
+    const double light = double{E[c]} * double{site.open[static_cast<std::size_t>(c)]};
+    if (!(light > 0.0)) continue;
+    std::array<double, 4> cosine;
+    double all = 0.0;
+    for (std::size_t i = 0; i < cosine.size(); ++i) {
+      const double u = i % 2 == 0 ? 0.25 : 0.75, v = i < 2 ? 0.25 : 0.75;
+      // Of a cell that the horizon cuts, all four may lie below.
+      constexpr double least = 1e-3;
+      cosine[i] = std::max(cells_.direction(c, u, v).dot(normal), least);
+      all += cosine[i];
+    }
+    for (const double mu : cosine) {
+      const auto step =
+          static_cast<std::size_t>(std::min(SkyByCosine::steps * mu, SkyByCosine::steps - 1.0));
+      const double part = light * mu / all;
+      sum.light[step] += part;
+      sum.cosine[step] += part * mu;
+    }
+  }
+  for (std::size_t i = 0; i < sum.light.size(); ++i) {
+    if (sum.light[i] > 0.0) sum.cosine[i] /= sum.light[i];
+  }
+  return sum;
+}
+
+// The light of the point before serves again, as in shares_at().
+std::shared_ptr<const SkyByCosine> SkyLight::by_cosine(const SurfacePoint& at) const {
+  const SkySites::Site* found = sites_.find(at);
+  const SkySites::Site& site = found ? *found : sites_.unknown();
+  struct Last {
+    std::uint64_t sky = 0;
+    const SkySites::Site* site = nullptr;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+    std::shared_ptr<const SkyByCosine> light{};
+  };
+  thread_local Last last;
+  if (last.sky != number_ || last.site != &site || last.normal != at.normal) {
+    last = {number_, &site, at.normal,
+            std::make_shared<const SkyByCosine>(light_by_cosine(site, at.normal))};
+  }
+  return last.light;
+}
+
+double SkyLight::open_share(const SurfacePoint& at, const Eigen::Vector3d& direction) const {
+  const SkySites::Site* site = sites_.find(at);
+  if (!site) return 1.0;
+  return double{site->open[static_cast<std::size_t>(cells_.cell_of(direction))]};
 }
 
 // A cell of a site, and its step of the running sum.
@@ -351,7 +415,7 @@ double SkyLight::density(const SkySites::Site& site, const Eigen::Vector3d& dire
 }
 
 Spectrum SkyLight::irradiance_by_one_ray(const ElementCaster& caster, const SurfacePoint& at,
-                                         std::uint64_t key, const ReliefSlope* relief) const {
+                                         std::uint64_t key, const ReceiverGain& gain) const {
   const SkySites::Site* found = sites_.find(at);
   const SkySites::Site& site = found ? *found : sites_.unknown();
   const auto u = [&](std::uint64_t i) {
@@ -371,7 +435,7 @@ Spectrum SkyLight::irradiance_by_one_ray(const ElementCaster& caster, const Surf
   }
   // L cos over the density of the direction: its density within the cell times step / all.
   double weight = cosine * cells_.power(cell) * static_cast<double>(site.sum.back() / step);
-  if (relief) weight *= relief->gain(sample.direction);
+  if (!gain.is_plain()) weight *= gain.factor(sample.direction, at.normal);
   return passed * (weight * cells_.colour(cell)).cast<float>();
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <memory>
 
@@ -9,7 +10,7 @@
 #include "radiosity/sky/sky_cells.h"
 #include "radiosity/sky/sky_sites.h"
 #include "radiosity/visibility/clear_panes.h"
-#include "scene/relief.h"
+#include "scene/receiver_gain.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/surface_point.h"
@@ -32,6 +33,17 @@ struct SkyGlow {
   Spectrum irradiance{};  ///< W/m^2
   /// Estimated standard error, mean of the bands, W/m^2: little above the true one (see SkyLight).
   double noise = 0.0;
+  double gain = 1.0;  ///< mean of the receiver's factor over the light, which `irradiance` has
+};
+
+/// About the irradiance that a point gets from the dome, in steps of the cosine to its normal.
+struct SkyByCosine {
+  static constexpr int steps = 32;
+  std::array<double, steps> light{};   ///< W/m^2, mean of the bands
+  std::array<double, steps> cosine{};  ///< mean over the light of each step
+
+  /// The light with CoatedBase::factor(), and without it.
+  Eigen::Array2d at_base(const CoatedBase& base) const;
 };
 
 /// Irradiance from the dome of a Sky, without its sun, which is another source.
@@ -62,15 +74,23 @@ class SkyLight {
   void find_all() { sites_.find_all(); }
 
   /// E per band, W/m^2, at a point. `key` decides the directions of the rays; panes dim the light
-  /// that passes through them. With `relief`, E counts times the mean of ReliefSlope::gain() over
-  /// the light that the rays find.
+  /// that passes through them. E counts times the mean of `gain` over the light that the rays
+  /// find.
   SkyGlow irradiance(const ElementCaster& caster, const SurfacePoint& at, std::uint64_t key,
-                     const SkyEffort& effort = {}, const ReliefSlope* relief = nullptr) const;
+                     const SkyEffort& effort = {}, const ReceiverGain& gain = {}) const;
 
   /// An estimate of E by a single ray, unbiased, for points that are themselves many samples: the
   /// noise is that of the light through the cells that the site knows as open.
   Spectrum irradiance_by_one_ray(const ElementCaster& caster, const SurfacePoint& at,
-                                 std::uint64_t key, const ReliefSlope* relief = nullptr) const;
+                                 std::uint64_t key, const ReceiverGain& gain = {}) const;
+
+  /// About the light of the dome at a point by its angle, without rays of the point: that of the
+  /// cells, as far as the rays of the point's site got out. Where nothing is known, the light of an
+  /// unobstructed point.
+  std::shared_ptr<const SkyByCosine> by_cosine(const SurfacePoint& at) const;
+  /// About the share of points near `at` that see a unit direction: 0 or 1 in the open, or the
+  /// share that the site's rays found. 1 where nothing is known.
+  double open_share(const SurfacePoint& at, const Eigen::Vector3d& direction) const;
 
   /// A direction towards the dome, drawn as for irradiance_by_one_ray().
   struct Aim {
@@ -95,6 +115,7 @@ class SkyLight {
   struct Shares;
   void set_weights(Shares& shares) const;
   Shares shares_of(const SkySites::Weights& site, const Eigen::Vector3d& normal) const;
+  SkyByCosine light_by_cosine(const SkySites::Site& site, const Eigen::Vector3d& normal) const;
   std::shared_ptr<const Shares> shares_at(const ElementCaster& caster, const SurfacePoint& at,
                                           std::uint64_t key) const;
 

@@ -184,8 +184,11 @@ const SkySites::Site& SkySites::site_of(Place& place) const {
     }
     const CellVisibility own =
         visibility_by_ways(*caster_, place.points, place.key, visibility_of(place));
-    place.site =
-        std::make_unique<const Site>(site_by(weights_of(own, beside), axis_of(point.normal)));
+    Site site = site_by(weights_of(own, beside), axis_of(point.normal));
+    for (std::size_t i = 0; i < SkyCells::count; ++i) {
+      if (own.tried[i] > 0.0f) site.open[i] = own.open[i] / own.tried[i];
+    }
+    place.site = std::make_unique<const Site>(site);
   });
   return *place.site;
 }
@@ -423,6 +426,7 @@ SkySites::Site SkySites::site_by(const Weights& weights, const Eigen::Vector3d& 
   for (std::size_t i = 0; i < SkyCells::count; ++i) {
     sum += facing[i] * (weights[i] > 0.0f ? double{weights[i]} : thinning);
     site.sum[i] = static_cast<float>(sum);
+    site.open[i] = weights[i] * weights[i];  // see weights_of()
   }
   return site;
 }

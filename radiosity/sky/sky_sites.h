@@ -42,6 +42,9 @@ class SkySites {
     /// Running sum over the cells of the weights that single rays are drawn by: power, times what
     /// `weights` says, times the cosine to the axis that surfaces of the site face.
     std::array<float, SkyCells::count> sum{};
+    /// Share of the rays through each cell that got out: those of the site, or where it has none,
+    /// those of the cells and sites beside.
+    std::array<float, SkyCells::count> open{};
   };
 
   /// Sites of the surfaces of the caster's mesh, which must outlive them, or last until find_all().
