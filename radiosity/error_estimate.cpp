@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "mesh/patches/patch_sampler.h"
+#include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/error_reference.h"
 #include "scene/random_purpose.h"
@@ -386,8 +387,7 @@ std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptio
   SampledSolution sampled = sample_solution(mesh, solution, irradiance, samples);
   const PartMeans means_of_mesh = part_means(mesh, irradiance, parts);
   choose_rays(options, mesh, samples, points, means_of_mesh, sampled);
-  const BandArray radiosity =
-      gatherable_radiosity(mesh, lit.direct_light, irradiance, solution.direct_irradiance);
+  const BandArray radiosity = gatherable_radiosity(lit, irradiance, solution.direct_irradiance);
   irradiance.resize(0, 0);
   const GatheredIrradiance gathered =
       gather_irradiance(lit, radiosity, sampled.points, independent_gather(options, batch));

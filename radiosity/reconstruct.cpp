@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/part_balance.h"
 #include "radiosity/patch_light.h"
@@ -26,8 +27,7 @@ BandArray with_indirect(const PilotGather& pilot, const BandArray& indirect) {
 VertexGather gather_in(const VertexGatherTask& task, BandArray irradiance,
                        const RadiositySolution& solution, KeptGather& kept) {
   const PatchMesh& mesh = task.lit.mesh();
-  BandArray radiosity =
-      gatherable_radiosity(mesh, task.lit.direct_light, irradiance, task.pilot.direct);
+  BandArray radiosity = gatherable_radiosity(task.lit, irradiance, task.pilot.direct);
   irradiance.resize(0, 0);
   if (task.pilot.tree) {
     keep_power(mesh, task.lit.direct_light, unscaled_radiosity(solution), radiosity);

@@ -35,12 +35,13 @@ void add_picture_inputs(Fingerprint& print, const ElementCaster& caster,
                focus_distance, blades, shutter_open, shutter_close, motion, projection, view_width,
                near_distance, far_distance, shift, window, distortion, circle_degrees,
                eye_separation] = camera;
-  // Left out are `records`, `caustics`, `slant`, `found_virtual_lights` and `visible_lamps`, which
-  // follow from the rest; `layers`, whose names render() adds; `run` and `rows_done`, which change
-  // no bit.
+  // Left out are `records`, `caustics`, `slant`, `base_gains`, `found_virtual_lights` and
+  // `visible_lamps`, which follow from the rest; `layers`, whose names render() adds; `run` and
+  // `rows_done`, which change no bit.
   const auto& [pass, max_depth, min_contribution, shadows, gather_rays, has_records, records,
-               virtual_lights, found_virtual_lights, photons, caustics, slant, visible_lamps,
-               glossy_rays, sampling, max_subdivision, contrast, layers, run, rows_done] = options;
+               virtual_lights, found_virtual_lights, photons, caustics, slant, base_gains,
+               visible_lamps, glossy_rays, sampling, max_subdivision, contrast, layers, run,
+               rows_done] = options;
   const auto& [min_shadow_rays, max_shadow_rays, sky_rays, cluster_share, many_lights] = shadows;
   const auto& [most_samples, least_samples, noise] = sampling;
   for (const Eigen::Vector3d* v : {&position, &direction, &up}) print.add(*v);

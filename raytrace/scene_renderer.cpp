@@ -6,6 +6,7 @@
 #include "raytrace/caustics/caustic_map.h"
 #include "raytrace/picture_records.h"
 #include "raytrace/shading/indirect_slant.h"
+#include "raytrace/shading/picture_base_gains.h"
 #include "raytrace/shading/visible_lamps.h"
 #include "raytrace/virtual_lights/virtual_lights.h"
 
@@ -38,6 +39,15 @@ std::shared_ptr<const BandArray> SceneRenderer::slant(const RenderOptions& optio
   return slant_;
 }
 
+std::shared_ptr<const BandArray> SceneRenderer::base_gains(const RenderOptions& options) {
+  if (options.pass == Pass::gather || options.pass == Pass::virtual_lights) return nullptr;
+  const std::lock_guard lock(mutex_);
+  if (!base_gains_) {
+    base_gains_ = std::make_shared<const BandArray>(picture_base_gains(lit(), solution_));
+  }
+  return base_gains_;
+}
+
 std::shared_ptr<const VisibleLamps> SceneRenderer::visible_lamps() {
   const std::lock_guard lock(mutex_);
   if (!visible_lamps_) {
@@ -53,11 +63,10 @@ std::shared_ptr<const VirtualLights> SceneRenderer::virtual_lights(const RenderO
   if (!virtual_lights_ || virtual_count_ != options.virtual_lights ||
       virtual_depth_ != options.max_depth || virtual_caustics_ != options.caustics) {
     virtual_lights_ = std::make_shared<const VirtualLights>(
-        LitScene{scene_, caster_, direct_light_},
-        VirtualLightOptions{.count = options.virtual_lights,
-                            .max_specular_depth = options.max_depth,
-                            .caustics = options.caustics,
-                            .progress = options.run.progress});
+        lit(), VirtualLightOptions{.count = options.virtual_lights,
+                                   .max_specular_depth = options.max_depth,
+                                   .caustics = options.caustics,
+                                   .progress = options.run.progress});
     virtual_count_ = options.virtual_lights;
     virtual_depth_ = options.max_depth;
     virtual_caustics_ = options.caustics;
@@ -69,6 +78,7 @@ Image SceneRenderer::render(const Camera& camera, RenderOptions options, RenderR
   validate(options);
   options.caustics = caustics(options);
   options.slant = slant(options);
+  options.base_gains = base_gains(options);
   options.visible_lamps = visible_lamps();
   options.found_virtual_lights = virtual_lights(options);
   return lightwell::render(scene_, caster_, direct_light_, solution_, camera, options, report);
@@ -77,8 +87,7 @@ Image SceneRenderer::render(const Camera& camera, RenderOptions options, RenderR
 std::shared_ptr<const IrradianceRecords> SceneRenderer::records(
     const Camera& camera, const RenderOptions& options) const {
   validate(options);
-  return find_records({scene_, caster_, direct_light_}, solution_, camera, CameraRays(camera),
-                      options);
+  return find_records(lit(), solution_, camera, CameraRays(camera), options);
 }
 
 std::optional<IncidentLight> SceneRenderer::incident_light(const Camera& camera) const {

@@ -1,19 +1,12 @@
 #include "radiosity/gather/final_gather.h"
 
 #include <algorithm>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <tuple>
 
-#include "mesh/patches/patch_textures.h"
-#include "mesh/patches/pictured_emission.h"
-#include "mesh/patches/translucency.h"
-#include "radiosity/direct_light/patch_base.h"
 #include "radiosity/gather/hemisphere_gather.h"
-#include "radiosity/gather/vertex_points.h"
 #include "radiosity/journal/journal_phase.h"
-#include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
@@ -179,66 +172,6 @@ BandArray gather_shares(const LitScene& lit, const GatherPoints& points,
                    hemisphere.gather(at, key, shares.row(i).data(), variance);
                  });
   return shares;
-}
-
-namespace {
-
-// Gains of coated bases, vertices x channels: the direct light that a base gets beyond its
-// irradiance, as a share of the irradiance. Empty without coats.
-BandArray direct_gains(const PatchMesh& mesh, const DirectLight& direct_light,
-                       const std::vector<int>& patch, Eigen::Index channels) {
-  if (!direct_light.has_coats()) return {};
-  BandArray gains = BandArray::Zero(mesh.vertex_count(), channels);
-  const VertexGatherPoints points(mesh);
-  constexpr int grain = 256;
-  parallel_for(mesh.vertex_count(), grain, [&](int begin, int end) {
-    for (int v = begin; v < end; ++v) {
-      const std::optional<CoatedBase> base = base_of_patch(direct_light, mesh, patch[v]);
-      if (!base) continue;
-      const GatherPoint point = points[v];
-      const SurfacePoint at{point.position, point.normal, point.facet};
-      if (channels == direct_light.channel_count()) {
-        gains.row(v) = (direct_light.base_gains(at, *base) - 1.0).cast<float>().transpose();
-      } else {
-        gains.row(v).setConstant(static_cast<float>(direct_light.base_gain(at, *base) - 1.0));
-      }
-    }
-  });
-  return gains;
-}
-
-}  // namespace
-
-BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
-                               const BandArray& irradiance,
-                               const Eigen::Ref<const BandArray>& direct) {
-  const std::vector<int> patch = vertex_patches(mesh);
-  const BandArray rho = vertex_reflectance(mesh), emission = vertex_emission(mesh);
-  const Eigen::Index bands = mesh.reflectance.cols();
-  BandArray gains;
-  if (direct.rows() > 0) gains = direct_gains(mesh, direct_light, patch, direct.cols() / bands);
-  BandArray B(irradiance.rows(), irradiance.cols()), at_base = irradiance;
-  for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const int p = patch[v], facet = mesh.facet[mesh.first_element[p]];
-    for (Eigen::Index k = 0; k < B.cols(); k += bands) {
-      B.row(v).segment(k, bands) = rho.row(v) * irradiance.row(v).segment(k, bands);
-      if (gains.size() > 0 && gains(v, k / bands) != 0.0f) {
-        B.row(v).segment(k, bands) +=
-            gains(v, k / bands) * rho.row(v) * direct.row(v).segment(k, bands);
-        at_base.row(v).segment(k, bands) += gains(v, k / bands) * direct.row(v).segment(k, bands);
-      }
-    }
-    if (direct_light.owns(facet, mesh.is_back[p] != 0)) continue;
-    B.row(v).segment(direct_light.first_column(facet), bands) += emission.row(v);
-  }
-  add_transmitted(mesh, at_base, B);
-  return B;
-}
-
-BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
-                               const RadiositySolution& solution) {
-  return gatherable_radiosity(mesh, direct_light, solution.irradiance(),
-                              solution.direct_irradiance);
 }
 
 }  // namespace lightwell

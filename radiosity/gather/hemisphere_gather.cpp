@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "scene/random_purpose.h"
@@ -58,13 +59,46 @@ HemisphereGather::HemisphereGather(const LitScene& lit, ReadRadiosity radiosity,
 
 void HemisphereGather::gather(const GatherPoint& at, std::uint64_t key, float* irradiance,
                               float& variance) const {
+  Place place{.at = at, .key = key};
+  const Sums sum = sums(place);
+  Eigen::Map<Eigen::ArrayXf>(irradiance, radiosity_.columns()) =
+      ((sum[0] + sum[1]) / place.rays).cast<float>();
+  variance = half_difference(sum, place.rays);
+}
+
+Eigen::ArrayX2d HemisphereGather::gather_at_base(const GatherPoint& at, std::uint64_t key,
+                                                 const CoatedBase& base) const {
+  const Eigen::Index columns = radiosity_.columns();
+  AtBase at_base{.base = base, .light = Eigen::ArrayXd::Zero(columns)};
+  Place place{.at = at, .key = key, .at_base = &at_base};
+  const Sums sum = sums(place);
+  Eigen::ArrayX2d light(columns, 2);
+  light.col(0) = at_base.factors > 0.0 ? Eigen::ArrayXd(at_base.light / at_base.factors)
+                                       : Eigen::ArrayXd(Eigen::ArrayXd::Zero(columns));
+  light.col(1) = (sum[0] + sum[1]) / place.rays;
+  return light;
+}
+
+// Adds what `add` finds along a ray to a sum, and by the base's factor to what the base gets.
+template <class Add>
+void HemisphereGather::add_to(const Place& place, const Ray& ray, Eigen::ArrayXd& sum, Add&& add) {
+  if (!place.at_base) return add(sum);
+  Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
+  add(found);
+  sum += found;
+  place.at_base->light +=
+      place.at_base->base.factor(place.at.normal.dot(ray.direction.normalized())) * found;
+}
+
+// The light of all rays of a place; completes the place.
+HemisphereGather::Sums HemisphereGather::sums(Place& place) const {
+  const auto& [at, key] = std::tie(place.at, place.key);
   const Eigen::Index columns = radiosity_.columns();
   Sums sum{Eigen::ArrayXd::Zero(columns), Eigen::ArrayXd::Zero(columns)};
   const HemisphereSets& set = sets_.at(ray_count(at, options_));
   const HemisphereSets::Draw draw = set.draw(random_key(key, RandomPurpose::gather_rays));
   const Eigen::Matrix3d frame = draw.frame(at.normal);
-  const int count = set.count();
-  Place place{.at = at, .key = key, .rays = count};
+  const int count = place.rays = set.count();
   if (!bright_.is_empty()) place.bright = bright_.view(at.position, at.normal, count);
   if (options_.portals) place.portals = options_.portals->view(at.position, at.normal, count);
   std::array<Ray, gather_batch> ray;
@@ -88,15 +122,18 @@ void HemisphereGather::gather(const GatherPoint& at, std::uint64_t key, float* i
     for (std::size_t r = 0; r < n; ++r) {
       const std::uint64_t index = static_cast<std::uint64_t>(begin) + r;
       const int rank = begin / HemisphereSets::block * HemisphereSets::block + points[r].rank;
-      add(place, ray[r], hit[r], index, aimed_density(place, ray[r], hit[r]),
-          sum[rank < count / 2 ? 0 : 1]);
+      add_to(place, ray[r], sum[rank < count / 2 ? 0 : 1], [&](Eigen::ArrayXd& half) {
+        add(place, ray[r], hit[r], index, aimed_density(place, ray[r], hit[r]), half);
+      });
+      if (place.at_base) {
+        place.at_base->factors += place.at_base->base.factor(at.normal.dot(ray[r].direction));
+      }
     }
   }
   if (!place.bright.is_empty()) aim_at_bright(place, sum);
   if (!place.portals.is_empty()) aim_at_portals(place, sum);
   if (place.exits) aim_at_exits(place, sum);
-  Eigen::Map<Eigen::ArrayXf>(irradiance, columns) = ((sum[0] + sum[1]) / set.count()).cast<float>();
-  variance = half_difference(sum, set.count());
+  return sum;
 }
 
 // Number times density, 1/sr, of rays aimed at the portals that the ray passes, and at exits.
@@ -137,7 +174,8 @@ void HemisphereGather::aim_at_bright(const Place& place, Sums& sum) const {
       const bool is_first = begin + static_cast<int>(r) < aims.count() / 2;
       const double share = bright_.share(place.bright, at.normal.dot(ray[r].direction), place.rays,
                                          ray[r], hit[r], aimed_density(place, ray[r], hit[r]));
-      add_straight(place, ray[r], hit[r], share, sum[is_first ? 0 : 1]);
+      add_to(place, ray[r], sum[is_first ? 0 : 1],
+             [&](Eigen::ArrayXd& half) { add_straight(place, ray[r], hit[r], share, half); });
     }
   }
 }
@@ -190,8 +228,9 @@ void HemisphereGather::aim(const Place& place, const SobolPoints& aims, std::uin
       if (!(density > 0.0) || !(at.normal.dot(ray[r].direction) > 0.0)) continue;
       const std::size_t index = static_cast<std::size_t>(begin) + r;
       const bool is_first = index < static_cast<std::size_t>(aims.count() / 2);
-      add(place, ray[r], hit[r], static_cast<std::uint64_t>(first_index) + index, density,
-          sum[is_first ? 0 : 1]);
+      add_to(place, ray[r], sum[is_first ? 0 : 1], [&](Eigen::ArrayXd& half) {
+        add(place, ray[r], hit[r], static_cast<std::uint64_t>(first_index) + index, density, half);
+      });
     }
   }
 }

@@ -12,6 +12,7 @@
 #include "radiosity/gather/read_radiosity.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/paths/light_path.h"
+#include "scene/coat.h"
 #include "scene/hemisphere_sets.h"
 #include "scene/sampling.h"
 
@@ -33,10 +34,23 @@ class HemisphereGather {
   /// first and the second half of the rays are each stratified.
   void gather(const GatherPoint& at, std::uint64_t key, float* irradiance, float& variance) const;
 
+  /// The same light as the base under a coat at the point gets it, by CoatedBase::factor() of each
+  /// ray, and as it arrives: columns x 2, W/m^2. The factor is over its mean for the
+  /// cosine-distributed rays, so that the two are equal in even light.
+  Eigen::ArrayX2d gather_at_base(const GatherPoint& at, std::uint64_t key,
+                                 const CoatedBase& base) const;
+
  private:
   HemisphereGather(const LitScene& lit, ReadRadiosity radiosity, BrightPatches bright,
                    const GatherOptions& options, const GatherPoints& points);
 
+  // Sums over the rays of a point under a coat: of the factors of the cosine-distributed rays, and
+  // of the light of all rays by their factors.
+  struct AtBase {
+    const CoatedBase& base;
+    double factors = 0.0;
+    Eigen::ArrayXd light{};
+  };
   // A gather point, and the bright patches, portals and exits of a gap that are seen from there.
   struct Place {
     const GatherPoint& at;
@@ -45,9 +59,13 @@ class HemisphereGather {
     BrightPatches::View bright{};
     Portals::View portals{};
     std::optional<GapExits> exits{};
+    AtBase* at_base = nullptr;  // null: the light of no base is wanted
   };
   using Sums = std::array<Eigen::ArrayXd, 2>;  // of the two halves of the rays
 
+  Sums sums(Place& place) const;
+  template <class Add>
+  static void add_to(const Place& place, const Ray& ray, Eigen::ArrayXd& sum, Add&& add);
   double aimed_density(const Place& place, const Ray& ray, const ElementHit& hit) const;
 
   void aim_at_bright(const Place& place, Sums& sum) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/gather/vertex_points.h"
 #include "radiosity/refine/channel_light.h"
@@ -252,9 +253,9 @@ void VertexGathers::sharpen_radiosity(const BandArray& caustic) {
   GatheredIrradiance gathered = sharpened_indirect(radiosity_);
   BandArray irradiance = direct_.topRows(mesh.vertex_count()) + gathered.indirect;
   if (caustic.size() > 0) irradiance += caustic;
-  radiosity_ = with_pools(
-      mesh, radiosity_,
-      gatherable_radiosity(mesh, direct_light_, irradiance, direct_.topRows(mesh.vertex_count())));
+  radiosity_ =
+      with_pools(mesh, radiosity_,
+                 gatherable_radiosity(lit(), irradiance, direct_.topRows(mesh.vertex_count())));
   if (!effort_.has_noise_goal()) return;
   Eigen::ArrayXf rays(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) rays[v] = static_cast<float>(effort_.rays(v));
@@ -345,7 +346,7 @@ BandArray VertexGathers::sharpened_by_channel(const BandArray& direct,
       direct.topRows(mesh.vertex_count()) + sharpened_indirect(light.radiosity).indirect;
   if (light.caustic.size() > 0) irradiance += light.caustic;
   return with_pools(mesh, light.radiosity,
-                    gatherable_radiosity(mesh, light.direct_light, irradiance,
+                    gatherable_radiosity({scene_, caster_, light.direct_light}, irradiance,
                                          direct.topRows(mesh.vertex_count())));
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/refine/illuminance_bound.h"
 #include "radiosity/sky/sky_light.h"
@@ -162,8 +163,8 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
     }
     points.push_back(probe_point(probe, found));
   }
-  const BandArray B = gatherable_radiosity(caster.mesh(), direct_light, solution);
   const LitScene lit{scene, caster, direct_light};
+  const BandArray B = gatherable_radiosity(lit, solution);
   BandArray E = probe_gather(lit, B, points, options, caustics, solution, bounds);
   E += caustics.irradiance;
   const MirroredLight mirrored =

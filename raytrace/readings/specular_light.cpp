@@ -427,6 +427,7 @@ SpecularIrradiance specular_irradiance(const LitScene& lit, const RadiositySolut
   const RenderOptions tree_options{.max_depth = options.max_depth,
                                    .min_contribution = 1e-2f,
                                    .slant = std::make_shared<const BandArray>(),
+                                   .base_gains = std::make_shared<const BandArray>(),
                                    .visible_lamps = std::make_shared<const VisibleLamps>()};
   const RayTree tree(lit.scene, lit.caster, lit.direct_light, solution, tree_options);
   std::atomic<int> done = 0;

@@ -6,6 +6,7 @@
 #include <span>
 
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/gather/gatherable_radiosity.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
@@ -40,7 +41,7 @@ PixelGather::PixelGather(const Scene& scene, const ElementCaster& caster,
                          const DirectLight& direct_light, const RadiositySolution& solution,
                          int most_rays, int max_specular_depth)
     : paths_(scene, caster, max_specular_depth),
-      radiosity_(gatherable_radiosity(caster.mesh(), direct_light, solution)),
+      radiosity_(gatherable_radiosity({scene, caster, direct_light}, solution)),
       bright_(scene, caster, radiosity_),
       pictures_(caster.mesh()),
       gaps_({scene, caster, direct_light}, {caster.mesh(), radiosity_}, paths_),
@@ -158,7 +159,7 @@ void PixelGather::aim_at_bright(const Place& place, Eigen::ArrayXd& sum) const {
     double share =
         bright_.share(place.bright, cosine, place.rays, ray, hit, aimed_density(place, ray, hit));
     const double solid_angle = std::numbers::pi * share / (place.rays * cosine);
-    if (at.relief) share *= at.relief->gain(ray.direction);
+    if (!at.gain.is_plain()) share *= at.gain.factor(ray.direction, at.smooth_normal);
     sum += share * straight_radiosity(place.caster, ray, hit, solid_angle).cast<double>();
   }
 }
@@ -204,13 +205,14 @@ bool PixelGather::is_in_gap(const Place& place, const Ray& ray, const ElementHit
                         hit);
 }
 
-// Adds what a ray finds, times the gain of the relief.
+// Adds what a ray finds, times the point's gain.
 void PixelGather::add(const Place& place, const Ray& ray, const ElementHit& hit,
                       std::uint64_t index, double aimed, Eigen::ArrayXd& sum) const {
-  if (!place.at.relief) return add_flat(place, ray, hit, index, aimed, sum);
+  const ReceiverGain& gain = place.at.gain;
+  if (gain.is_plain()) return add_flat(place, ray, hit, index, aimed, sum);
   Eigen::ArrayXd found = Eigen::ArrayXd::Zero(sum.size());
   add_flat(place, ray, hit, index, aimed, found);
-  sum += place.at.relief->gain(ray.direction) * found;
+  sum += gain.factor(ray.direction, place.at.smooth_normal) * found;
 }
 
 // Adds what a ray finds, by the balance heuristic. `aimed` is aimed_density(); `index` numbers the

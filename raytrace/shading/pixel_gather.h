@@ -15,7 +15,7 @@
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solution/solution.h"
 #include "scene/hemisphere_sets.h"
-#include "scene/relief.h"
+#include "scene/receiver_gain.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -25,7 +25,7 @@ struct ShadingPoint {
   Eigen::Vector3d position, normal;  ///< geometric normal, unit, on the side of the eye
   Eigen::Vector3d smooth_normal;     ///< shading normal, the axis of the gather's hemisphere, unit
   int facet = -1;
-  const ReliefSlope* relief = nullptr;  ///< light counts times its gain; null: flat
+  ReceiverGain gain{};  ///< light counts times its factor
 };
 
 /// Final gather (Reichert 1992) at points of a picture: indirect irradiance E = (1/N) sum B over N

@@ -72,6 +72,8 @@ struct RenderOptions {
   /// Result of indirect_slant() for the same depth, shared as `caustics` is. Null: found for this
   /// picture.
   std::shared_ptr<const BandArray> slant{};
+  /// Result of picture_base_gains(), shared as `caustics` is. Null: found for this picture.
+  std::shared_ptr<const BandArray> base_gains{};
   /// The luminaires as pictures show them, shared as `caustics` is. Null: found for this picture.
   std::shared_ptr<const VisibleLamps> visible_lamps{};
   /// Rays from the first rough surface of a path, 1 to 256; one from each rough surface behind it.

@@ -9,6 +9,7 @@
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/visibility/absorbing_bodies.h"
 #include "raytrace/shading/indirect_slant.h"
+#include "raytrace/shading/picture_base_gains.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -56,6 +57,11 @@ RayTree::RayTree(const Scene& scene, const ElementCaster& caster, const DirectLi
     slant_ = options.slant ? options.slant
                            : std::make_shared<const BandArray>(indirect_slant(
                                  scene, caster, direct_light, solution, options.max_depth));
+  }
+  if (direct_light.has_coats() && uses_solution) {
+    base_gains_ = options.base_gains ? options.base_gains
+                                     : std::make_shared<const BandArray>(picture_base_gains(
+                                           {scene, caster, direct_light}, solution));
   }
   if (options.pass == Pass::automatic) dome_ = dome_on_mesh(caster.mesh(), direct_light, solution);
   if (needs_caustic_photons(solution, options)) {

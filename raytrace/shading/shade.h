@@ -21,65 +21,27 @@
 #include "raytrace/shading/facet_shapes.h"
 #include "raytrace/shading/irradiance_records.h"
 #include "raytrace/shading/lamp_samples.h"
+#include "raytrace/shading/picture_base_gains.h"
 #include "raytrace/shading/pixel_gather.h"
+#include "raytrace/shading/ray_sample.h"
 #include "raytrace/shading/render_options.h"
 #include "raytrace/shading/visible_lamps.h"
 #include "raytrace/virtual_lights/virtual_lights.h"
-#include "scene/coat.h"
 #include "scene/facet_normals.h"
 #include "scene/facet_relief.h"
 #include "scene/facet_textures.h"
+#include "scene/receiver_gain.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/specular.h"
 
 namespace lightwell {
 
-/// Result of tracing a ray.
-struct RaySample {
-  Spectrum radiance{};  ///< W/(m^2 sr)
-  /// Radiance besides, W/(m^2 sr), that a rough surface of one of many samples found by chance (see
-  /// RayTree); empty: none.
-  Spectrum by_chance{};
-  /// Layers that are averaged over a pixel; zero unless RenderOptions::layers has any of the
-  /// sampled layers.
-  SampledLayers layers = SampledLayers::Zero();
-  std::uint64_t fingerprint = 0;  ///< identifies the surfaces seen, see RayTree
-  /// A rough mirror or a rough clear surface was met, at first or behind smooth ones. (The light of
-  /// coats is a small share of a pixel's.)
-  bool sees_gloss = false;
-  /// About the variance of the radiance, mean of the bands, by the noise of shadow rays to the sky
-  /// and of lights drawn from clusters, (W/(m^2 sr))^2.
-  float variance = 0.0f;
-  std::int64_t depth_cut = 0;  ///< branches that ended at max_depth
-  float cut_weight = 0.0f;     ///< sum over these branches of the largest weight of any band
-};
-
-/// The event at each smooth surface of a path: light is reflected or crosses.
-struct ChainTurns {
-  static constexpr int most = 64;
-  std::uint64_t crosses = 0;  ///< bit i: the light crosses surface i
-  int count = 0;              ///< surfaces, at most `most`; a longer path has no turns
-
-  bool follows(int i, bool crossing) const { return ((crosses >> i) & 1U) == (crossing ? 1U : 0U); }
-};
-
-/// A straight part of a path behind at least one smooth mirror or clear body.
-struct SpecularSegment {
-  const Ray& ray;           ///< from the last surface on
-  double end;               ///< m along the ray to the next surface, infinite without one
-  const Spectrum& weight;   ///< share of radiance that reaches the path's beginning
-  const Media& media;       ///< bodies that the segment runs in
-  std::uint64_t chain = 0;  ///< the same for paths by way of the same surfaces in the same order
-  ChainTurns turns{};       ///< what happened at these surfaces
-};
-
 /// Whitted's ray tree (1980) over a radiosity solution. Radiance at a hit is the sum over the parts
 /// of the material:
 /// - diffuse: L = (M + rho E) / pi, for a translucent sheet (M + rho E + tau E_behind) / pi;
 /// - mirror: specular * L(reflected), with a coat times Fresnel's reflectance;
-/// - base under a coat: L = (M + rho g(out) E) / pi, with each lamp's part of E times g(in), see
-///   CoatedBase; light of sky and surfaces counts as even;
+/// - base under a coat: L = (M + rho g(out) E) / pi, with E as the base gets it, see ReceiverGain;
 /// - clear dielectric: R L(reflected) + (1 - R) tint L(refracted) with Fresnel's R;
 /// - regular transmittance of a sheet: tau_r L(straight on);
 /// - rough mirror or dielectric: the mean over some directions of its lobe, see sample_scattering.
@@ -111,9 +73,9 @@ struct SpecularSegment {
 ///
 /// Relief bends the normal of mirrors, glass and coats by its slope, and gives each light that
 /// falls on a diffuse surface a gain (see ReliefSlope). The solution's indirect light has
-/// the gain of its indirect_slant(); caustics have none. In Pass::automatic the light of the dome
-/// gets rays. Where no picture is made (trace_lamps, trace_chain), surfaces are
-/// flat.
+/// the gain of its indirect_slant(), and the mesh's light that a coated base gets has that of
+/// picture_base_gains(); caustics have none. In Pass::automatic the dome's light on relief gets
+/// rays. Where no picture is made (trace_lamps, trace_chain), surfaces are flat.
 ///
 /// Branches that meet a coat behind another coat end by Russian roulette: far from grazing they
 /// have less than a hundredth of the light.
@@ -263,13 +225,16 @@ class RayTree {
     /// branches are worth following: in glass all weights are smaller by n^2.
     float share() const { return weight.maxCoeff() / static_cast<float>(scale); }
   };
-  /// Irradiance at a point, W/m^2, direct and indirect. A coated base gets direct light by its
-  /// angle (see LightQuery::base).
+  /// Irradiance at a point, W/m^2, direct and indirect, as its ReceiverGain weighs it.
   struct Arriving {
     Spectrum direct{}, indirect{};
-    /// Direct light on the facet, before coat and relief, for layers; empty: as `direct`.
-    Spectrum direct_on_facet{};
-    float noise = 0.0f;  ///< standard error of `direct`, mean of the bands, W/m^2
+    Spectrum on_facet{};  ///< all light, before coat and relief, for layers; empty: the sum
+    float noise = 0.0f;    ///< standard error of `direct`, mean of the bands, W/m^2
+  };
+  /// Direct light at a point and its standard error, mean of the bands, both W/m^2.
+  struct DirectPart {
+    Spectrum irradiance{};
+    float noise = 0.0f;
   };
   /// Diffuse radiosity towards a ray without emission, W/m^2, of direct and of indirect light.
   struct Scattered {
@@ -396,8 +361,7 @@ class RayTree {
   Eigen::Vector3d bent_normal(const Branch& branch, const ElementHit& hit, const ShadingPoint& at,
                               const Eigen::Vector3d& normal, const TreeState& state) const;
   Arriving arriving_from_mesh(const ElementHit& hit, const ShadingPoint& at, bool is_dim,
-                              const Eigen::Vector3d& normal, const CoatedBase* base,
-                              const std::optional<ReliefSlope>& relief) const;
+                              const Eigen::Vector3d& normal, const ReceiverGain& gain) const;
   static double width_of(const PixelCone& cone, const Branch& branch, const ShadingPoint& at) {
     return cone.start + cone.spread * (at.position - branch.ray.origin).norm();
   }
@@ -407,17 +371,20 @@ class RayTree {
     return width_of(branch.cone, branch, at);
   }
   bool is_blurred(const Branch& branch, const ElementHit& hit, const ShadingPoint& at) const;
+  float mesh_gain(BaseGain which, const ElementHit& hit, const CoatedBase* base) const;
   float indirect_gain(const ElementHit& hit, const ShadingPoint& at,
-                      const std::optional<ReliefSlope>& relief) const;
+                      const ReceiverGain& gain) const;
+  DirectPart direct_light(const ElementHit& hit, const Branch& branch, const LightQuery& query,
+                          const Spectrum& scattering, const TreeState& state) const;
+  Spectrum indirect_light(const ElementHit& hit, const ShadingPoint& at, const Branch& branch,
+                          const LightQuery& query, const TreeState& state) const;
   Arriving arriving_from_one_light(const ElementHit& hit, const ShadingPoint& at,
                                    const Branch& branch, LightQuery query,
                                    const TreeState& state) const;
   NoiseGoal sky_noise(float share, const Spectrum& indirect) const;
-  Spectrum indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
-                            const std::optional<ReliefSlope>& relief) const;
-  std::optional<Spectrum> indirect_of_records(const ElementHit& hit, const ShadingPoint& at,
-                                              const Eigen::Vector3d& normal,
-                                              const std::optional<ReliefSlope>& relief) const;
+  Spectrum indirect_of_mesh(const ElementHit& hit) const;
+  std::optional<Spectrum> indirect_of_records(const ShadingPoint& at,
+                                              const Eigen::Vector3d& normal) const;
   bool has_photons(const ElementHit& hit) const;
   void add_caustics(const ElementHit& hit, const ShadingPoint& at, bool is_gathered,
                     Spectrum& indirect) const;
@@ -434,7 +401,8 @@ class RayTree {
   PicturedEmission pictured_emission_;
   FacetNormals normals_;
   FacetRelief relief_;
-  std::shared_ptr<const BandArray> slant_{};  ///< see indirect_slant(); null or empty: none
+  std::shared_ptr<const BandArray> slant_{};       ///< see indirect_slant(); null or empty: none
+  std::shared_ptr<const BandArray> base_gains_{};  ///< see picture_base_gains(); null or empty: 1
   /// Least height of a shadow ray's origin over its facet, m, beyond rounding.
   double least_lift_ = 0.0;
   bool with_layers_ = false;

@@ -171,25 +171,24 @@ void RayTree::shade_lamp(const Branch& branch, const ElementHit& hit, const Shad
 }
 
 // Irradiance of the solution. Closed forms of all lights cost more than the ray, so a dim hit takes
-// direct light as even.
+// direct light as even, and is flat.
 RayTree::Arriving RayTree::arriving_from_mesh(const ElementHit& hit, const ShadingPoint& at,
                                               bool is_dim, const Eigen::Vector3d& normal,
-                                              const CoatedBase* base,
-                                              const std::optional<ReliefSlope>& relief) const {
+                                              const ReceiverGain& gain) const {
   const PatchMesh& mesh = caster_.mesh();
   Arriving E{.direct = interpolate(mesh, solution_.direct_irradiance, hit)};
-  const auto recorded =
-      is_dim ? std::optional<Spectrum>() : indirect_of_records(hit, at, normal, relief);
+  const auto recorded = is_dim ? std::optional<Spectrum>() : indirect_of_records(at, normal);
   E.indirect = recorded ? *recorded : interpolate(mesh, solution_.indirect_irradiance, hit);
   if (recorded && solution_.caustic_irradiance.size() > 0) {
     E.indirect += interpolate(mesh, solution_.caustic_irradiance, hit);
   }
-  if (!is_dim && !recorded) E.indirect *= indirect_gain(hit, at, relief);
-  if (is_dim || !(base || relief)) return E;
-  E.direct_on_facet = E.direct;
+  if (gain.is_plain()) return E;
+  E.on_facet = E.direct + E.indirect;
+  E.indirect *= indirect_gain(hit, at, is_dim ? ReceiverGain{.base = gain.base} : gain);
+  if (is_dim) return E;
   const SurfacePoint point{at.position, normal, hit.facet};
-  if (base) E.direct *= static_cast<float>(direct_light_.base_gain(point, *base));
-  if (relief) E.direct *= static_cast<float>(direct_light_.relief_gain(point, *relief));
+  if (gain.base) E.direct *= static_cast<float>(direct_light_.base_gain(point, *gain.base));
+  if (gain.relief) E.direct *= static_cast<float>(direct_light_.relief_gain(point, *gain.relief));
   return E;
 }
 
@@ -207,14 +206,14 @@ bool RayTree::is_blurred(const Branch& branch, const ElementHit& hit,
 RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& at,
                                     const Branch& branch, const CoatedBase* base,
                                     const Spectrum& scattering, const TreeState& state) const {
-  const PatchMesh& mesh = caster_.mesh();
   const Eigen::Vector3d normal = smooth_normal(hit, at);
   const std::optional<ReliefSlope> relief = relief_at(branch, hit, at, normal, state);
+  const ReceiverGain gain{.base = base, .relief = relief ? &*relief : nullptr};
   constexpr float weak = 0.25f;
   const bool is_weak = branch.behind_coat > 0 && branch.weight.maxCoeff() < weak;
   const bool is_dim = is_weak || is_blurred(branch, hit, at);
   if (options_.pass == Pass::interpolate || (is_dim && !virtual_)) {
-    return arriving_from_mesh(hit, at, is_dim, normal, base, relief);
+    return arriving_from_mesh(hit, at, is_dim, normal, gain);
   }
   const float share = state.effort * branch.weight.maxCoeff();
   ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? fewest_of_many : 8);
@@ -233,45 +232,63 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
                    .shadows = shadows,
                    .lights = has_dome ? Lights::all_but_dome : Lights::all};
   if (is_dim) return arriving_from_one_light(hit, at, branch, query, state);
-  query.relief = relief ? &*relief : nullptr;
+  if (!gain.is_plain() && with_layers_) {
+    E.on_facet = direct_light(hit, branch, query, scattering, state).irradiance +
+                 indirect_light(hit, at, branch, query, state);
+  }
+  query.base = gain.base;
+  query.relief = gain.relief;
+  E.indirect = indirect_light(hit, at, branch, query, state);
+  if (!state.number) query.sky_noise = sky_noise(share, E.indirect);
+  const auto [direct, noise] = direct_light(hit, branch, query, scattering, state);
+  E.direct = direct;
+  E.noise = noise;
+  return E;
+}
+
+// Direct light by shadow rays, with the dome's from the mesh where the query leaves it out.
+RayTree::DirectPart RayTree::direct_light(const ElementHit& hit, const Branch& branch,
+                                          const LightQuery& query, const Spectrum& scattering,
+                                          const TreeState& state) const {
+  DirectPart found{.irradiance = Spectrum::Zero(scene_.bands.count())};
+  if (!leaves_point(query, hit, branch, scattering, state)) {
+    EmitterVisibility visibility;
+    found.irradiance = direct_light_.irradiance(*state.caster, query, &visibility);
+    found.noise = static_cast<float>(visibility.drawn_noise);
+  }
+  if (query.lights != Lights::all_but_dome) return found;
+  found.irradiance += mesh_gain(BaseGain::of_dome, hit, query.base) *
+                      interpolate(caster_.mesh(), dome_.irradiance, hit);
+  return found;
+}
+
+// Indirect light at the point of a query, with caustics, which count as even light.
+Spectrum RayTree::indirect_light(const ElementHit& hit, const ShadingPoint& at,
+                                 const Branch& branch, const LightQuery& query,
+                                 const TreeState& state) const {
+  const ReceiverGain gain{.base = query.base, .relief = query.relief};
+  const Eigen::Vector3d& normal = query.at.normal;
+  const float share = state.effort * branch.weight.maxCoeff();
+  const auto key = random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers);
   bool is_gathered = gather_.has_value();
+  Spectrum E;
   if (gather_) {
-    E.indirect = gather_->indirect_irradiance(
-        *state.caster,
-        {.position = at.position,
-         .normal = at.normal,
-         .smooth_normal = normal,
-         .facet = hit.facet,
-         .relief = query.relief},
-        random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers), share);
+    E = gather_->indirect_irradiance(*state.caster,
+                                     {.position = at.position,
+                                      .normal = at.normal,
+                                      .smooth_normal = normal,
+                                      .facet = hit.facet,
+                                      .gain = gain},
+                                     key, share);
   } else if (virtual_) {
-    const auto key = random_key(state.key, branch.node, RandomPurpose::ray_tree_gathers);
-    E.indirect = virtual_->indirect_irradiance(
-        *state.caster,
-        {.at = query.at, .key = key, .effort = std::min(1.0f, share), .relief = query.relief});
+    E = virtual_->indirect_irradiance(
+        *state.caster, {.at = query.at, .key = key, .effort = std::min(1.0f, share), .gain = gain});
   } else {
-    const auto recorded = indirect_of_records(hit, at, normal, relief);
-    E.indirect = recorded ? *recorded : indirect_of_mesh(hit, at, relief);
+    const auto recorded = indirect_of_records(at, normal);
+    E = indirect_gain(hit, at, gain) * (recorded ? *recorded : indirect_of_mesh(hit));
     is_gathered = recorded.has_value();
   }
-  add_caustics(hit, at, is_gathered, E.indirect);
-  if (!state.number) query.sky_noise = sky_noise(share, E.indirect);
-  const auto direct = [&](const LightQuery& asked) {
-    const bool is_left = leaves_point(asked, hit, branch, scattering, state);
-    EmitterVisibility found;
-    Spectrum sum = is_left ? Spectrum(Spectrum::Zero(scene_.bands.count()))
-                           : direct_light_.irradiance(*state.caster, asked, &found);
-    E.noise = static_cast<float>(found.drawn_noise);
-    if (has_dome) sum += interpolate(mesh, dome_.irradiance, hit);
-    return sum;
-  };
-  if ((base || relief) && with_layers_) {
-    LightQuery on_facet = query;
-    on_facet.relief = nullptr;
-    E.direct_on_facet = direct(on_facet);
-  }
-  query.base = base;
-  E.direct = direct(query);
+  add_caustics(hit, at, is_gathered, E);
   return E;
 }
 
@@ -327,12 +344,20 @@ RayTree::Arriving RayTree::arriving_from_one_light(const ElementHit& hit, const 
   return E;
 }
 
-// Factor of the solution's indirect light on a slope of the relief.
+// Factor of light of the mesh that a base gets.
+float RayTree::mesh_gain(BaseGain which, const ElementHit& hit, const CoatedBase* base) const {
+  if (!base || !base_gains_ || base_gains_->size() == 0) return 1.0f;
+  return interpolate(caster_.mesh(), *base_gains_, hit)[static_cast<Eigen::Index>(which)];
+}
+
+// Factor of the solution's indirect light on a base or a slope of the relief.
 float RayTree::indirect_gain(const ElementHit& hit, const ShadingPoint& at,
-                             const std::optional<ReliefSlope>& relief) const {
-  if (!relief || !slant_ || slant_->size() == 0) return 1.0f;
+                             const ReceiverGain& gain) const {
+  const float of_base = mesh_gain(BaseGain::of_indirect, hit, gain.base);
+  if (!gain.relief || !slant_ || slant_->size() == 0) return of_base;
   const Eigen::Vector3d slant = interpolate(caster_.mesh(), *slant_, hit).matrix().cast<double>();
-  return static_cast<float>(std::clamp(1.0 - relief->rise.dot(at.turned(slant)), 0.0, 2.0));
+  const double of_slope = std::clamp(1.0 - gain.relief->rise.dot(at.turned(slant)), 0.0, 2.0);
+  return of_base * static_cast<float>(of_slope);
 }
 
 // Returns whether photons replace the solution's caustics: mirrors and glass let photons pass.
@@ -341,24 +366,21 @@ bool RayTree::has_photons(const ElementHit& hit) const {
 }
 
 // The solution's indirect light, without its own caustics if photons replace these.
-Spectrum RayTree::indirect_of_mesh(const ElementHit& hit, const ShadingPoint& at,
-                                   const std::optional<ReliefSlope>& relief) const {
+Spectrum RayTree::indirect_of_mesh(const ElementHit& hit) const {
   Spectrum E = interpolate(caster_.mesh(), solution_.indirect_irradiance, hit);
   if (has_photons(hit) && solution_.caustic_irradiance.size() > 0) {
     // The difference may be slightly negative by rounding.
     E = (E - interpolate(caster_.mesh(), solution_.caustic_irradiance, hit)).max(0.0f);
   }
-  return indirect_gain(hit, at, relief) * E;
+  return E;
 }
 
 // Indirect light by records around, without caustics; empty where none serves.
-std::optional<Spectrum> RayTree::indirect_of_records(
-    const ElementHit& hit, const ShadingPoint& at, const Eigen::Vector3d& normal,
-    const std::optional<ReliefSlope>& relief) const {
+std::optional<Spectrum> RayTree::indirect_of_records(const ShadingPoint& at,
+                                                     const Eigen::Vector3d& normal) const {
   if (!records_ || at.pose) return std::nullopt;
   const auto fit = records_->fit(at.position, normal);
-  if (!fit) return std::nullopt;
-  return indirect_gain(hit, at, relief) * fit->irradiance;
+  return fit ? std::optional(fit->irradiance) : std::nullopt;
 }
 
 // Adds caustics, which neither gathered light nor indirect_of_mesh() has.
@@ -399,7 +421,7 @@ void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spe
   // ones.
   const bool is_straight = branch.is_sharp && (branch.node & (branch.node + 1)) == 0;
   if (is_straight && !scene_.materials[facets_[hit.facet].material].dielectric) {
-    const Spectrum all = (E.direct_on_facet.size() > 0 ? E.direct_on_facet : E.direct) + E.indirect;
+    const Spectrum all = E.on_facet.size() > 0 ? E.on_facet : Spectrum(E.direct + E.indirect);
     state.result.layers[first_sampled_column(Layer::illuminance)] =
         static_cast<float>(luminous(bands, all));
   }

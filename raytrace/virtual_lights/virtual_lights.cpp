@@ -58,7 +58,8 @@ Spectrum VirtualLights::from_lights(const ElementCaster& caster, const Query& qu
                            .max_rays = 1,
                            .cluster_share = std::min(coarsest, cluster_share / effort)},
                .one_stands_for_all = is_single,
-               .relief = query.relief});
+               .base = query.gain.base,
+               .relief = query.gain.relief});
 }
 
 int VirtualLights::rays_of(const Query& query) const {
@@ -91,7 +92,7 @@ Spectrum VirtualLights::from_rays(const ElementCaster& caster, const Query& quer
     caster.closest_hits({&ray, 1}, {&hit, 1});
     if (hit.facet < 0) continue;
     const auto own = random_key(key, static_cast<std::uint64_t>(i), 1);
-    const auto gain = query.relief ? static_cast<float>(query.relief->gain(ray.direction)) : 1.0f;
+    const auto gain = static_cast<float>(query.gain.factor(ray.direction, normal));
     sum += gain * near_light(caster, ray, hit, d.z(), query, own);
     if (paths_.is_specular(hit.facet)) {
       found_by_chance.emplace_back(gain * by_way(caster, ray, hit, query, own));
@@ -186,15 +187,18 @@ Spectrum VirtualLights::radiosity(const ElementCaster& caster, const End& end,
                         hit.facet};
   const int element = reflects ? hit.element : mesh.first_element[behind];
   const std::uint64_t own = random_key(key, 3);
-  Spectrum E = lit_.direct_light.irradiance(
-      caster, {.at = at,
-               .key = own,
-               .shadows = {.min_rays = 1, .max_rays = 1},
-               .one_stands_for_all = true,
-               .base = lit_.direct_light.base_of(mesh.material[mesh.patch[element]])});
+  const CoatedBase* base = lit_.direct_light.base_of(mesh.material[mesh.patch[element]]);
+  Spectrum E = lit_.direct_light.irradiance(caster, {.at = at,
+                                                     .key = own,
+                                                     .shadows = {.min_rays = 1, .max_rays = 1},
+                                                     .one_stands_for_all = true,
+                                                     .base = base});
   if (caustics_) E += caustics_->irradiance(at.position, at.normal, element);
-  E += indirect_irradiance(
-      caster, {.at = at, .key = random_key(own, 1), .effort = 0.0f, .depth = end.depth + 1});
+  E += indirect_irradiance(caster, {.at = at,
+                                    .key = random_key(own, 1),
+                                    .effort = 0.0f,
+                                    .gain = {.base = base},
+                                    .depth = end.depth + 1});
   return B + (reflects ? rho : tau) / chance * E;
 }
 

@@ -10,7 +10,7 @@
 #include "radiosity/paths/light_path.h"
 #include "raytrace/caustics/caustic_map.h"
 #include "scene/progress.h"
-#include "scene/relief.h"
+#include "scene/receiver_gain.h"
 
 namespace lightwell {
 
@@ -53,8 +53,8 @@ class VirtualLights {
     std::uint64_t key = 0;  ///< of the random numbers
     /// Share of the whole effort, (0, 1]; 0: one light and one ray, for one of many samples.
     float effort = 1.0f;
-    const ReliefSlope* relief = nullptr;  ///< light counts times its gain; null: flat
-    int depth = 0;  ///< ends of rays, one behind another, that the query is of
+    ReceiverGain gain{};  ///< light counts times its factor
+    int depth = 0;        ///< ends of rays, one behind another, that the query is of
     /// Radiosity at the vertices of the mesh, W/m^2, which rays read where they end, as
     /// gatherable_radiosity() makes it. Null: rays find it by one light and one further ray.
     const BandArray* radiosity = nullptr;

@@ -1,4 +1,4 @@
-// Light that is not even on coated bases: a low sky.
+// Light that is not even on coated bases: a low sky, a bright wall beside, furnaces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <functional>
 #include <numbers>
 
-#include "radiosity/gather/final_gather.h"
+#include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/sky/sky_light.h"
 #include "raytrace/shading/shade.h"
 #include "scene/coat.h"
@@ -165,6 +165,106 @@ TEST(CoatedLight, OfASkyIsNotThatOfAHiddenSun) {
   // As for the mesh's radiosity.
   EXPECT_NEAR(lit.direct_light.base_gain({{0, 0, 0}, up, 0}, base),
               arriving(LowSky::is_open).gain(), 0.01);
+}
+
+// A coated plate of 0.1 m beside a wall of radiosity 1 that stands at its edge of 1 m length.
+struct BesideAWall {
+  BesideAWall() : lit(scene(), 0.02) {
+    lit.set_indirect([](const Vector3d& at) { return is_on_wall(at) ? 2.0f : 1.0f; });
+  }
+  static bool is_on_wall(const Vector3d& at) { return at.x() > 0.5; }
+  static Scene scene() {
+    return SceneBuilder()
+        .square({.reflectance = rho, .coat = 1.5f}, {0, 0, 0}, up, 0.05)
+        .square({.reflectance = 0.5f}, {1, 0, 0.25}, -Vector3d::UnitX(), 0.25)
+        .build();
+  }
+  static bool meets_wall(const Vector3d& direction) {
+    if (!(direction.x() > 0.0)) return false;
+    const Vector3d at = direction / direction.x();
+    return at.z() < 0.5 && std::abs(at.y()) < 0.25;
+  }
+  TracedScene lit;
+};
+
+// Gains at the vertices of the plate from 64 rays of each of its elements, 25 on a side. The wall
+// takes 4 % of the rays, and the factor varies by 0.15 over the wall: 0.15 / sqrt(64) is left. The
+// set of 64 cosines knows the factor's mean to 0.5 %.
+TEST(CoatedLight, OfAWallIsWeighedByItsAngle) {
+  const BesideAWall beside;
+  const Arriving wall = arriving(BesideAWall::meets_wall);
+  EXPECT_LT(wall.gain(), 0.85);
+  const PatchMesh& mesh = beside.lit.mesh;
+  const LitScene lit{beside.lit.scene, beside.lit.caster, beside.lit.direct_light};
+  const BandArray even = gatherable_radiosity(mesh, beside.lit.direct_light, beside.lit.solution);
+  const BandArray gains = indirect_base_gains(lit, even, 64);
+  ASSERT_EQ(gains.rows(), mesh.vertex_count());
+  double sum = 0.0;
+  int seen = 0;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (BesideAWall::is_on_wall(mesh.position(v))) {
+      EXPECT_EQ(gains(v, 0), 1.0f);
+    } else if (gains(v, 0) != 1.0f) {
+      sum += double{gains(v, 0)};
+      ++seen;
+    }
+  }
+  ASSERT_GE(seen, 16);
+  EXPECT_NEAR(sum / seen, wall.gain(), 0.02);
+}
+
+// Gathers read rho gain E at the plate, whose E is 1 and all indirect, and the wall's light without
+// a gain. Two products of floats round by 2^-24 each, and the sum 1 + (gain - 1) by as much.
+TEST(CoatedLight, OfAWallIsInTheRadiosityOfTheMesh) {
+  const BesideAWall beside;
+  const PatchMesh& mesh = beside.lit.mesh;
+  const LitScene lit{beside.lit.scene, beside.lit.caster, beside.lit.direct_light};
+  const BandArray even = gatherable_radiosity(mesh, beside.lit.direct_light, beside.lit.solution);
+  const BandArray gains = indirect_base_gains(lit, even, 32);
+  const BandArray B = gatherable_radiosity(lit, beside.lit.solution);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    EXPECT_NEAR(B(v, 0) / even(v, 0), gains(v, 0), std::ldexp(4.0, -24)) << v;
+  }
+}
+
+// Pictures of the plate: with the mesh's light, E = 1 times the gain, and gathered, where E is what
+// the wall gives. 64 looks of 256 rays, of which 4 % meet the wall, leave 1 / sqrt(655), of which
+// two are allowed.
+TEST(CoatedLight, OfAWallShowsInPictures) {
+  const BesideAWall beside;
+  const Arriving wall = arriving(BesideAWall::meets_wall);
+  const auto radiance = [&](Pass pass) {
+    const RayTree tree(beside.lit.scene, beside.lit.caster, beside.lit.direct_light,
+                       beside.lit.solution, {.pass = pass, .gather_rays = 256});
+    double sum = 0.0;
+    constexpr int keys = 64;
+    for (int key = 0; key < keys; ++key) {
+      const Ray ray{.origin = {0.003, 0.004, 0.5}, .direction = -up};
+      sum += double{tree.trace(ray, static_cast<std::uint64_t>(key)).radiance[1]} / keys;
+    }
+    return sum;
+  };
+  const double of_unit = rho / pi * base_of_coat().factor(1.0);
+  for (const Pass pass : {Pass::interpolate, Pass::direct, Pass::automatic}) {
+    EXPECT_NEAR(radiance(pass) / of_unit, wall.gain(), 0.03);  // of four elements
+  }
+  EXPECT_NEAR(radiance(Pass::gather) / of_unit / (wall.at_base / pi), 1.0, 0.08);
+}
+
+// In a closed furnace all rays find the same light, and the gain is 1 to rounding: 32 sums of
+// floats.
+TEST(CoatedLight, OfAFurnaceIsEven) {
+  TracedScene lit(SceneBuilder()
+                      .box({.reflectance = 0.5f}, {-1, -1, -1}, {1, 1, 1}, true)
+                      .square({.reflectance = rho, .coat = 1.5f}, {0, 0, -0.5}, up, 0.5)
+                      .build());
+  lit.set_indirect([](const Vector3d& at) { return at.cwiseAbs().maxCoeff() > 0.9 ? 2.0f : 1.0f; });
+  const LitScene scene{lit.scene, lit.caster, lit.direct_light};
+  const BandArray B = gatherable_radiosity(lit.mesh, lit.direct_light, lit.solution);
+  const BandArray gains = indirect_base_gains(scene, B, 32);
+  ASSERT_EQ(gains.rows(), lit.mesh.vertex_count());
+  EXPECT_NEAR(double{gains.minCoeff()}, 1.0, 32.0 * std::ldexp(1.0, -24));
+  EXPECT_NEAR(double{gains.maxCoeff()}, 1.0, 32.0 * std::ldexp(1.0, -24));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "mesh/patches/round_grid.h"
 #include "mesh/patches/translucency.h"
 #include "radiosity/gather/final_gather.h"
+#include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/openings/portals.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
@@ -124,7 +125,7 @@ BandArray irradiance_of(const std::vector<Texel>& texels, const BakedModel& mode
     found = gather_direct({scene, caster, direct_light}, points, gathering);
   } else {
     if (s.caustic_irradiance.size() > 0) interpolated(s.caustic_irradiance);
-    const BandArray B = gatherable_radiosity(solved.mesh, direct_light, s);
+    const BandArray B = gatherable_radiosity({scene, caster, direct_light}, s);
     gathering.portals = find_portals(scene, caster, brightness_of_vertices(solved.mesh, B));
     const GatheredIrradiance all =
         gather_irradiance({scene, caster, direct_light}, B, points, gathering);
