@@ -199,7 +199,7 @@ bool PilotGathers::Impl::prepares_in_time(const SolveOptions& options) {
   const auto watch = std::make_shared<Watch>(Watch{Pace(allowed)});
   SolveOptions watched = options;
   watched.run.progress = [allowed, watch, progress = options.run.progress](std::string_view phase,
-                                                                         double share) {
+                                                                           double share) {
     if (share < watch->before) watch->pace = Pace(allowed);  // the next gather
     watch->before = share;
     watch->gave_up = watch->gave_up || (watch->is_on && watch->pace.is_too_slow(share));

@@ -229,7 +229,7 @@ class RayTree {
   struct Arriving {
     Spectrum direct{}, indirect{};
     Spectrum on_facet{};  ///< all light, before coat and relief, for layers; empty: the sum
-    float noise = 0.0f;    ///< standard error of `direct`, mean of the bands, W/m^2
+    float noise = 0.0f;   ///< standard error of `direct`, mean of the bands, W/m^2
   };
   /// Direct light at a point and its standard error, mean of the bands, both W/m^2.
   struct DirectPart {

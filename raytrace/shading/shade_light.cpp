@@ -296,7 +296,8 @@ Spectrum RayTree::indirect_light(const ElementHit& hit, const ShadingPoint& at,
 // twice that of the pixel, which is the mean of four samples and more.
 NoiseGoal RayTree::sky_noise(float share, const Spectrum& indirect) const {
   constexpr double samples = 4.0, least = 1e-6;
-  const double noise = double{options_.sampling.noise} * std::sqrt(samples / std::max(double{share}, least));
+  const double noise =
+      double{options_.sampling.noise} * std::sqrt(samples / std::max(double{share}, least));
   return {.irradiance = noise * double{indirect.mean()}, .share = noise, .most_times = 1};
 }
 
