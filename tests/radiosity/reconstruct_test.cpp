@@ -119,11 +119,11 @@ TEST(PilotGathers, GoesOnWhereItEnded) {
   Room room(0.03);
   const DirectLight direct_light(room.scene, room.patches.mesh);
   PilotGathers pilot_gathers(room.scene, room.patches.mesh, direct_light, room.patches.solution);
-  const PilotGather coarse = pilot_gathers.gather(room.options);
+  const PilotGather coarse = pilot_gathers.gather(room.options).value();
   room.options.refine.tolerance = 0.01;
-  const PilotGather fine = pilot_gathers.gather(room.options);
+  const PilotGather fine = pilot_gathers.gather(room.options).value();
   PilotGathers at_once(room.scene, room.patches.mesh, direct_light, room.patches.solution);
-  const PilotGather other = at_once.gather(room.options);
+  const PilotGather other = at_once.gather(room.options).value();
   ASSERT_TRUE(coarse.refined && fine.refined && other.refined);
   std::printf("%d elements with %lld gathers, %d with %lld; at once %d with %lld\n",
               coarse.refined->element_count(), static_cast<long long>(coarse.refinement.gathers),
@@ -164,7 +164,7 @@ TEST(PilotGathers, InterpolatesIndirectLightFromVerticesOfTheMesh) {
   room.options.gather.rays = 2048;
   const DirectLight direct_light(room.scene, room.patches.mesh);
   PilotGathers pilot_gathers(room.scene, room.patches.mesh, direct_light, room.patches.solution);
-  const PilotGather pilot = pilot_gathers.gather(room.options);
+  const PilotGather pilot = pilot_gathers.gather(room.options).value();
   ASSERT_TRUE(pilot.refined);
   std::printf("%zu of %d vertices are interpolated\n", pilot.interpolated.size(),
               pilot.refined->vertex_count());
@@ -187,7 +187,7 @@ TEST(Reconstruct, AddsToWhatIsKept) {
   Room room(0.03);
   const DirectLight direct_light(room.scene, room.patches.mesh);
   PilotGathers pilot_gathers(room.scene, room.patches.mesh, direct_light, room.patches.solution);
-  const PilotGather pilot = pilot_gathers.gather(room.options);
+  const PilotGather pilot = pilot_gathers.gather(room.options).value();
   const ElementCaster caster(*pilot.refined);
   KeptGathers kept;
   RadiositySolution solution = room.patches.solution;

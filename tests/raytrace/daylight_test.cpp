@@ -274,5 +274,42 @@ TEST(DaylightPictures, WeakReflectionsMayShowWeakErrors) {
   EXPECT_FALSE(DomeOnMesh{}.serves(0, 0.01f)) << "nothing is known";
 }
 
+// Samples of a picture of a floor in a chimney, which sees a fifth of the sky with noise.
+std::int64_t samples_of_floor(float noise) {
+  SceneBuilder chimney;
+  chimney.square({.reflectance = 0.5f}, {0, 0, 0}, Vector3d::UnitZ(), 1);
+  for (const Vector3d& side :
+       {Vector3d(1, 0, 0), Vector3d(-1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, -1, 0)}) {
+    chimney.square({.reflectance = 0.5f}, side + Vector3d::UnitZ(), -side, 1);
+  }
+  Scene scene = chimney.build();
+  scene.sky = grey_sky(scene.bands, 4.0f);
+  SolveOptions coarse;
+  coarse.refine.tolerance = 0.0;
+  const SolvedScene solved = solve_scene(scene, coarse);
+  const ElementCaster caster(solved.mesh);
+  const DirectLight light(scene, solved.mesh);
+  Camera camera = looking({0, 0, 1.0}, -Vector3d::UnitZ(), 40.0);
+  camera.width = camera.height = 16;
+  RenderReport report;
+  RenderOptions options{.pass = Pass::direct};
+  options.sampling.noise = noise;
+  render(scene, caster, light, solved.solution, camera, options, &report);
+  return report.eye_rays;
+}
+
+// A pixel is split for the sky's noise where that is more than asked for, and not for differences
+// that noise explains: the range of four samples is more than is allowed in 5 of 100 pixels, each
+// of which then takes 21 samples at most beside its corners.
+TEST(DaylightPictures, PixelsAreSplitForAsMuchNoiseAsIsAskedFor) {
+  constexpr std::int64_t corners = 17 * 17, pixels = 16 * 16, most_of_a_pixel = 21;
+  const std::int64_t rough = samples_of_floor(1.0f), fine = samples_of_floor(1e-4f);
+  std::printf("%lld samples for any noise, %lld for 0.01 %%\n", static_cast<long long>(rough),
+              static_cast<long long>(fine));
+  // Twice the expected number, for the differences of neighbours are not independent.
+  EXPECT_LE(rough, corners + 2 * pixels * most_of_a_pixel / 20);
+  EXPECT_EQ(fine, corners + pixels * most_of_a_pixel);
+}
+
 }  // namespace
 }  // namespace lightwell::daylight_test

@@ -235,6 +235,36 @@ TEST(PictureRecords, AreLeftOutWhereTheyAreNoisierThanTheMesh) {
   EXPECT_TRUE((by_default.radiance == by_mesh.radiance).all());
 }
 
+// Where the light of the mesh serves else, records bring its indirect light nearer to a gather.
+TEST(PictureRecords, ServePicturesOfTheMeshsLight) {
+  const SolvedRoom room = coarse_room();
+  const Image gathered = room.picture({.pass = Pass::gather, .gather_rays = 1024});
+  SceneRenderer renderer(room.scene, room.solved.mesh, room.solved.solution);
+  const RenderOptions of_mesh{.pass = Pass::interpolate};
+  RenderOptions with = of_mesh;
+  with.records = renderer.records(room.camera, {});
+  ASSERT_NE(with.records, nullptr);
+  EXPECT_LT(difference(renderer.render(room.camera, with), gathered),
+            difference(renderer.render(room.camera, of_mesh), gathered));
+}
+
+// The clock stands still at less time than a grid takes.
+TEST(PictureRecords, OfTheWidestGridsAreKeptForWantOfTime) {
+  const SolvedRoom room = coarse_room();
+  SceneRenderer renderer(room.scene, room.solved.mesh, room.solved.solution);
+  RenderOptions hurried;
+  hurried.run.seconds_left = [] { return 1e-6; };
+  const auto few = renderer.records(room.camera, hurried);
+  ASSERT_NE(few, nullptr);
+  RenderOptions with_few, with_all;
+  with_few.records = few;
+  with_all.records = renderer.records(room.camera, {});
+  EXPECT_FALSE((renderer.render(room.camera, with_few).radiance ==
+                renderer.render(room.camera, with_all).radiance)
+                   .all())
+      << "all grids were done";
+}
+
 TEST(PictureRecords, AreTheSameForAnyNumberOfThreads) {
   const SolvedRoom room = coarse_room();
   const auto with_threads = [&](int n) {

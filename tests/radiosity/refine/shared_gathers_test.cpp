@@ -153,7 +153,7 @@ struct Gathers {
     solution = solve_radiosity(SolverMethod::automatic, base, *form_factors, o.solver);
     base_vertices = base.vertex_count();
     PilotGathers pilots(scene, base, direct_light, solution);
-    pilot = pilots.gather(o);
+    pilot = pilots.gather(o).value();
     const ElementCaster caster = pilots.caster(*pilot.refined, pilot);
     reconstruct({scene, caster, direct_light}, o, pilot, solution, &kept);
   }
