@@ -12,6 +12,7 @@
 #include "radiosity/gather/hemisphere_gather.h"
 #include "radiosity/gather/vertex_points.h"
 #include "scene/parallel.h"
+#include "scene/random_purpose.h"
 #include "scene/sampling.h"
 
 namespace lightwell {
@@ -115,7 +116,6 @@ BandArray indirect_base_gains(const LitScene& lit, const BandArray& radiosity, i
   });
   const GatherOptions options{.rays = rays_for(elements.size(), most_rays)};
   const HemisphereGather hemisphere(lit, radiosity, options, points);
-  constexpr std::uint64_t purpose = 0xba5e;
   BandArray to_base(count, channels), arriving(count, channels);
   constexpr int grain = 16;
   parallel_for(count, grain, [&](int begin, int end) {
@@ -123,7 +123,8 @@ BandArray indirect_base_gains(const LitScene& lit, const BandArray& radiosity, i
       const int e = elements[static_cast<std::size_t>(i)];
       const CoatedBase base = *base_of_patch(lit.direct_light, mesh, mesh.patch[e]);
       const Eigen::ArrayX2d light = hemisphere.gather_at_base(
-          points[i], random_key(static_cast<std::uint64_t>(e), purpose), base);
+          points[i], random_key(static_cast<std::uint64_t>(e), RandomPurpose::gather_shadows),
+          base);
       for (Eigen::Index c = 0; c < channels; ++c) {
         const Eigen::Array2d of_channel = light.middleRows(c * bands, bands).colwise().mean();
         to_base(i, c) = static_cast<float>(of_channel[0]);
