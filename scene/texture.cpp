@@ -191,17 +191,21 @@ Eigen::Array3f SurfaceTexture::at_level(const Eigen::Vector2d& place, int level)
   const int w = picture->level_width(level), h = picture->level_height(level);
   const double x = within_period(place.x(), wrap[0]) * w;
   const double y = within_period(place.y(), wrap[1]) * h;
-  const auto texel = [&](int i, int j) {
-    return picture->texel(level, wrapped_texel(i, w, wrap[0]), wrapped_texel(j, h, wrap[1]));
-  };
+  const auto column = [&](int i) { return wrapped_texel(i, w, wrap[0]); };
+  const auto row = [&](int j) { return wrapped_texel(j, h, wrap[1]); };
   if (!is_smooth && level == 0) {
-    return texel(static_cast<int>(std::floor(x)), static_cast<int>(std::floor(y)));
+    return picture->texel(level, column(static_cast<int>(std::floor(x))),
+                          row(static_cast<int>(std::floor(y))));
   }
   const double left = std::floor(x - 0.5), top = std::floor(y - 0.5);
   const int i = static_cast<int>(left), j = static_cast<int>(top);
   const auto s = static_cast<float>(x - 0.5 - left), t = static_cast<float>(y - 0.5 - top);
-  return (1.0f - t) * ((1.0f - s) * texel(i, j) + s * texel(i + 1, j)) +
-         t * ((1.0f - s) * texel(i, j + 1) + s * texel(i + 1, j + 1));
+  const std::array columns{column(i), column(i + 1)}, rows{row(j), row(j + 1)};
+  const auto along = [&](int y_of_row) {
+    return Eigen::Array3f((1.0f - s) * picture->texel(level, columns[0], y_of_row) +
+                          s * picture->texel(level, columns[1], y_of_row));
+  };
+  return (1.0f - t) * along(rows[0]) + t * along(rows[1]);
 }
 
 }  // namespace lightwell

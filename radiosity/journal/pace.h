@@ -1,7 +1,5 @@
 #pragma once
 
-#include <optional>
-
 #include "scene/stopwatch.h"
 
 namespace lightwell {
@@ -15,17 +13,19 @@ class Pace {
 
   /// `share` of the work is done, [0,1].
   bool is_too_slow(double share) {
-    if (!watch_) watch_.emplace();
+    if (!has_begun_) watch_.lap();
+    has_begun_ = true;
     // A tenth of the time shows some of any work. What comes first may be cheaper or dearer than
     // the rest, so a fifth too much is no reason yet.
     constexpr double enough_to_judge = 0.1, too_much = 1.2;
-    const double spent = watch_->seconds();
+    const double spent = watch_.seconds();
     return spent > enough_to_judge * allowed_ && spent > too_much * share * allowed_;
   }
 
  private:
   double allowed_;
-  std::optional<Stopwatch> watch_{};
+  bool has_begun_ = false;
+  Stopwatch watch_{};
 };
 
 }  // namespace lightwell

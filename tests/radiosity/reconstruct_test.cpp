@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "mesh/build_patches.h"
+#include "radiosity/gather/vertex_points.h"
 #include "radiosity/refine/gather_noise.h"
 #include "radiosity/refine/interpolated_vertices.h"
 #include "tests/radiosity/two_lamps.h"
@@ -159,6 +160,28 @@ TEST(PilotGathers, GoesOnWhereItEnded) {
 
 // Interpolated vertices lie between their ends, which are vertices of the mesh and come first if
 // they are interpolated themselves.
+// For want of time before any pilot gather. The light of a lamp close above a block changes within
+// a patch by more than the noise of few rays at each vertex: one point of each patch, which takes
+// less time still, is off by more than twice as much.
+TEST(PilotGathers, InHasteHaveDirectLightAtVerticesIfThereIsTime) {
+  Room room(0.03);
+  const DirectLight direct_light(room.scene, room.patches.mesh);
+  PilotGathers pilots(room.scene, room.patches.mesh, direct_light, room.patches.solution);
+  const ElementCaster caster(room.patches.mesh);
+  const GatherOptions many{.shadows = {.min_rays = 256, .max_rays = 1024}};
+  const BandArray exact =
+      gather_direct({room.scene, caster, direct_light}, vertex_points(caster), many);
+  const auto error = [&](double seconds_left) {
+    room.options.run.seconds_left = [=] { return seconds_left; };
+    const BandArray off = pilots.gather_in_haste(room.options).direct - exact;
+    return std::sqrt(off.square().mean()) / exact.mean();
+  };
+  const float at_vertices = error(1e6), of_patches = error(0.0);
+  std::printf("direct light at vertices %.1f %% off, of patches %.1f %%\n",
+              100.0 * double{at_vertices}, 100.0 * double{of_patches});
+  EXPECT_LT(at_vertices, 0.5f * of_patches);
+}
+
 TEST(PilotGathers, InterpolatesIndirectLightFromVerticesOfTheMesh) {
   Room room(0.02);
   room.options.gather.rays = 2048;

@@ -4,15 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numeric>
 #include <string>
-#include <vector>
 
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/gather/patch_power.h"
-#include "radiosity/gather/vertex_points.h"
-#include "radiosity/patch_light.h"
-#include "radiosity/point_lists.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solve.h"
 #include "scene/sampling.h"
@@ -179,50 +174,6 @@ TEST(TimeLimit, AMirrorIsLitAfterAnEarlyEnd) {
   // the patches of the wall, 48 and more, average that to 4 %, of which four deviations are
   // allowed.
   EXPECT_NEAR(mean_on_mirror(early) / mean_on_mirror(whole), 1.0, 4.0 / std::sqrt(48.0 * 16.0));
-}
-
-// RMS difference of light at vertices, relative to the mean of the second.
-double difference(const BandArray& a, const BandArray& b) {
-  return std::sqrt((a - b).cast<double>().square().mean()) / b.cast<double>().mean();
-}
-
-// Time for a few rays at vertices, but not for a pilot gather. Patches of a fifth of the window's
-// width see the sky unevenly, so one point of each is off by far more than the noise of few rays at
-// each vertex, which the mean of the allowed half lies well above.
-TEST(TimeLimit, AnEarlyEndHasTheLightOfAWindowAtVertices) {
-  constexpr double low = 0.8, high = 2.0, left = 1.0, right = 2.0;
-  Scene scene;
-  const int paint = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
-  const auto wall = [&](double x0, double x1, double z0, double z1) {
-    test::add_polygon(scene, "wall", paint, {{x0, 4, z0}, {x1, 4, z0}, {x1, 4, z1}, {x0, 4, z1}});
-  };
-  wall(0, left, 0, 2.5);
-  wall(right, 3, 0, 2.5);
-  wall(left, right, 0, low);
-  wall(left, right, high, 2.5);
-  test::add_polygon(scene, "floor", paint, {{0, 0, 0}, {3, 0, 0}, {3, 4, 0}, {0, 4, 0}});
-  test::add_polygon(scene, "ceiling", paint, {{0, 0, 2.5}, {0, 4, 2.5}, {3, 4, 2.5}, {3, 0, 2.5}});
-  scene.sky = test::even_sky(scene.bands, 10.0f, 1.0f);
-  SolveOptions options;
-  options.mesh.max_patch_size = 0.8;
-  options.run.seconds_left = [] { return 1e-6; };
-  const SolvedScene early = solve_scene(scene, options);
-  ASSERT_EQ(early.solution.outcome, Outcome::cut_short);
-
-  const ElementCaster caster(early.mesh);
-  const DirectLight direct_light(scene, early.mesh);
-  const LitScene lit{scene, caster, direct_light};
-  const GatherOptions many{.shadows = {.min_rays = 256, .max_rays = 1024}};
-  const BandArray exact = gather_direct(lit, vertex_points(caster), many);
-  std::vector<int> patches(static_cast<std::size_t>(early.mesh.patch_count()));
-  std::iota(patches.begin(), patches.end(), 0);
-  const BandArray of_patches =
-      to_vertices(early.mesh, gather_direct(lit, points_on_patches(early.mesh, patches), many));
-  const double at_vertices = difference(early.solution.direct_irradiance, exact),
-               at_patches = difference(of_patches, exact);
-  std::printf("direct light at vertices %.1f %% off, of patches %.1f %%\n", 100.0 * at_vertices,
-              100.0 * at_patches);
-  EXPECT_LT(at_vertices, 0.5 * at_patches);
 }
 
 TEST(TimeLimit, AStageForEachErrorUntilTheAccuracy) {
