@@ -212,7 +212,7 @@ Json scene_json(const Scene& scene) {
   CleanUpReport clean_up;
   const Scene clean = merge_planar_regions(scene, &clean_up);
   Json materials = Json::array(), cameras = Json::array();
-  for (const Material& material : scene.materials) {
+  for (const Material& material : clean.materials) {
     materials.push_back({{"name", material.name}, {"is", kind_of(material, scene.relative_units)}});
   }
   for (const Camera& camera : scene.cameras) {
@@ -236,7 +236,7 @@ Json scene_json(const Scene& scene) {
                 {"quality", quality_json(scene)},
                 {"cleaned", clean_up_json(clean_up)},
                 {"materials", std::move(materials)},
-                {"emitters", emitters_json(scene)},
+                {"emitters", emitters_json(clean)},
                 {"cameras", std::move(cameras)},
                 {"notes", scene.notes},
                 {"scene_hash", fmt::format("{:016x}", scene_hash(clean))}};

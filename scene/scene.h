@@ -76,6 +76,10 @@ struct Mask {
   float cutoff = 0.5f;     ///< (0,1]
 };
 
+/// The unit in which a file states the power of all surfaces of a material together. `none`: the
+/// file states the emission of each m^2.
+enum class StatedPower { none, watts, lumens };
+
 /// Reflection, transmission, refraction and emission of a surface. Energy: reflectance +
 /// transmittance + mean_specular() <= 1 in every band.
 struct Material {
@@ -103,6 +107,9 @@ struct Material {
   Spectrum emission{};
   bool one_sided = false;         ///< nothing is reflected from behind; the back is black
   bool emits_both_sides = false;  ///< emission leaves the back as well as the front
+  /// Unless `none`, `emission` is a stated power over an area. What changes the area scales the
+  /// emission (see keep_stated_power()).
+  StatedPower stated_power = StatedPower::none;
   /// Diffuse rho that varies over facets with UV; only in scenes of RGB bands.
   std::optional<ReflectanceTexture> texture{};
   /// Emission that varies over facets with UV; only in scenes of RGB bands.

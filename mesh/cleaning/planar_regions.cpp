@@ -14,6 +14,7 @@
 #include "mesh/cleaning/hanging_points.h"
 #include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/cleaning/plane_regions.h"
+#include "mesh/cleaning/spread_power.h"
 #include "mesh/cleaning/straighten.h"
 #include "mesh/geometry/facet_plane.h"
 #include "mesh/geometry/welded_points.h"
@@ -246,6 +247,7 @@ Scene merge_planar_regions(const Scene& scene, CleanUpReport* report) {
     total.names = join_surfaces(result);
     total.facets_after = static_cast<std::int64_t>(scene_facets(result).size());
     if (total.names) total.joined = apart - total.facets_after;
+    keep_stated_power(scene, result);
     total.area_after = scene_area(result);
   }
   if (report) *report = total;

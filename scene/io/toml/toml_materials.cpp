@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -15,6 +14,7 @@
 #include "scene/io/toml/toml_pictures.h"
 #include "scene/picture_cells.h"
 #include "scene/specular.h"
+#include "scene/stated_power.h"
 
 namespace lightwell {
 namespace {
@@ -242,7 +242,8 @@ void read_emission(const TomlTable& table, const TomlBands& bands, TomlMaterial&
     if (is_per_angle) material.emission = static_cast<float>(std::numbers::pi) * x;
     if (key == "exitance" || key == "luminous_exitance") material.emission = x;
     if (key == "power" || key == "lumens") result.power = x;
-    result.power_is_lumens = key == "lumens";
+    if (key == "power") material.stated_power = StatedPower::watts;
+    if (key == "lumens") material.stated_power = StatedPower::lumens;
     if (!material.emission.isFinite().all() || !x.isFinite().all()) {
       table.require(key).fail("is too large a number");
     }
@@ -344,14 +345,10 @@ Eigen::ArrayXd emitted_by_front(const Scene& scene, const Surface& surface) {
 void scale_picture(const TomlMaterial& given, const Bands& bands, const Eigen::ArrayXd& sent,
                    Material& material) {
   const Spectrum spectrum = sent.cast<float>();
-  const auto amount = [&](const Spectrum& power) {
-    if (given.power_is_lumens) return luminous(bands, power);
-    return std::accumulate(power.begin(), power.end(), 0.0);
-  };
-  const double all = amount(spectrum);
-  const auto factor = all > 0.0 ? static_cast<float>(amount(*given.power) / all) : 0.0f;
-  material.emission_texture->factor *= factor;
-  material.emission *= factor;
+  const StatedPower unit = material.stated_power;
+  const double all = stated_amount(bands, unit, spectrum);
+  const double wanted = stated_amount(bands, unit, *given.power);
+  scale_emission(material, all > 0.0 ? static_cast<float>(wanted / all) : 0.0f);
 }
 
 }  // namespace

@@ -16,7 +16,6 @@ namespace lightwell {
 struct TomlMaterial {
   Material material{};
   std::optional<Spectrum> power{};  ///< W per band over all surfaces of the material
-  bool power_is_lumens = false;     ///< `power` was given as its lumens
 };
 
 /// Reads a [materials.NAME] table, pictures through `pictures`. Throws InputError naming file,
