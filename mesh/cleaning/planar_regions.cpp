@@ -152,8 +152,8 @@ std::optional<PolygonMesh> cleaned(const PolygonMesh& mesh, const std::vector<in
   found.degenerate = std::count(is_degenerate.begin(), is_degenerate.end(), 1);
   if (found.degenerate > 0) facets = without_facets(facets, is_degenerate);
   if (facets.count() == 0) return {};
-  const bool sides_are_alike =
-      !material.one_sided && !material.dielectric && !material.is_emitter();
+  const bool emits_alike = !material.is_emitter() || material.emits_both_sides;
+  const bool sides_are_alike = !material.one_sided && !material.dielectric && emits_alike;
   const std::vector<char> is_duplicate = find_duplicates(facets, points, sides_are_alike);
   found.duplicates = std::count(is_duplicate.begin(), is_duplicate.end(), 1);
   if (found.duplicates > 0) facets = without_facets(facets, is_duplicate);

@@ -15,6 +15,7 @@ namespace {
 using namespace lightwell::test;
 
 const std::string square = "[[0,0,0],[1,0,0],[1,1,0],[0,1,0]]";
+const std::string turned = "[[0,0,0],[0,1,0],[1,1,0],[1,0,0]]";
 const std::string apart = "[[0,0,3],[1,0,3],[1,1,3],[0,1,3]]";
 // Between a statement and the power of the cleaned scene lie fewer than twenty roundings of floats:
 // hue, exitance, the sums of both amounts, factor and product.
@@ -60,6 +61,17 @@ TEST_F(SpreadPower, EmissionOfEachSquareMetreStaysBitForBit) {
     const Scene clean = merge_planar_regions(given);
     EXPECT_TRUE((clean.materials[0].emission == given.materials[0].emission).all());
   }
+}
+
+TEST_F(SpreadPower, OfBothSidesStaysWhereOneOfTwoFacetsBackToBackGoes) {
+  CleanUpReport report;
+  const Scene given = lamp("lumens = 500\nemits = 'both'", square + ", " + turned);
+  const Scene clean = merge_planar_regions(given, &report);
+  EXPECT_EQ(report.duplicates, 1);
+  EXPECT_NEAR(luminous(clean.bands, power_of(clean)), 500.0, 500.0 * rounding);
+  // Each front has light of its own where facets shine from their fronts alone.
+  merge_planar_regions(lamp("lumens = 500", square + ", " + turned), &report);
+  EXPECT_EQ(report.duplicates, 0);
 }
 
 // The white half of a picture on one square metre, the picture's mean, 1/2, on another that is
