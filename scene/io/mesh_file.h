@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "scene/errors.h"
@@ -40,6 +42,10 @@ class NoAreaError : public InputError {
 Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit,
                     MeshMaterials materials, FilePolygons* polygons = nullptr,
                     MeshFronts fronts = MeshFronts::from_winding);
+/// read_obj_file() with the file's materials, for a scene that replaces those of which
+/// `is_replaced(name)` is true: no note says that a replaced material is missing in the files.
+Scene read_obj_part(const std::filesystem::path& path, double metres_per_unit,
+                    const std::function<bool(const std::string&)>& is_replaced);
 Scene read_geometry_file(const std::filesystem::path& path, double metres_per_unit,
                          MeshMaterials materials, FilePolygons* polygons = nullptr,
                          MeshFronts fronts = MeshFronts::from_winding);

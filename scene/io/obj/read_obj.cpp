@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 
@@ -35,29 +36,61 @@ std::vector<std::filesystem::path> files_named(const std::filesystem::path& fold
   return files;
 }
 
-std::vector<Material> read_material_files(const std::filesystem::path& path,
-                                          const ObjContent& content, Remarks& remarks) {
-  std::vector<Material> materials;
+// Tells whether the scene around the file has a material of its own by a name; empty: none.
+using IsReplaced = std::function<bool(const std::string&)>;
+
+struct MaterialFiles {
+  std::vector<Material> materials{};
+  std::vector<std::string> missing{};  // files
+};
+
+MaterialFiles read_material_files(const std::filesystem::path& path, const ObjContent& content,
+                                  Remarks& remarks) {
+  MaterialFiles result;
   for (const std::string& names : content.material_files) {
     for (const auto& file : files_named(path.parent_path(), names)) {
       if (!is_file(file)) {
-        remarks.add(
-            "Material files are missing, and their materials got a diffuse reflectance of 0.5",
-            file.string());
+        result.missing.push_back(file.string());
         continue;
       }
       auto read = read_obj_materials(file, remarks);
-      materials.insert(materials.end(), std::make_move_iterator(read.begin()),
-                       std::make_move_iterator(read.end()));
+      result.materials.insert(result.materials.end(), std::make_move_iterator(read.begin()),
+                              std::make_move_iterator(read.end()));
     }
   }
-  return materials;
+  return result;
+}
+
+// Remarks on materials that faces use and nobody defines, and on the missing files that may define
+// these materials.
+void remark_undefined(const ObjContent& content, const MaterialFiles& files,
+                      const IsReplaced& is_replaced, Remarks& remarks) {
+  std::set<std::string, std::less<>> defined;
+  for (const Material& material : files.materials) defined.insert(material.name);
+  std::vector<std::string> undefined;
+  bool uses_any = false;
+  for (const ObjFace& face : content.faces) {
+    if (face.material < 0) continue;
+    uses_any = true;
+    const auto& name = content.material_names[static_cast<std::size_t>(face.material)];
+    const bool is_new = defined.insert(name).second;
+    if (is_new && !(is_replaced && is_replaced(name))) undefined.push_back(name);
+  }
+  if (!uses_any || !undefined.empty()) {
+    for (const std::string& file : files.missing) {
+      remarks.add(
+          "Material files are missing, and their materials got a diffuse reflectance of 0.5", file);
+    }
+  }
+  for (const std::string& name : undefined) {
+    remarks.add("Materials are not defined and got a diffuse reflectance of 0.5", name);
+  }
 }
 
 // Adds the file's materials to the scene in the order of first use. The key -1 (faces without a
 // material) maps to the default material.
 std::map<int, int> take_materials(const ObjContent& content, const std::vector<Material>& available,
-                                  Scene& scene, Remarks& remarks) {
+                                  Scene& scene) {
   std::map<std::string, const Material*, std::less<>> by_name;  // the first of equal names
   for (const Material& material : available) by_name.emplace(material.name, &material);
   std::map<int, int> taken;
@@ -75,7 +108,6 @@ std::map<int, int> take_materials(const ObjContent& content, const std::vector<M
         material = *found->second;
       } else {
         material.name = name;
-        remarks.add("Materials are not defined and got a diffuse reflectance of 0.5", name);
       }
     }
     scene.materials.push_back(std::move(material));
@@ -174,10 +206,16 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
   }
 }
 
-}  // namespace
+struct ObjRequest {
+  double metres_per_unit = 1.0;
+  MeshMaterials wanted = MeshMaterials::from_file;
+  MeshFronts fronts = MeshFronts::from_winding;
+  IsReplaced is_replaced{};
+};
 
-Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, MeshMaterials wanted,
-                    FilePolygons* polygons, MeshFronts fronts) {
+Scene read_requested(const std::filesystem::path& path, const ObjRequest& request,
+                     FilePolygons* polygons) {
+  const auto& [metres_per_unit, wanted, fronts, is_replaced] = request;
   const TextFile file(path);
   ObjContent content = read_obj_content(file, metres_per_unit);
   Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
@@ -188,8 +226,9 @@ Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, M
   Remarks remarks;
   std::map<int, int> materials = {{-1, 0}};
   if (wanted == MeshMaterials::from_file) {
-    materials =
-        take_materials(content, read_material_files(path, content, remarks), scene, remarks);
+    const MaterialFiles files = read_material_files(path, content, remarks);
+    remark_undefined(content, files, is_replaced, remarks);
+    materials = take_materials(content, files.materials, scene);
   } else {
     for (ObjFace& face : content.faces) face.material = -1;
     scene.materials.push_back(default_material(scene.bands));
@@ -205,6 +244,20 @@ Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, M
   }
   validate(scene);
   return scene;
+}
+
+}  // namespace
+
+Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit, MeshMaterials wanted,
+                    FilePolygons* polygons, MeshFronts fronts) {
+  return read_requested(
+      path, {.metres_per_unit = metres_per_unit, .wanted = wanted, .fronts = fronts}, polygons);
+}
+
+Scene read_obj_part(const std::filesystem::path& path, double metres_per_unit,
+                    const std::function<bool(const std::string&)>& is_replaced) {
+  return read_requested(path, {.metres_per_unit = metres_per_unit, .is_replaced = is_replaced},
+                        nullptr);
 }
 
 Scene read_obj(const std::filesystem::path& path, double metres_per_unit) {

@@ -421,10 +421,12 @@ Scene TomlSurfaces::mesh_of(const std::filesystem::path& path, MeshMaterials wan
   const auto known = meshes_.find({path, wanted});
   if (known != meshes_.end()) return known->second;
   const std::string extension = lower_extension(path);
+  const auto is_replaced = [&](const std::string& material) { return material_of(material) >= 0; };
   Scene mesh = has_unit(extension)
                    ? read_interchange_file(path, 1.0 / scene_.metres_per_unit, wanted)
-               : extension == ".obj" ? read_obj_file(path, 1.0, wanted)
-                                     : read_geometry_file(path, 1.0, wanted);
+               : extension != ".obj"                ? read_geometry_file(path, 1.0, wanted)
+               : wanted == MeshMaterials::from_file ? read_obj_part(path, 1.0, is_replaced)
+                                                    : read_obj_file(path, 1.0, wanted);
   constexpr std::size_t small = 10'000;  // facets; larger meshes soon reach the limit of SceneSize
   if (scene_facets(mesh).size() <= small) meshes_.emplace(std::pair(path, wanted), mesh);
   return mesh;
