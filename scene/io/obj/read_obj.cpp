@@ -153,20 +153,35 @@ bool turned_by_normals(const ObjContent& content, const ObjFace& face, const Loo
   return loop.size() >= 3 && area_vector(loop).dot(sum) < 0.0;
 }
 
+struct ObjRequest {
+  double metres_per_unit = 1.0;
+  MeshMaterials wanted = MeshMaterials::from_file;
+  MeshFronts fronts = MeshFronts::from_winding;
+  IsReplaced is_replaced{};
+};
+
+// True for each material of the scene whose facets keep texture coordinates. A material from
+// another source is unknown here: the caller decides (with_uv), or drops what a replaced one has no
+// use for.
+std::vector<char> materials_with_uv(const Scene& scene, const ObjRequest& request) {
+  std::vector<char> keeps_uv;
+  for (const Material& m : scene.materials) {
+    const bool is_unknown = request.wanted == MeshMaterials::with_uv ||
+                            (request.is_replaced && request.is_replaced(m.name));
+    keeps_uv.push_back(is_unknown || m.shows_picture() ? 1 : 0);
+  }
+  return keeps_uv;
+}
+
 void build_surfaces(const ObjContent& content, const std::map<int, int>& materials,
-                    MeshMaterials wanted, MeshFronts fronts, Scene& scene, FilePolygons& polygons) {
-  // A material from another source is unknown here, so the caller decides (with_uv) on texture
-  // coordinates.
-  const auto keeps_uv = [&](int material) {
-    const Material& m = scene.materials[static_cast<std::size_t>(material)];
-    return wanted == MeshMaterials::with_uv || m.shows_picture();
-  };
+                    const ObjRequest& request, Scene& scene, FilePolygons& polygons) {
+  const std::vector<char> keeps_uv = materials_with_uv(scene, request);
   std::map<std::pair<int, int>, std::size_t> surface_of;  // (group, material)
   std::vector<std::pair<int, int>> keys;
   std::vector<MeshBuilder> meshes;
   std::vector<std::vector<int>> polygons_of;  // by mesh, then facet
   std::map<int, std::set<int>> materials_of_group;
-  const bool by_normals = fronts == MeshFronts::from_normals;
+  const bool by_normals = request.fronts == MeshFronts::from_normals;
   polygons.has_normals = by_normals && !content.normals.empty();
   for (const ObjFace& face : content.faces) {
     const std::pair key(face.group, materials.at(face.material));
@@ -181,7 +196,7 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
     for (std::size_t i = 0; i < face.count; ++i) {
       loop.push_back(content.vertices[static_cast<std::size_t>(content.corners[face.first + i])]);
     }
-    UvLoop uv = keeps_uv(key.second) ? uv_of(content, face) : UvLoop{};
+    UvLoop uv = keeps_uv[static_cast<std::size_t>(key.second)] ? uv_of(content, face) : UvLoop{};
     NormalLoop normals = normals_of(content, face);
     if (by_normals && turned_by_normals(content, face, loop)) {
       std::reverse(loop.begin(), loop.end());
@@ -206,35 +221,28 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
   }
 }
 
-struct ObjRequest {
-  double metres_per_unit = 1.0;
-  MeshMaterials wanted = MeshMaterials::from_file;
-  MeshFronts fronts = MeshFronts::from_winding;
-  IsReplaced is_replaced{};
-};
-
 Scene read_requested(const std::filesystem::path& path, const ObjRequest& request,
                      FilePolygons* polygons) {
-  const auto& [metres_per_unit, wanted, fronts, is_replaced] = request;
   const TextFile file(path);
-  ObjContent content = read_obj_content(file, metres_per_unit);
-  Scene scene{.file = path, .title = path.stem().string(), .metres_per_unit = metres_per_unit};
+  ObjContent content = read_obj_content(file, request.metres_per_unit);
+  Scene scene{
+      .file = path, .title = path.stem().string(), .metres_per_unit = request.metres_per_unit};
   if (content.free_form > 0) {
     add_loss(scene, fmt::format("{} free-form curves and surfaces were left out; export polygons.",
                                 content.free_form));
   }
   Remarks remarks;
   std::map<int, int> materials = {{-1, 0}};
-  if (wanted == MeshMaterials::from_file) {
+  if (request.wanted == MeshMaterials::from_file) {
     const MaterialFiles files = read_material_files(path, content, remarks);
-    remark_undefined(content, files, is_replaced, remarks);
+    remark_undefined(content, files, request.is_replaced, remarks);
     materials = take_materials(content, files.materials, scene);
   } else {
     for (ObjFace& face : content.faces) face.material = -1;
     scene.materials.push_back(default_material(scene.bands));
   }
   FilePolygons found;
-  build_surfaces(content, materials, wanted, fronts, scene, found);
+  build_surfaces(content, materials, request, scene, found);
   remark_pictures_without_uv(scene, remarks);
   remarks.report_to(scene);
   note_repairs(found.repairs, scene);

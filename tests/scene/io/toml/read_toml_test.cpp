@@ -614,6 +614,21 @@ TEST(ReadToml, MaterialsOfMeshesAreMissingOnlyWhereTheSceneHasNone) {
   }
 }
 
+TEST(ReadToml, MaterialsOfTheSceneShowPicturesOnMeshes) {
+  const TemporaryFolder folder;
+  std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", folder / "print.png");
+  folder.write("mesh.obj",
+               "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+               "usemtl wood\nf 1/1 2/2 3/3\nusemtl plain\nf 1/1 3/3 2/2\n");
+  const Scene scene = read_scene(folder.write(
+      "scene.toml",
+      "[materials.wood]\ntexture = \"print.png\"\n[materials.plain]\nreflectance = 0.3\n"
+      "[[surfaces]]\nname = \"mesh\"\nmesh = \"mesh.obj\"\n"));
+  EXPECT_TRUE(scene.notes.empty()) << scene.notes.front();
+  EXPECT_GE(mesh(scene, "mesh/mesh (wood)").facets.at(0).uv_map, 0);
+  EXPECT_TRUE(mesh(scene, "mesh/mesh (plain)").uv_maps.empty());
+}
+
 TEST(ReadToml, CamerasAreNormalisedAndNamed) {
   const Scene& s = everything();
   ASSERT_EQ(s.cameras.size(), 2u);
