@@ -56,7 +56,7 @@ TEST_F(SpreadPower, StaysWhereDuplicatesGo) {
 }
 
 TEST_F(SpreadPower, EmissionOfEachSquareMetreStaysBitForBit) {
-  for (const std::string& emission : {"exitance = [1, 2, 3]", "radiance = 3", "luminance = 70"}) {
+  for (const std::string emission : {"exitance = [1, 2, 3]", "radiance = 3", "luminance = 70"}) {
     const Scene given = lamp(emission, square + ", " + square + ", " + apart);
     const Scene clean = merge_planar_regions(given);
     EXPECT_TRUE((clean.materials[0].emission == given.materials[0].emission).all());
