@@ -14,6 +14,7 @@
 #include "radiosity/refine/refine_solution.h"
 #include "radiosity/refine/shared_gathers.h"
 #include "scene/errors.h"
+#include "scene/stopwatch.h"
 
 namespace lightwell {
 namespace {
@@ -57,6 +58,7 @@ struct PilotGathers::Impl {
       : scene(of), base(std::move(mesh)), caster(base), direct_light(direct) {}
 
   PilotGather unrefined(const SolveOptions& options);
+  RunControl in_haste(const SolveOptions& options) const;
   PilotGather at_patches(const SolveOptions& options);
   PilotGather at_base(const SolveOptions& options);
   void prepare(const SolveOptions& options);
@@ -67,6 +69,7 @@ struct PilotGathers::Impl {
   PatchMesh base;
   ElementCaster caster;
   const DirectLight& direct_light;
+  double seconds_of_patches = 0.0;
   BandArray radiosity{};     // at the base's vertices, with columns of every channel
   BandArray of_all_light{};  // the sum of all channels; empty if light is not kept apart
   BandArray caustic{};       // at the base's vertices
@@ -80,6 +83,7 @@ PilotGathers::PilotGathers(const Scene& scene, PatchMesh base, const DirectLight
                            const RadiositySolution& solution)
     : impl_(new Impl(scene, std::move(base), direct_light)) {
   const PatchMesh& mesh = impl_->base;
+  for (const PhaseSeconds& phase : solution.seconds) impl_->seconds_of_patches += phase.seconds;
   impl_->radiosity = patch_to_vertex(mesh, direct_light, unscaled_radiosity(solution));
   if (direct_light.channel_count() == 1) return;
   impl_->all_light.emplace(scene, mesh, EmitterChannels{}, &direct_light);
@@ -123,6 +127,17 @@ PilotGather PilotGathers::Impl::unrefined(const SolveOptions& options) {
   return pilot;
 }
 
+// The run with the time that is left, or an eighth of the time that the patches took, if that is
+// more: an early end takes some time in any case.
+RunControl PilotGathers::Impl::in_haste(const SolveOptions& options) const {
+  RunControl run = options.run;
+  if (!run.has_limit()) return run;
+  constexpr double overtime = 1.0 / 8.0;
+  const double allowed = std::max(options.run.time_left(), overtime * seconds_of_patches);
+  run.seconds_left = [allowed, watch = Stopwatch()] { return allowed - watch.seconds(); };
+  return run;
+}
+
 PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
   // 1/sqrt(32) = 18 % of the spread of light among rays, as rough as one point of a patch is.
   constexpr int few_rays = 32;
@@ -142,7 +157,7 @@ PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
   SharedGathers shared = find_shared_gathers(scene, base);
   std::vector<InterpolatedVertex> interpolated = std::move(shared.unread);
   interpolated.insert(interpolated.end(), shared.read.begin(), shared.read.end());
-  const bool is_finished = finishes_in_time(options.run, [&](const RunControl& in_time) {
+  const bool is_finished = finishes_in_time(in_haste(options), [&](const RunControl& in_time) {
     few.run = in_time;
     pilot.direct = direct_beside(lit, interpolated, few);
   });

@@ -11,7 +11,6 @@
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
-#include "scene/stopwatch.h"
 
 namespace lightwell {
 namespace {
@@ -97,15 +96,17 @@ class PictureRecords {
   // Returns no records if their relative noise is more than `most_noise`, and those of wider grids
   // if there is not enough time for all.
   std::vector<IrradianceRecord> find(double most_noise) {
-    // A narrower grid has about twice the records of the one before.
-    constexpr double growth = 2.0;
-    Stopwatch watch;
     for (int step = widest_step; step >= 1; step /= 2) {
       std::vector<Candidate> candidates = uncovered(step);
       clamp(candidates);
-      add(thinned(candidates), step);
+      const std::size_t before = records_.size();
+      const bool is_finished = finishes_in_time(
+          run_, [&](const RunControl& in_time) { add(thinned(candidates), step, in_time); });
+      if (!is_finished) {
+        records_.resize(before);
+        break;
+      }
       if (step == widest_step && noise() > most_noise) return {};
-      if (growth * watch.lap() > run_.time_left()) break;
       narrow();
     }
     even_out(records_);
@@ -189,7 +190,7 @@ class PictureRecords {
   }
 
   // Gathers the light of candidates, which become records.
-  void add(const std::vector<Candidate>& candidates, int step) {
+  void add(const std::vector<Candidate>& candidates, int step, const RunControl& run) {
     constexpr int between_reports = 1024;
     const auto count = static_cast<int>(candidates.size());
     const std::size_t first = records_.size();
@@ -199,7 +200,7 @@ class PictureRecords {
       least_radii_.push_back(least_radius(candidate.place));
     }
     for (int done = 0; done < count; done += between_reports) {
-      report(run_.progress, "records", share_done(step, static_cast<double>(done) / count));
+      report(run.progress, "records", share_done(step, static_cast<double>(done) / count));
       parallel_for(std::min(between_reports, count - done), 1, [&](int begin, int end) {
         for (int i = done + begin; i < done + end; ++i) {
           const auto k = static_cast<std::size_t>(i);
@@ -232,7 +233,7 @@ class PictureRecords {
     return square > 0.0 ? std::sqrt(variance / square) : 0.0;
   }
 
-  // By the growth of find().
+  // A narrower grid has about twice the records of the one before.
   static double share_done(int step, double of_step) {
     const double before = static_cast<double>(widest_step) / step - 1.0;
     return (before + of_step * (before + 1.0)) / (2.0 * widest_step - 1.0);
