@@ -27,6 +27,16 @@ Found found_in(const Scene& scene, int patches = 600) {
   return found;
 }
 
+// Expects all patches of a material that face as the first patch of the mesh to be in one part, and
+// their backs not to be in that part.
+void expect_sides_apart(const Found& found, int material) {
+  for (int p = 0; p < found.mesh.patch_count(); ++p) {
+    if (found.mesh.material[p] != material) continue;
+    EXPECT_EQ(found.parts.of_patch[p] == found.parts.of_patch[0],
+              found.mesh.is_back[p] == found.mesh.is_back[0]);
+  }
+}
+
 int add_two_sided(Scene& scene) {
   Material material = diffuse(scene.bands, 0.5f);
   material.one_sided = false;
@@ -217,11 +227,7 @@ TEST(FindParts, AWallBesideABulbIsNoBackdrop) {
   add_box(scene, {1, 1.5, 1.2}, {1.1, 1.6, 1.3}, {bulb, bulb, bulb, bulb, bulb, bulb}, false);
   const Found found = found_in(scene);
   ASSERT_EQ(found.parts.count(), 2);
-  for (int p = 0; p < found.mesh.patch_count(); ++p) {
-    if (found.mesh.material[p] != wall) continue;
-    EXPECT_EQ(found.parts.of_patch[p] == found.parts.of_patch[0],
-              found.mesh.is_back[p] == found.mesh.is_back[0]);
-  }
+  expect_sides_apart(found, wall);
 }
 
 TEST(FindParts, ACabinetIsAPartAndACrackIsNone) {
@@ -281,11 +287,7 @@ TEST(FindParts, TheOutsideOfAHouseWithPlatesIsNoCrack) {
   }
   const Found found = found_in(scene);
   ASSERT_EQ(found.parts.count(), 2);
-  for (int p = 0; p < found.mesh.patch_count(); ++p) {
-    if (found.mesh.material[p] != wall) continue;
-    EXPECT_EQ(found.parts.of_patch[p] == found.parts.of_patch[0],
-              found.mesh.is_back[p] == found.mesh.is_back[0]);
-  }
+  expect_sides_apart(found, wall);
 }
 
 TEST(FindParts, TheSizeOfTheSceneDoesNotMatter) {
