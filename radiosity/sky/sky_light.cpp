@@ -343,7 +343,7 @@ SkyByCosine SkyLight::light_by_cosine(const SkySites::Site& site,
     double all = 0.0;
     for (std::size_t i = 0; i < cosine.size(); ++i) {
       const double u = i % 2 == 0 ? 0.25 : 0.75, v = i < 2 ? 0.25 : 0.75;
-      // Of a cell that the horizon cuts, all four may lie below.
+      // All four may lie below the horizon, where it cuts a cell.
       constexpr double least = 1e-3;
       cosine[i] = std::max(cells_.direction(c, u, v).dot(normal), least);
       all += cosine[i];

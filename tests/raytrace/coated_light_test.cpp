@@ -29,7 +29,7 @@ CoatedBase base_of_coat(float roughness = 0.0f) {
   return CoatedBase(material);
 }
 
-// What a plate at the origin that faces up gets from where `shines` is true by the direction, as
+// Light of a plate at the origin that faces up, from where `shines` is true by the direction, as
 // its coated base takes the light and as it arrives: int g cos and int cos by the midpoint rule
 // over 512 x 512 steps of azimuth and cosine.
 struct Arriving {
@@ -125,7 +125,7 @@ TEST(CoatedLight, OfALowSkyShowsInPictures) {
   EXPECT_NEAR(sum / expected, 1.0, 4.0 / 64.0);
 }
 
-// What the sites of the sky know of the gain, for the mesh's radiosity rho gain E. Two rays through
+// The gain that sites of the sky know, for the mesh's radiosity rho gain E. Two rays through
 // each of the 64 cells that the roof cuts leave 0.35 / 8 of their light, half of all, whose factor
 // differs from the mean by 0.1: 0.2 %. Four points of a cell of 5.6 degrees and 32 steps of the
 // cosine are midpoint rules; at the horizon, where the factor rises by 0.06 per degree, a step of
@@ -162,7 +162,7 @@ TEST(CoatedLight, OfASkyIsNotThatOfAHiddenSun) {
                        .irradiance = constant_spectrum(scene.bands, 1000.0f)};
   const TracedScene lit(scene, 0.05);
   const CoatedBase base = base_of_coat();
-  // As for the mesh's radiosity.
+  // The bound of the mesh's radiosity above, by the same cells.
   EXPECT_NEAR(lit.direct_light.base_gain({{0, 0, 0}, up, 0}, base),
               arriving(LowSky::is_open).gain(), 0.01);
 }
