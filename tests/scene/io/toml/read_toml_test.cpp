@@ -592,43 +592,6 @@ TEST(ReadToml, MeshesComeWithTheirMaterialsUnlessReplaced) {
   EXPECT_EQ(s.dropped_polygons, 1) << "of the model: one without area";
 }
 
-TEST(ReadToml, MaterialsOfMeshesAreMissingOnlyWhereTheSceneHasNone) {
-  const TemporaryFolder folder;
-  const std::string triangles =
-      "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wood\nf 1 2 3\nusemtl cloth\nf 1 3 2\n";
-  folder.write("plain.obj", triangles);
-  folder.write("gone.obj", "mtllib gone.mtl\n" + triangles);
-  const std::string wood = "[materials.wood]\nreflectance = 0.3\n";
-  const std::string cloth = "[materials.cloth]\nreflectance = 0.4\n";
-  for (const std::string mesh : {"plain.obj", "gone.obj"}) {
-    const std::string surfaces = "[[surfaces]]\nmesh = \"" + mesh + "\"\n";
-    const Scene whole = read_scene(folder.write("whole.toml", wood + cloth + surfaces));
-    EXPECT_TRUE(whole.losses.empty()) << whole.losses.front();
-    EXPECT_TRUE(whole.notes.empty()) << whole.notes.front();
-    EXPECT_EQ(whole.materials[static_cast<std::size_t>(whole.surfaces[1].material)].name, "cloth");
-
-    const Scene half = read_scene(folder.write("half.toml", wood + surfaces));
-    ASSERT_EQ(half.losses.size(), mesh == "gone.obj" ? 2u : 1u);
-    EXPECT_EQ(half.losses.front().find("gone.mtl") != std::string::npos, mesh == "gone.obj");
-    EXPECT_NE(half.losses.back().find("0.5: 'cloth'."), std::string::npos) << half.losses.back();
-  }
-}
-
-TEST(ReadToml, MaterialsOfTheSceneShowPicturesOnMeshes) {
-  const TemporaryFolder folder;
-  std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", folder / "print.png");
-  folder.write("mesh.obj",
-               "v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
-               "usemtl wood\nf 1/1 2/2 3/3\nusemtl plain\nf 1/1 3/3 2/2\n");
-  const Scene scene = read_scene(folder.write(
-      "scene.toml",
-      "[materials.wood]\ntexture = \"print.png\"\n[materials.plain]\nreflectance = 0.3\n"
-      "[[surfaces]]\nname = \"mesh\"\nmesh = \"mesh.obj\"\n"));
-  EXPECT_TRUE(scene.notes.empty()) << scene.notes.front();
-  EXPECT_GE(mesh(scene, "mesh/mesh (wood)").facets.at(0).uv_map, 0);
-  EXPECT_TRUE(mesh(scene, "mesh/mesh (plain)").uv_maps.empty());
-}
-
 TEST(ReadToml, CamerasAreNormalisedAndNamed) {
   const Scene& s = everything();
   ASSERT_EQ(s.cameras.size(), 2u);
