@@ -160,6 +160,7 @@ PilotGather PilotGathers::Impl::at_patches(const SolveOptions& options) {
   const bool is_finished = finishes_in_time(in_haste(options), [&](const RunControl& in_time) {
     few.run = in_time;
     pilot.direct = direct_beside(lit, interpolated, few);
+    pilot.shadows = few.shadows;
   });
   if (!is_finished) pilot.direct = to_vertices(base, gather_direct(lit, points, gather));
   pilot.indirect = to_vertices(base, gather_indirect(lit, radiosity, points, gather).indirect);
