@@ -132,10 +132,10 @@ std::string error_text(const Json& facts) {
 std::string parts_text(const Json& facts) {
   const Json& parts = facts["parts"];
   std::vector<std::pair<double, std::string>> by_error;
-  std::size_t dark = 0;
+  std::size_t dark = 0, by_cracks = 0;
   for (const Json& part : parts) {
     if (part["error_estimate"].is_null()) {
-      ++dark;
+      ++(part.contains("lit_by_cracks") ? by_cracks : dark);
       continue;
     }
     const double error = part["error_estimate"];
@@ -156,7 +156,11 @@ std::string parts_text(const Json& facts) {
   if (by_error.size() > most) text += fmt::format(", {} better", by_error.size() - most);
   const char* const unjudged =
       facts.contains("looked_from") ? "not seen or without light" : "without light";
-  if (dark > 0) text += fmt::format("{}{} {}", worst.empty() ? "" : ", ", dark, unjudged);
+  std::vector<std::string> others;
+  if (dark > 0) others.push_back(fmt::format("{} {}", dark, unjudged));
+  if (by_cracks > 0) others.push_back(fmt::format("{} lit through cracks, not judged", by_cracks));
+  if (!worst.empty() && !others.empty()) text += ", ";
+  text += fmt::format("{}", fmt::join(others, ", "));
   return text;
 }
 
@@ -206,6 +210,7 @@ Json parts_json(const SolvedScene& solved) {
                     {solution.relative_units ? "irradiance" : "lux", means[p]},
                     {"error_estimate", nullptr}};
     if (part.error_estimate >= 0.0) figures["error_estimate"] = part.error_estimate;
+    if (part.is_lit_by_cracks) figures["lit_by_cracks"] = true;
     parts.push_back(std::move(figures));
   }
   return parts;

@@ -29,7 +29,7 @@ constexpr double of_whole_set = 0.5;
 Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance,
                           const SceneParts& parts) {
   const Eigen::ArrayXd reference = error_references(mesh, irradiance, parts);
-  const std::vector<char> judged = judged_patches(mesh);
+  const std::vector<char> judged = judged_patches(mesh, parts);
   Eigen::ArrayXf indicator = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (judged[static_cast<std::size_t>(mesh.patch[e])] == 0 || !(reference[e] > 0.0)) continue;
@@ -61,7 +61,7 @@ class ErrorSampler {
   ErrorSampler(const ElementCaster& caster, const Eigen::ArrayXf& indicator,
                const SceneParts& parts, int part)
       : mesh_(caster.mesh()), indicator_(indicator), counts_(mesh_.patch_count(), 0) {
-    const std::vector<char> judged = judged_patches(mesh_);
+    const std::vector<char> judged = judged_patches(mesh_, parts);
     for (int p = 0; p < mesh_.patch_count(); ++p) {
       if (parts.judged_with(p) != part) continue;
       const bool is_seen = caster.hidden_elements(p) == 0 && parts.is_looked_at(p);

@@ -86,7 +86,7 @@ SolveOptions with_portals(const GatherSources& sources, const SolvedScene& patch
   const ElementCaster caster(patches.mesh);
   options.gather.portals = find_portals(
       caster, brightness_of_patches(patches.mesh, sources.all, patches.solution.patch_radiosity),
-      sources.openings, options.run);
+      judged_openings(caster, patches.solution.parts, sources.openings), options.run);
   return options;
 }
 

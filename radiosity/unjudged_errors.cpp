@@ -12,9 +12,9 @@ namespace {
 
 // The elements on patches that do not count. A side that another surface covers has no light that
 // could be measured.
-std::vector<InnerError> unjudged_elements(const LitScene& lit) {
+std::vector<InnerError> unjudged_elements(const LitScene& lit, const SceneParts& parts) {
   const PatchMesh& mesh = lit.mesh();
-  const std::vector<char> judged = judged_patches(mesh), crumbs = crumb_patches(mesh),
+  const std::vector<char> judged = judged_patches(mesh, parts), crumbs = crumb_patches(mesh),
                           unread = unread_patches(lit.scene, mesh);
   std::vector<InnerError> found;
   for (int e = 0; e < mesh.element_count(); ++e) {
@@ -37,7 +37,7 @@ std::vector<InnerError> unjudged_elements(const LitScene& lit) {
 void add_unjudged_errors(const LitScene& lit, const GatherOptions& gather,
                          RadiositySolution& solution) {
   if (solution.interpolation_error.size() != lit.mesh().element_count()) return;
-  std::vector<InnerError> elements = unjudged_elements(lit);
+  std::vector<InnerError> elements = unjudged_elements(lit, solution.parts);
   // Light on these surfaces is even in most places, and the noise of 256 rays is a few percent of
   // the light before it is taken off.
   const InnerEffort effort{.most = 1024, .rays = 256, .counts_noise = false, .replica = 4500};

@@ -361,6 +361,30 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
   return result;
 }
 
+std::vector<Opening> judged_openings(const ElementCaster& caster, const SceneParts& parts,
+                                     std::vector<Opening> openings) {
+  const PatchMesh& mesh = caster.mesh();
+  std::vector<float> unjudged;  // 1 or -1 for each element, so that the sum tells which are more
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    unjudged.push_back(parts.is_judged(mesh.patch[e]) ? -1.0f : 1.0f);
+  }
+  if (std::ranges::count(unjudged, 1.0f) == 0) return openings;
+  constexpr int paths = 16;
+  const Sights sights(caster, unjudged);
+  std::vector<char> is_kept(openings.size(), 1);
+  parallel_for(static_cast<int>(openings.size()), 4, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      for (const int side : {0, 1}) {
+        Sight sight;
+        sights.look(openings[i], static_cast<std::uint64_t>(i), side, 0, paths, sight);
+        if (sight.brightness > 0.0) is_kept[i] = 0;
+      }
+    }
+  });
+  std::erase_if(openings, [&, i = 0](const Opening&) mutable { return is_kept[i++] == 0; });
+  return openings;
+}
+
 std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,
                                             const std::vector<float>& brightness,
                                             const std::vector<Opening>& openings,

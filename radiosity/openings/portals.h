@@ -10,6 +10,7 @@
 #include "mesh/geometry/box_tree.h"
 #include "radiosity/direct_light/direct_light.h"
 #include "radiosity/openings/find_openings.h"
+#include "radiosity/solution/scene_parts.h"
 
 namespace lightwell {
 
@@ -113,6 +114,11 @@ class Portals {
 /// processes of `run` share the openings; no journal keeps the result.
 std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings,
                                      const RunControl& run = {});
+
+/// The openings but for those of which a side leads to patches that are not judged: a model whose
+/// seams leak has hundreds, and to aim rays at their light takes most of the time of gathers.
+std::vector<Opening> judged_openings(const ElementCaster& caster, const SceneParts& parts,
+                                     std::vector<Opening> openings);
 
 /// The narrow ones of `openings` that are portals; null if there are none. `brightness` as in
 /// Portals.

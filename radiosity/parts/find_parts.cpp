@@ -11,10 +11,10 @@
 #include <tuple>
 #include <utility>
 
-#include "mesh/patches/patch_sampler.h"
-#include "radiosity/parts/backdrop.h"
+#include "radiosity/parts/cracks.h"
 #include "radiosity/parts/cut_graph.h"
 #include "radiosity/parts/exchange_graph.h"
+#include "radiosity/parts/part_rays.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
@@ -22,111 +22,10 @@
 namespace lightwell {
 namespace {
 
-// The arrivals of one patch's rays at another patch.
-struct Arrivals {
-  int patch = 0;
-  float share = 0.0f;   // of the rays, with what mirrors and glass let pass
-  float length = 0.0f;  // sum of the straight rays' lengths times their shares, m
-};
-
-struct PatchArrivals {
-  std::vector<Arrivals> at{};  // in the order of patches
-  double escaped = 0.0;        // share of the rays that left the scene
-  bool takes_part = false;     // false for mirrors and clear glass
-  bool is_outside = false;     // see mark_outside()
-};
-
-class PartRays {
- public:
-  PartRays(const Scene& scene, const ElementCaster& caster, const LightPaths& paths)
-      : caster_(caster),
-        paths_(paths),
-        is_backdrop_(backdrop_patches(scene, caster.mesh())),
-        rays_(rays_per_patch_for_parts(caster.mesh().patch_count())),
-        sobol_(rays_) {}
-
-  PatchArrivals cast(int patch) const {
-    const PatchMesh& mesh = caster_.mesh();
-    PatchArrivals result;
-    if (!paths_.is_diffuse(mesh.facet[mesh.first_element[patch]])) return result;
-    result.takes_part = true;
-    const std::uint64_t key =
-        random_key(static_cast<std::uint64_t>(patch), RandomPurpose::part_rays);
-    const PatchSampler sampler(mesh, patch);
-    std::vector<Ray> rays;
-    for (int r = 0; r < rays_; ++r) {
-      const Eigen::Array4f u = sobol_.point(r, key);
-      rays.push_back(cosine_ray(mesh, sampler.point(u[0], u[1]), u[2], u[3]));
-    }
-    std::vector<ElementHit> hits(rays.size());
-    caster_.closest_elements(rays, hits);
-    const float one = 1.0f / static_cast<float>(rays_);
-    std::map<int, Arrivals> by_patch;
-    const auto arrive = [&](int element, float share, double length) {
-      const int p = mesh.patch[element];
-      Arrivals& at = by_patch[p];
-      at.patch = p;
-      at.share += share;
-      at.length += share * static_cast<float>(length);
-    };
-    for (std::size_t r = 0; r < rays.size(); ++r) {
-      const ElementHit& hit = hits[r];
-      if (leaves(hit)) {
-        result.escaped += double{one};
-        continue;
-      }
-      const bool is_specular = paths_.has_specular() && paths_.is_specular(hit.facet);
-      if (hit.element >= 0 && (!is_specular || paths_.is_diffuse(hit.facet))) {
-        arrive(hit.element, one, hit.t);
-      } else if (is_specular) {
-        const auto end = [&](const ElementHit& at, const Spectrum& throughput) {
-          if (leaves(at)) {
-            result.escaped += double{one * throughput.mean()};
-          } else if (at.element >= 0) {
-            arrive(at.element, one * throughput.mean(), hit.t);
-          }
-        };
-        const PathLosses losses =
-            paths_.follow(rays[r], hit, random_key(key, RandomPurpose::part_rays, r), end);
-        result.escaped += double{one * losses.escaped.mean()};
-      }
-    }
-    for (const auto& [p, at] : by_patch) result.at.push_back(at);
-    return result;
-  }
-
- private:
-  // Light that ends on a backdrop is outside.
-  bool leaves(const ElementHit& hit) const {
-    return hit.facet < 0 || (hit.element >= 0 && is_backdrop_[caster_.mesh().patch[hit.element]]);
-  }
-
-  const ElementCaster& caster_;
-  const LightPaths& paths_;
-  std::vector<char> is_backdrop_;
-  int rays_;
-  SobolPoints sobol_;
-};
-
-std::vector<PatchArrivals> cast_part_rays(const Scene& scene, const ElementCaster& caster,
-                                          const LightPaths& paths, const Progress& progress) {
-  const PartRays rays(scene, caster, paths);
-  const int patches = caster.mesh().patch_count();
-  std::vector<PatchArrivals> arrivals(static_cast<std::size_t>(patches));
-  constexpr int slice = 4096, grain = 16;  // patches between two reports of progress
-  for (int begin = 0; begin < patches; begin += slice) {
-    report(progress, "parts", static_cast<double>(begin) / patches);
-    parallel_for(std::min(slice, patches - begin), grain, [&](int low, int high) {
-      for (int i = begin + low; i < begin + high; ++i) arrivals[i] = rays.cast(i);
-    });
-  }
-  return arrivals;
-}
-
 // Sets `is_outside` of patches of which enough rays leave the scene. Where a house stands on the
 // ground, its wall takes up to half of the rays of the small patches beside the wall, so half of
 // the rays suffice (0.4 with the noise of 32 rays) on a facet of which enough leave as a whole.
-void mark_outside(const PatchMesh& mesh, std::vector<PatchArrivals>& arrivals) {
+void mark_outside(const PatchMesh& mesh, std::vector<PartRayEnds>& arrivals) {
   constexpr double enough = 0.7, beside_a_wall = 0.4;
   std::map<std::pair<int, char>, std::array<double, 2>> escaped_and_all;
   const auto side_of = [&](std::size_t i) -> std::array<double, 2>& {
@@ -149,7 +48,7 @@ void mark_outside(const PatchMesh& mesh, std::vector<PatchArrivals>& arrivals) {
 
 // The node of each patch, -1 for those that take no part. Patches that see little but the outside
 // share one.
-std::vector<int> nodes_of(const std::vector<PatchArrivals>& arrivals, int& count) {
+std::vector<int> nodes_of(const std::vector<PartRayEnds>& arrivals, int& count) {
   std::vector<int> node(arrivals.size(), -1);
   int of_outside = -1;
   count = 0;
@@ -169,10 +68,10 @@ std::vector<int> nodes_of(const std::vector<PatchArrivals>& arrivals, int& count
 // The exchange of both directions, weighted by the inverse of the variance of each: rays of a patch
 // of area A out of N find A_i F_ij to a variance proportional to A / N.
 std::vector<ExchangeLink> links_of(const PatchMesh& mesh, const std::vector<int>& node,
-                                   const std::vector<PatchArrivals>& arrivals) {
+                                   const std::vector<PartRayEnds>& arrivals) {
   std::vector<ExchangeLink> links;
   for (int i = 0; i < mesh.patch_count(); ++i) {
-    for (const Arrivals& at : arrivals[i].at) {
+    for (const RayArrivals& at : arrivals[i].at) {
       if (node[at.patch] < 0 || at.patch == i) continue;
       const double both = mesh.area[i] * mesh.area[at.patch] / (mesh.area[i] + mesh.area[at.patch]);
       links.push_back({node[i], node[at.patch], static_cast<float>(both * double{at.share})});
@@ -181,22 +80,10 @@ std::vector<ExchangeLink> links_of(const PatchMesh& mesh, const std::vector<int>
   return links;
 }
 
-// A cluster's area, m^2, and area times rays: those that end within, their lengths (m^3), and those
-// that leave the scene.
-struct ClusterSums {
-  double area = 0.0, within = 0.0, length = 0.0, escaped = 0.0;
-  int patches = 0;
-
-  // Rays that leave the scene are long: the outside of a house with deep window frames is neither
-  // a crack nor a hollow.
-  bool is_enclosed() const { return within > escaped; }
-  double mean_length() const { return within > 0.0 ? length / within : 0.0; }
-};
-
 // The clusters of the patches that are too small, or too flat, to be parts of their own.
 class TinyClusters {
  public:
-  TinyClusters(const PatchMesh& mesh, const std::vector<PatchArrivals>& arrivals)
+  TinyClusters(const PatchMesh& mesh, const std::vector<PartRayEnds>& arrivals)
       : mesh_(mesh), arrivals_(arrivals) {
     // A thousand rooms may be parts, and the inside of a table leg is none.
     constexpr double smallest = 1.0 / 1024.0;
@@ -209,7 +96,7 @@ class TinyClusters {
 
   // 1 for each cluster that is to join another; `cluster` of each patch, -1: none.
   std::vector<char> find(const std::vector<int>& cluster) const {
-    const std::vector<ClusterSums> sums = sums_of(cluster);
+    const std::vector<ClusterSums> sums = sums_of_clusters(mesh_, arrivals_, cluster);
     ClusterSums largest;
     for (const ClusterSums& of : sums) {
       if (of.is_enclosed() && of.area > largest.area) largest = of;
@@ -224,23 +111,6 @@ class TinyClusters {
   }
 
  private:
-  std::vector<ClusterSums> sums_of(const std::vector<int>& cluster) const {
-    std::vector<ClusterSums> sums(static_cast<std::size_t>(*std::ranges::max_element(cluster) + 1));
-    for (int i = 0; i < mesh_.patch_count(); ++i) {
-      if (cluster[i] < 0) continue;
-      ClusterSums& of = sums[cluster[i]];
-      of.area += mesh_.area[i];
-      ++of.patches;
-      of.escaped += mesh_.area[i] * arrivals_[i].escaped;
-      for (const Arrivals& at : arrivals_[i].at) {
-        if (cluster[at.patch] != cluster[i]) continue;
-        of.within += mesh_.area[i] * double{at.share};
-        of.length += mesh_.area[i] * double{at.length};
-      }
-    }
-    return sums;
-  }
-
   static bool is_crack(const ClusterSums& of) {
     constexpr double crack = 1.0 / 32.0;
     return of.is_enclosed() && of.mean_length() < crack * std::sqrt(of.area);
@@ -256,7 +126,7 @@ class TinyClusters {
   }
 
   const PatchMesh& mesh_;
-  const std::vector<PatchArrivals>& arrivals_;
+  const std::vector<PartRayEnds>& arrivals_;
   double smallest_area_ = 0.0;  // of a part, m^2
 };
 
@@ -324,7 +194,7 @@ void renumber(std::vector<int>& cluster) {
 // light outside, and errors that count as shares of both are no measure of it. An outside that is
 // smaller than the room, such as what stands before the open side of a box, counts little beside
 // it.
-void part_outside(const PatchMesh& mesh, const std::vector<PatchArrivals>& arrivals,
+void part_outside(const PatchMesh& mesh, const std::vector<PartRayEnds>& arrivals,
                   const std::vector<int>& node, const std::vector<ExchangeLink>& links,
                   std::vector<int>& cluster) {
   constexpr double most_open = 0.2;  // a room of 4 m x 5 m x 3 m with a wall of glass has 0.13
@@ -370,16 +240,10 @@ std::vector<int> to_patches(const std::vector<int>& node, const std::vector<int>
 
 }  // namespace
 
-int rays_per_patch_for_parts(int patches) {
-  constexpr int all = 1 << 15, fewest = 32, most = 1024;
-  const int wanted = std::clamp(all / std::max(patches, 1), fewest, most);
-  return static_cast<int>(std::bit_ceil(static_cast<unsigned>(wanted)));
-}
-
 SceneParts find_parts(const Scene& scene, const ElementCaster& caster, const LightPaths& paths,
                       const Progress& progress) {
   const PatchMesh& mesh = caster.mesh();
-  std::vector<PatchArrivals> arrivals = cast_part_rays(scene, caster, paths, progress);
+  std::vector<PartRayEnds> arrivals = cast_part_rays(scene, caster, paths, progress);
   mark_outside(mesh, arrivals);
   int nodes = 0;
   const std::vector<int> node = nodes_of(arrivals, nodes);
@@ -400,6 +264,7 @@ SceneParts find_parts(const Scene& scene, const ElementCaster& caster, const Lig
     parts.parts.push_back({.area = of});
   }
   name_parts(scene, mesh, parts);
+  mark_lit_by_cracks(scene, caster, paths, arrivals, parts);
   return parts;
 }
 

@@ -8,10 +8,6 @@
 
 namespace lightwell {
 
-/// Rays from each patch that find_parts() casts: 32 768 over the number of patches, as a power of
-/// two, at least 32 and at most 1024.
-int rays_per_patch_for_parts(int patches);
-
 /// Finds the parts of a scene that exchange little light: rooms behind doors, the ground outside
 /// windows, the insides of large cabinets.
 ///

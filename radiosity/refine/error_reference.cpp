@@ -19,14 +19,15 @@ NoiseGoal noise_goal(double mean_irradiance, double share) {
   return {.irradiance = share * mean_irradiance, .share = share / bright};
 }
 
-std::vector<char> judged_patches(const PatchMesh& mesh) {
+std::vector<char> judged_patches(const PatchMesh& mesh, const SceneParts& parts) {
   BandArray light = mesh.reflectance;
   if (mesh.transmittance.size() > 0) light += mesh.transmittance;
   const bool any = (light > 0.0f).any();
   if (!any) light = mesh.emission;
   std::vector<char> judged(static_cast<std::size_t>(mesh.patch_count()), 0);
   for (int p = 0; p < mesh.patch_count(); ++p) {
-    judged[static_cast<std::size_t>(p)] = (light.row(p) > 0.0f).any() == any ? 1 : 0;
+    judged[static_cast<std::size_t>(p)] =
+        (light.row(p) > 0.0f).any() == any && parts.is_judged(p) ? 1 : 0;
   }
   return judged;
 }
@@ -72,7 +73,7 @@ double own_irradiance(const PatchMesh& mesh, const BandArray& irradiance, int el
 
 PartMeans part_means(const PatchMesh& mesh, const BandArray& irradiance, const SceneParts& parts) {
   PartMeans means(parts);
-  const std::vector<char> judged = judged_patches(mesh);
+  const std::vector<char> judged = judged_patches(mesh, parts);
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (judged[static_cast<std::size_t>(mesh.patch[e])] == 0) continue;
     means.add(mesh.patch[e], mesh.element_area[e], own_irradiance(mesh, irradiance, e));

@@ -18,8 +18,9 @@ double error_reference(double mean_irradiance, double own_irradiance);
 NoiseGoal noise_goal(double mean_irradiance, double share);
 
 /// Per patch, 1 if errors of its irradiance count: if it reflects, since others see its light;
-/// where nothing reflects, if it does not emit, since such surfaces are there to be measured.
-std::vector<char> judged_patches(const PatchMesh& mesh);
+/// where nothing reflects, if it does not emit, since such surfaces are there to be measured. 0
+/// where SceneParts::is_judged() is false.
+std::vector<char> judged_patches(const PatchMesh& mesh, const SceneParts& parts);
 
 /// The mean irradiance of each part of a scene, by which errors in the part are judged. A part with
 /// less than 1e-4 of the brightest part's mean is judged by that share of the mean: 10 lx beside

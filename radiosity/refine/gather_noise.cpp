@@ -30,7 +30,7 @@ Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
 std::vector<double> rms_noises(const PatchMesh& mesh, const Eigen::ArrayXf& noise,
                                const SceneParts& parts) {
   std::vector<double> sum(static_cast<std::size_t>(parts.judged_count()), 0.0), area(sum);
-  const std::vector<char> judged = judged_patches(mesh);
+  const std::vector<char> judged = judged_patches(mesh, parts);
   for (int e = 0; e < mesh.element_count(); ++e) {
     const int patch = mesh.patch[e];
     if (judged[static_cast<std::size_t>(patch)] == 0 || !parts.is_looked_at(patch)) continue;

@@ -60,7 +60,7 @@ InterpolationError::InterpolationError(const LitScene& lit, const BandArray& rad
 
 void InterpolationError::find_what_matters() {
   const PatchMesh& mesh = elements_.base();
-  const std::vector<char> judged = judged_patches(mesh);
+  const std::vector<char> judged = judged_patches(mesh, parts_);
   matters_.assign(mesh.element_count(), 0);
   area_.assign(static_cast<std::size_t>(parts_.group_count()), 0.0);
   for (int e = 0; e < mesh.element_count(); ++e) {

@@ -195,6 +195,12 @@ void read_parts(const SolutionArrays& in, RadiositySolution& s) {
                fmt::format("part {} has an area or an error that is no number", p));
     s.parts.parts.push_back({.name = names[p], .area = row[0], .error_estimate = row[1]});
   }
+  if (in.has(in.field(), "part_is_lit_by_cracks")) {
+    const auto by_cracks = in.integers(in.field(), "part_is_lit_by_cracks", count, 0, 2);
+    for (std::size_t p = 0; p < by_cracks.size(); ++p) {
+      s.parts.parts[p].is_lit_by_cracks = by_cracks[p] != 0;
+    }
+  }
   const auto patches = static_cast<int>(s.patch_radiosity.rows());
   s.parts.of_patch = in.integers(in.field(), "patch_part", patches, -1, count);
 }

@@ -213,12 +213,15 @@ void add_parts(std::vector<DataArray>& data, const SceneParts& parts) {
   if (parts.count() == 0) return;
   std::vector<std::string> names;
   std::vector<double> figures;
+  std::vector<int> by_cracks;
   for (const ScenePart& part : parts.parts) {
     names.push_back(part.name);
+    by_cracks.push_back(part.is_lit_by_cracks ? 1 : 0);
     figures.insert(figures.end(), {part.area, part.error_estimate});
   }
   add_strings(data, "part_names", names);
   add_values(data, "part_area_error_estimate", figures.data(), parts.count(), 2);
+  add_values(data, "part_is_lit_by_cracks", by_cracks.data(), parts.count());
 }
 
 // "channels: desk 0.3, sun 0.9 0.5 0.2"
