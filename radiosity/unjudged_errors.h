@@ -8,8 +8,8 @@ namespace lightwell {
 
 /// Raises RadiositySolution::interpolation_error of the elements that refinement does not measure:
 /// those of mirrors, glass and black surfaces, whose light no other surface receives, and of parts
-/// lit by cracks (see judged_patches()). Each element has at least the RMS difference between interpolated and
-/// gathered irradiance at four points inside, less the noise of these gathers (see
+/// lit by cracks (see judged_patches()). Each element has at least the RMS difference between
+/// interpolated and gathered irradiance at four points inside, less the noise of these gathers (see
 /// measure_inside()). Crumbs have the error of their records (see add_record_errors()), and round
 /// shapes are left out.
 ///

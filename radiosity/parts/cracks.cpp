@@ -17,9 +17,8 @@ void add_lamp(const FreeSource& lamp, const ElementCaster& caster, const LightPa
               const SceneParts& parts, std::vector<double>& shares) {
   constexpr int rays = 64;
   const PatchMesh& mesh = caster.mesh();
-  const std::uint64_t key =
-      random_key(static_cast<std::uint64_t>(mesh.patch_count() + lamp.number),
-                 RandomPurpose::part_rays);
+  const std::uint64_t key = random_key(static_cast<std::uint64_t>(mesh.patch_count() + lamp.number),
+                                       RandomPurpose::part_rays);
   const SobolPoints sobol(rays);
   const auto arrive = [&](const ElementHit& at, double share) {
     const int part = at.element < 0 ? -1 : parts.of_patch[mesh.patch[at.element]];
@@ -58,17 +57,17 @@ std::vector<char> parts_with_light(const Scene& scene, const ElementCaster& cast
     std::vector<double> shares(sums.size(), 0.0);
     if (!source.is_distant()) add_lamp(source, caster, paths, parts, shares);
     for (std::size_t part = 0; part < sums.size(); ++part) {
-      const bool is_lit = source.is_distant() ? !sums[part].is_enclosed()
-                                              : shares[part] > most_by_cracks;
+      const bool is_lit =
+          source.is_distant() ? !sums[part].is_enclosed() : shares[part] > most_by_cracks;
       if (is_lit) has_light[part] = 1;
     }
   }
   return has_light;
 }
 
-// The exchange of each part with those that are no cavities, m^2: the mean of what its rays and those
-// of the others find. Rays that leave the scene count for a part that light of the sky could enter
-// there.
+// The exchange of each part with those that are no cavities, m^2: the mean of what its rays and
+// those of the others find. Rays that leave the scene count for a part that light of the sky could
+// enter there.
 std::vector<double> passages(const PatchMesh& mesh, const std::vector<PartRayEnds>& arrivals,
                              bool is_sky_lit, const SceneParts& parts,
                              const std::vector<char>& is_cavity) {

@@ -94,7 +94,7 @@ class PartRays {
 }  // namespace
 
 std::vector<PartRayEnds> cast_part_rays(const Scene& scene, const ElementCaster& caster,
-                                          const LightPaths& paths, const Progress& progress) {
+                                        const LightPaths& paths, const Progress& progress) {
   const PartRays rays(scene, caster, paths);
   const int patches = caster.mesh().patch_count();
   std::vector<PartRayEnds> arrivals(static_cast<std::size_t>(patches));

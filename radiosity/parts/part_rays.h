@@ -19,16 +19,16 @@ struct RayArrivals {
 /// The ends of a patch's rays.
 struct PartRayEnds {
   std::vector<RayArrivals> at{};  ///< in the order of patches
-  double escaped = 0.0;        ///< share of the rays that left the scene, or ended on a backdrop
-  bool takes_part = false;     ///< false for mirrors and clear glass
-  bool is_outside = false;     ///< most of the rays leave the scene; see find_parts()
+  double escaped = 0.0;           ///< share of the rays that left the scene, or ended on a backdrop
+  bool takes_part = false;        ///< false for mirrors and clear glass
+  bool is_outside = false;        ///< most of the rays leave the scene; see find_parts()
 };
 
 /// The ends of cosine-distributed rays of each patch, which mirrors and glass pass on: 32 768 rays
 /// over the number of patches, as a power of two, at least 32 and at most 1024. `is_outside` is
 /// false. Throws Interrupted when progress says stop.
 std::vector<PartRayEnds> cast_part_rays(const Scene& scene, const ElementCaster& caster,
-                                          const LightPaths& paths, const Progress& progress);
+                                        const LightPaths& paths, const Progress& progress);
 
 /// A cluster's area, m^2, and area times rays: those that end within, their lengths (m^3), and
 /// those that leave the scene.

@@ -41,8 +41,7 @@ struct SceneParts {
   /// True unless the patch is lit by cracks and nobody looks at it.
   bool is_judged(int patch) const {
     const int part = count() > 1 ? of_patch[static_cast<std::size_t>(patch)] : -1;
-    const bool is_by_cracks =
-        part >= 0 && parts[static_cast<std::size_t>(part)].is_lit_by_cracks;
+    const bool is_by_cracks = part >= 0 && parts[static_cast<std::size_t>(part)].is_lit_by_cracks;
     return !is_by_cracks || (!importance.empty() && is_looked_at(patch));
   }
   int count() const { return static_cast<int>(parts.size()); }

@@ -83,6 +83,7 @@ void expect_same_solution(const RadiositySolution& a, const RadiositySolution& b
     EXPECT_EQ(a.parts.parts[p].name, b.parts.parts[p].name);
     EXPECT_EQ(a.parts.parts[p].area, b.parts.parts[p].area);
     EXPECT_EQ(a.parts.parts[p].error_estimate, b.parts.parts[p].error_estimate);
+    EXPECT_EQ(a.parts.parts[p].is_lit_by_cracks, b.parts.parts[p].is_lit_by_cracks);
   }
   ASSERT_EQ(a.seconds.size(), b.seconds.size());
   for (std::size_t i = 0; i < a.seconds.size(); ++i) {
@@ -141,7 +142,7 @@ TEST_F(SolutionFile, RestoresNamesThatAreNotUtf8) {
   solution.parts = {.of_patch = {1, 0},
                     .parts = {{.name = "K\xfc"
                                        "che"},
-                              {.name = "\xc3"}}};
+                              {.name = "\xc3", .is_lit_by_cracks = true}}};
   write_solution(file(), solved);
   const SolvedScene again = read_solution(file());
   expect_same_solution(solution, again.solution);
