@@ -56,9 +56,10 @@ std::vector<char> parts_with_light(const Scene& scene, const ElementCaster& cast
   for (const FreeSource& source : free_sources(scene, mesh.source_scale, {})) {
     std::vector<double> shares(sums.size(), 0.0);
     if (!source.is_distant()) add_lamp(source, caster, paths, parts, shares);
+    const double arrived = std::accumulate(shares.begin(), shares.end(), 0.0);
     for (std::size_t part = 0; part < sums.size(); ++part) {
       const bool is_lit =
-          source.is_distant() ? !sums[part].is_enclosed() : shares[part] > most_by_cracks;
+          source.is_distant() ? !sums[part].is_enclosed() : shares[part] > most_by_cracks * arrived;
       if (is_lit) has_light[part] = 1;
     }
   }
