@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -80,13 +81,34 @@ SolveOptions effective_options(const SolveOptions& options, double target,
   return effective;
 }
 
-// The options with the openings that gathers aim rays at.
+// Irradiance that errors on each element are relative to, W/m^2, the sum of bands; infinite where
+// errors are not judged. `of_parts` is that of each part, the mean of bands.
+std::vector<float> references_of_elements(const SolvedScene& patches,
+                                          const std::vector<double>& of_parts) {
+  const SceneParts& parts = patches.solution.parts;
+  const auto bands = static_cast<double>(patches.mesh.reflectance.cols());
+  std::vector<float> references;
+  for (int e = 0; e < patches.mesh.element_count(); ++e) {
+    const int patch = patches.mesh.patch[e];
+    const double E = bands * of_parts[static_cast<std::size_t>(parts.judged_with(patch))];
+    references.push_back(parts.is_judged(patch) ? static_cast<float>(E)
+                                                : std::numeric_limits<float>::infinity());
+  }
+  return references;
+}
+
+// The options with the openings that gathers aim rays at. `irradiances` is what errors in each part
+// are relative to, W/m^2.
 SolveOptions with_portals(const GatherSources& sources, const SolvedScene& patches,
-                          SolveOptions options) {
+                          const std::vector<double>& irradiances, SolveOptions options) {
   const ElementCaster caster(patches.mesh);
-  options.gather.portals = find_portals(
-      caster, brightness_of_patches(patches.mesh, sources.all, patches.solution.patch_radiosity),
-      judged_openings(caster, patches.solution.parts, sources.openings), options.run);
+  const std::vector<float> brightness =
+      brightness_of_patches(patches.mesh, sources.all, patches.solution.patch_radiosity);
+  options.gather.portals =
+      find_portals(caster, brightness,
+                   notable_openings(caster, brightness,
+                                    references_of_elements(patches, irradiances), sources.openings),
+                   options.run);
   return options;
 }
 
@@ -103,7 +125,7 @@ class GatherAttempts {
         irradiances_(reference_irradiances(solved.mesh, solved.solution.patch_radiosity,
                                            solved.solution.parts)),
         options_(with_portals(
-            sources, solved,
+            sources, solved, irradiances_,
             effective_options(options, target_, solved, sources.by_channel.column_count()))),
         may_save_rays_(options.gather.rays == 0 && !(target_ > 0.0)),
         pilot_gathers_(std::in_place, scene, std::move(solved.mesh), sources.by_channel,

@@ -361,25 +361,29 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
   return result;
 }
 
-std::vector<Opening> judged_openings(const ElementCaster& caster, const SceneParts& parts,
-                                     std::vector<Opening> openings) {
-  const PatchMesh& mesh = caster.mesh();
-  std::vector<float> unjudged;  // 1 or -1 for each element, so that the sum tells which are more
-  for (int e = 0; e < mesh.element_count(); ++e) {
-    unjudged.push_back(parts.is_judged(mesh.patch[e]) ? -1.0f : 1.0f);
-  }
-  if (std::ranges::count(unjudged, 1.0f) == 0) return openings;
+std::vector<Opening> notable_openings(const ElementCaster& caster,
+                                      const std::vector<float>& brightness,
+                                      const std::vector<float>& reference,
+                                      std::vector<Opening> openings) {
   constexpr int paths = 16;
-  const Sights sights(caster, unjudged);
+  constexpr double notable = 1e-3;
+  const Sights light(caster, brightness), errors(caster, reference);
+  const auto is_notable = [&](int i) {
+    const Opening& opening = openings[static_cast<std::size_t>(i)];
+    std::array<Sight, 2> seen, relative_to;
+    for (const int side : {0, 1}) {
+      light.look(opening, static_cast<std::uint64_t>(i), side, 0, paths, seen[side]);
+      errors.look(opening, static_cast<std::uint64_t>(i), side, 0, paths, relative_to[side]);
+    }
+    const int dim = seen[0].mean() < seen[1].mean() ? 0 : 1;
+    const Vector3d size = seen[dim].region.sizes();
+    if (seen[dim].region.isEmpty()) return true;
+    const double surface = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+    return seen[1 - dim].mean() * opening.area() >= notable * surface * relative_to[dim].mean();
+  };
   std::vector<char> is_kept(openings.size(), 1);
   parallel_for(static_cast<int>(openings.size()), 4, [&](int begin, int end) {
-    for (int i = begin; i < end; ++i) {
-      for (const int side : {0, 1}) {
-        Sight sight;
-        sights.look(openings[i], static_cast<std::uint64_t>(i), side, 0, paths, sight);
-        if (sight.brightness > 0.0) is_kept[i] = 0;
-      }
-    }
+    for (int i = begin; i < end; ++i) is_kept[i] = is_notable(i) ? 1 : 0;
   });
   std::erase_if(openings, [&, i = 0](const Opening&) mutable { return is_kept[i++] == 0; });
   return openings;

@@ -10,7 +10,6 @@
 #include "mesh/geometry/box_tree.h"
 #include "radiosity/direct_light/direct_light.h"
 #include "radiosity/openings/find_openings.h"
-#include "radiosity/solution/scene_parts.h"
 
 namespace lightwell {
 
@@ -115,10 +114,16 @@ class Portals {
 std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings,
                                      const RunControl& run = {});
 
-/// The openings but for those of which a side leads to patches that are not judged: a model whose
-/// seams leak has hundreds, and to aim rays at their light takes most of the time of gathers.
-std::vector<Opening> judged_openings(const ElementCaster& caster, const SceneParts& parts,
-                                     std::vector<Opening> openings);
+/// The openings but for those that let in less light than could matter on their dim side, where the
+/// irradiance that comes through, B A / A_seen, is less than a thousandth of what errors are
+/// relative to. A model whose seams leak has hundreds, such as into the insides of furniture, and
+/// to aim rays at their light takes most of the time of gathers. `brightness` is as in Portals,
+/// `reference` the irradiance that errors on each element are relative to, W/m^2, in the same sum
+/// of bands; infinite: none matter.
+std::vector<Opening> notable_openings(const ElementCaster& caster,
+                                      const std::vector<float>& brightness,
+                                      const std::vector<float>& reference,
+                                      std::vector<Opening> openings);
 
 /// The narrow ones of `openings` that are portals; null if there are none. `brightness` as in
 /// Portals.

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "mesh/patches/patch_outline.h"
 #include "radiosity/closed_forms/polygon_exchange.h"
@@ -61,6 +63,32 @@ Statistics gathered(const Lit& lit, const std::shared_ptr<const Portals>& portal
     squares += E * E / replicas;
   }
   return {sum, std::sqrt(std::max(0.0, squares - sum * sum))};
+}
+
+// The irradiance that comes through a slit is about B A / A_seen: slits count where that is more
+// than a thousandth of what errors are relative to, and not where nothing is judged.
+TEST(Portals, CountWhereTheirLightMatters) {
+  for (const Quaterniond& turn : {Quaterniond::Identity(), askew}) {
+    const Lit lit(0.01, turn);
+    const std::vector<float> brightness = brightness_of_vertices(lit.mesh, lit.radiosity);
+    const std::vector<Opening> openings =
+        narrow_openings(lit.caster, find_openings(lit.rooms.scene));
+    ASSERT_FALSE(openings.empty());
+    const auto count = [&](float reference) {
+      const std::vector<float> of_elements(brightness.size(), reference);
+      return notable_openings(lit.caster, brightness, of_elements, openings).size();
+    };
+    double area = 0.0;
+    for (const Opening& opening : openings) area += opening.area();
+    const double seen = 88.6, B = *std::ranges::max_element(brightness);
+    const double each = B * area / static_cast<double>(openings.size()) / seen;
+    EXPECT_EQ(count(0.0f), openings.size());
+    EXPECT_EQ(count(std::numeric_limits<float>::infinity()), 0u);
+    // The box of what 16 paths see has a tenth of the surface of the room to all of it, and pieces
+    // of the slit differ in length by less than ten times.
+    EXPECT_EQ(count(static_cast<float>(1e3 * each / 100.0)), openings.size());
+    EXPECT_EQ(count(static_cast<float>(1e3 * each * 100.0)), 0u);
+  }
 }
 
 // In a black room behind a slit, E = B F with the form factor F from the point to the slit.
