@@ -278,8 +278,16 @@ int CoplanarGroups::order(int a, int b) const {
     const int difference = level(first) - level(second);
     if (difference != 0) return difference > 0 ? 1 : -1;
   }
-  if (first.facing != second.facing) return -first.facing;
+  if (first.facing != second.facing) {
+    const bool is_leaf = first.body == 0 && second.body == 0 && have_one_area(first, second);
+    return is_leaf ? first.facing : -first.facing;
+  }
   return lies_before(a, b) ? first.facing : -first.facing;
+}
+
+bool CoplanarGroups::have_one_area(const Group& a, const Group& b) {
+  constexpr double same = 1e-6;  // share of the area; float coordinates round to about 1e-7
+  return std::abs(a.area - b.area) <= same * (a.area + b.area);
 }
 
 // True if the first of two groups that face the same way lies before the other. A sheet of the area
@@ -287,9 +295,7 @@ int CoplanarGroups::order(int a, int b) const {
 // same twice must be one surface everywhere, so numbers decide last.
 bool CoplanarGroups::lies_before(int a, int b) const {
   const Group &first = groups_[a], &second = groups_[b];
-  constexpr double same = 1e-6;  // share of the area; float coordinates round to about 1e-7
-  const bool are_same = std::abs(first.area - second.area) <= same * (first.area + second.area);
-  if (!are_same) return first.area < second.area;
+  if (!have_one_area(first, second)) return first.area < second.area;
   const bool is_sheet = first.body == 0;
   return is_sheet == (second.body == 0) ? a < b : is_sheet;
 }

@@ -17,7 +17,8 @@ namespace lightwell {
 /// body, which consists of the faces that share its edges, and lies on that body's side. If both
 /// bodies are on one side, one holds the other: the block, whose faces lie behind its bottom, is
 /// inside of the room, whose walls rise before its floor. If a body is not known (a sheet),
-/// surfaces that face each other are taken to touch with their fronts. Of surfaces that face the
+/// surfaces that face opposite ways are taken to touch with their fronts; two sheets of one area,
+/// by which many programs write a sheet with two faces, with their backs. Of surfaces that face the
 /// same way and whose bodies do not differ, or are not known, the smaller lies before the larger,
 /// as a picture lies on a wall; of one area, a sheet before the face of a body, and otherwise the
 /// group of the lower number, as where a model holds a surface twice.
@@ -88,6 +89,7 @@ class CoplanarGroups {
     Eigen::AlignedBox3d box{};
   };
   bool lies_before(int a, int b) const;
+  static bool have_one_area(const Group& a, const Group& b);
   static bool lie_parallel(const Eigen::Vector3d& a, const Eigen::Vector3d& b);
   static std::vector<Plane> planes_of(const CastGeometry& geometry);
   void add_overlaps(const CastGeometry& geometry, std::span<Plane> planes, double tolerance,

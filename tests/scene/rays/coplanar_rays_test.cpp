@@ -106,6 +106,30 @@ TEST(CoplanarRays, SurfacesFaceToFaceDo) {
   }
 }
 
+// Programs write a sheet with two faces as two sheets of opposite fronts.
+TEST(CoplanarRays, TwoSheetsOfOneOutlineTouchWithTheirBacks) {
+  CastGeometry geometry;
+  add_square(geometry, 0.5, 0.0, true, floor_group);
+  add_square(geometry, 0.5, 0.0, false, sheet_group);
+  add_square(geometry, 10.0, 1.0, false, ceiling_group);
+  constexpr int ground_group = 3;
+  add_square(geometry, 10.0, -1.0, true, ground_group);
+  const RayCaster caster(geometry);
+  for (const double z : hairs) {
+    const Met up = cast(caster, {0.1, 0.2, z}, slanted, floor_group);
+    EXPECT_EQ(up.primitive, ceiling_group) << "at z " << z;
+    EXPECT_FALSE(up.is_blocked) << "at z " << z;
+    const Met down = cast(caster, {0.1, 0.2, z}, -slanted, sheet_group);
+    EXPECT_EQ(down.primitive, ground_group) << "at z " << z;
+    EXPECT_FALSE(down.is_blocked) << "at z " << z;
+  }
+  for (int i = 0; i < 100; ++i) {
+    const Vector3d on_both(0.009 * i - 0.45, 0.44 - 0.0087 * i, 0.0), away = 0.4 * slanted;
+    EXPECT_EQ(cast(caster, on_both + away, -slanted, ceiling_group).primitive, floor_group);
+    EXPECT_EQ(cast(caster, on_both - away, slanted, ground_group).primitive, sheet_group);
+  }
+}
+
 TEST(CoplanarRays, BesideWhatLiesOnItThePlaneIsFree) {
   for (const bool faces_up : {true, false}) {
     const RayCaster caster = room_with_sheet_on_floor(faces_up);
