@@ -10,6 +10,8 @@ namespace lightwell {
 namespace {
 
 constexpr std::string_view radiance_blanks = " \t\r\n\f\v";
+// Files that were joined may have several.
+constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
 
 }  // namespace
 
@@ -22,6 +24,10 @@ void RadianceText::advance(std::size_t length) {
 bool RadianceText::skip_blanks() {
   while (true) {
     advance(std::min(rest_.find_first_not_of(radiance_blanks), rest_.size()));
+    if (rest_.starts_with(byte_order_mark)) {
+      advance(byte_order_mark.size());
+      continue;
+    }
     if (!rest_.starts_with('#')) return !rest_.empty();
     advance(std::min(rest_.find('\n'), rest_.size()));
   }

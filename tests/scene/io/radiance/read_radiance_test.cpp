@@ -78,6 +78,13 @@ TEST_F(Radiance, WordsMayStandOnAnyLinesWithCommentsAndQuotes) {
   EXPECT_FALSE(scene.relative_units);
 }
 
+TEST_F(Radiance, AByteOrderMarkIsABlank) {
+  const std::string mark = "\xef\xbb\xbf";
+  const Scene scene = read(mark + grey + "\n" + mark + "grey " + square);
+  EXPECT_EQ(scene.surfaces.size(), 1u);
+  EXPECT_TRUE(scene.losses.empty()) << scene.losses.front();
+}
+
 TEST_F(Radiance, PolygonsFaceWhereTheirCornersRunCounterClockwise) {
   const Scene scene = read(grey + "grey " + square);
   expect_near(normal_of(scene), {0, 0, 1});
