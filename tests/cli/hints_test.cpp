@@ -35,6 +35,32 @@ TEST_F(Hints, ARoomOfKilometresIsAskedAbout) {
   EXPECT_FALSE(says(run({"info", "millimetres.toml"}).out, "millimetres?"));
 }
 
+// At 5e6 m floats are multiples of 0.5 m, and 5000000.5 is an odd one. A quarter of a metre is no
+// float there, and whole metres are what a person may have written.
+TEST_F(Hints, CoordinatesRoundedFarFromTheOriginAreAskedAbout) {
+  const auto says_of_corner = [&](const std::string& y) {
+    folder.write("far.obj", "v 500000 " + y + " 100\nv 500004 5000000 100\nv 500004 5000003 100\n" +
+                                "f 1 2 3\n");
+    return says(run({"info", "far.obj"}).out, "multiples of 0.5 m (single precision)");
+  };
+  EXPECT_TRUE(says_of_corner("5000000.5"));
+  EXPECT_FALSE(says_of_corner("5000000.25"));
+  EXPECT_FALSE(says_of_corner("5000001"));
+  EXPECT_TRUE(says_of_corner("4999999.5"));
+}
+
+// A facet at 20 km is 5000 times as far from a room of 4 m as the walls are from the middle.
+TEST_F(Hints, APartFarOutsideIsAskedAboutInPlaceOfTheUnit) {
+  folder.write("stray.toml", small_room() +
+                                 "[[surfaces]]\nname = \"crumb\"\nmaterial = \"white\"\n" +
+                                 "polygon = [[2e4, 0, 0], [2e4, 1, 0], [2e4, 0, 1]]\n");
+  const std::string said = run({"info", "stray.toml"}).out;
+  EXPECT_TRUE(says(said, "'crumb' reaches 2e+04 m"));
+  EXPECT_FALSE(says(said, "millimetres?"));
+  folder.write("room.toml", small_room());
+  EXPECT_FALSE(says(run({"info", "room.toml"}).out, "reaches"));
+}
+
 TEST_F(Hints, ALampFarOutsideIsAskedAbout) {
   const auto room_with_lamp_at = [](const char* height) {
     std::string room = small_room();
