@@ -37,6 +37,10 @@ class NoAreaError : public InputError {
   using InputError::InputError;
 };
 
+/// The error of a mesh file without polygons that have an area: a NoAreaError, or an InputError
+/// that names a vertex if polygons were dropped for vertices without finite coordinates.
+[[noreturn]] void fail_without_area(const std::filesystem::path& file, const Repairs& repairs);
+
 /// read_obj() and read_geometry() with a choice of materials and fronts. `polygons`, if not null,
 /// receives the polygon of each facet.
 Scene read_obj_file(const std::filesystem::path& path, double metres_per_unit,

@@ -7,6 +7,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +15,7 @@
 #include <utility>
 
 #include "scene/errors.h"
+#include "scene/io/non_finite.h"
 #include "scene/io/text_file.h"
 
 namespace lightwell {
@@ -83,6 +85,8 @@ class PlyReader {
 
  private:
   void read_header() {
+    constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
+    if (rest_.starts_with(byte_order_mark)) rest_.remove_prefix(byte_order_mark.size());
     for (line_ = 1;; ++line_) {
       const std::size_t end = rest_.find('\n');
       const std::string_view text = trimmed(rest_.substr(0, end));
@@ -243,7 +247,9 @@ class PlyReader {
     const char* const begin = word.data() + (word.starts_with('+') ? 1 : 0);
     const char* const end = word.data() + word.size();
     const auto parsed = std::from_chars(begin, end, value);
-    if (parsed.ec != std::errc() || parsed.ptr != end) {
+    if (names_non_finite(word)) {
+      value = std::numeric_limits<double>::quiet_NaN();
+    } else if (parsed.ec != std::errc() || parsed.ptr != end) {
       fail(fmt::format("a '{}' has '{}' in place of a number", excerpt(element.name),
                        excerpt(word)));
     }

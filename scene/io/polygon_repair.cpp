@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <utility>
 
@@ -9,6 +10,18 @@
 #include "scene/io/flat_loop.h"
 
 namespace lightwell {
+
+void Repairs::add(const Repairs& other) {
+  split += other.split;
+  thin += other.thin;
+  crossing += other.crossing;
+  if (placeless == 0) first_placeless = other.first_placeless;
+  placeless += other.placeless;
+}
+
+void Repairs::drop_placeless(const std::string& fault) {
+  if (placeless++ == 0) first_placeless = fault;
+}
 
 std::vector<std::string> Repairs::notes() const {
   std::vector<std::string> result;
@@ -20,7 +33,19 @@ std::vector<std::string> Repairs::notes() const {
   add(thin, "polygon without area was dropped", "polygons without area were dropped");
   add(crossing, "polygon that crosses itself was cut into pieces that do not",
       "polygons that cross themselves were cut into pieces that do not");
+  add(placeless, "polygon with a vertex that has no finite coordinates was dropped",
+      "polygons with vertices that have no finite coordinates were dropped");
+  if (placeless > 0) {
+    result.back() +=
+        fmt::format("{}: {}", placeless > 1 ? "; the first such vertex" : "", first_placeless);
+  }
   return result;
+}
+
+std::optional<std::size_t> placeless_corner(const Loop& loop) {
+  const auto found = std::ranges::find_if(loop, [](const auto& p) { return !p.allFinite(); });
+  if (found == loop.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - loop.begin());
 }
 
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,18 +10,22 @@ namespace lightwell {
 
 /// Counts of repairs to the polygons of a mesh file.
 struct Repairs {
-  int split = 0;     ///< not planar, or with a hole joined by a bridge: cut into triangles
-  int thin = 0;      ///< without area: dropped
-  int crossing = 0;  ///< crossing themselves: cut into convex_pieces()
+  int split = 0;      ///< not planar, or with a hole joined by a bridge: cut into triangles
+  int thin = 0;       ///< without area: dropped
+  int crossing = 0;   ///< crossing themselves: cut into convex_pieces()
+  int placeless = 0;  ///< with a vertex whose coordinates are no finite numbers: dropped
+  std::string first_placeless{};  ///< names the first of these vertices and its fault
 
-  void add(const Repairs& other) {
-    split += other.split;
-    thin += other.thin;
-    crossing += other.crossing;
-  }
+  void add(const Repairs& other);
+  /// Counts a polygon that is dropped for a vertex without finite coordinates; `fault` names the
+  /// vertex.
+  void drop_placeless(const std::string& fault);
   /// One note for each count that is not zero.
   std::vector<std::string> notes() const;
 };
+
+/// The first corner of a loop that has no finite coordinates.
+std::optional<std::size_t> placeless_corner(const Loop& loop);
 
 /// Adds the convex_pieces() of a polygon. `uv` and `normals` are given at all corners, of the
 /// boundary, then of the holes; or empty. False, with nothing added, if the pieces have no area.

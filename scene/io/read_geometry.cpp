@@ -63,11 +63,7 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const IndexedPolygons& 
       fail_geometry(path, fmt::format("a face names vertex {}, but there are only {}", v,
                                       mesh.positions.size()));
     }
-    const Eigen::Vector3d result = metres_per_unit * mesh.positions[v];
-    if (!result.allFinite()) {
-      fail_geometry(path, fmt::format("vertex {} has a coordinate that is not a finite number", v));
-    }
-    return result;
+    return Eigen::Vector3d(metres_per_unit * mesh.positions[v]);
   };
   const bool use_normals = fronts == MeshFronts::from_normals && !mesh.normals.empty();
   polygons.has_normals = polygons.has_normals || use_normals;
@@ -84,6 +80,13 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const IndexedPolygons& 
       normals.push_back(mesh.normals[v]);
       if (use_normals) normal += normals.back();
     }
+    if (const auto corner = placeless_corner(loop)) {
+      polygons.repairs.drop_placeless(
+          fmt::format("{}: vertex {} has a coordinate that is not a finite number", path.string(),
+                      corners[*corner]));
+      ++polygons.count;
+      continue;
+    }
     if (loop.size() >= 3 && area_vector(loop).dot(normal) < 0.0) {
       std::reverse(loop.begin(), loop.end());
       std::reverse(uv.begin(), uv.end());
@@ -99,6 +102,15 @@ PolygonMesh read_mesh(const std::filesystem::path& path, const IndexedPolygons& 
 }
 
 }  // namespace
+
+void fail_without_area(const std::filesystem::path& file, const Repairs& repairs) {
+  if (repairs.placeless == 0) {
+    throw NoAreaError(fmt::format("{}: the file has no polygons with an area", file.string()));
+  }
+  throw InputError(
+      fmt::format("{}: the file has no polygons with an area and finite coordinates; {}",
+                  file.string(), repairs.first_placeless));
+}
 
 Scene read_geometry_file(const std::filesystem::path& path, double metres_per_unit,
                          MeshMaterials materials, FilePolygons* polygons, MeshFronts fronts) {
@@ -120,9 +132,7 @@ Scene read_geometry_file(const std::filesystem::path& path, double metres_per_un
     scene.surfaces.push_back({.name = meshes.size() == 1 ? stem : fmt::format("{} {}", stem, m + 1),
                               .shape = std::move(mesh)});
   }
-  if (scene.surfaces.empty()) {
-    throw NoAreaError(fmt::format("{}: the file has no polygons with an area", path.string()));
-  }
+  if (scene.surfaces.empty()) fail_without_area(path, found.repairs);
   note_repairs(found.repairs, scene);
   if (polygons) *polygons = std::move(found);
   validate(scene);

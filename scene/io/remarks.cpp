@@ -71,9 +71,10 @@ void add_loss(Scene& scene, const std::string& sentence) {
 
 void note_repairs(const Repairs& repairs, Scene& scene) {
   for (const std::string& note : repairs.notes()) scene.notes.push_back(note + ".");
-  const Repairs losses{.thin = repairs.thin, .crossing = repairs.crossing};
+  Repairs losses = repairs;
+  losses.split = 0;
   for (const std::string& note : losses.notes()) scene.losses.push_back(note + ".");
-  scene.dropped_polygons = repairs.thin;
+  scene.dropped_polygons = repairs.thin + repairs.placeless;
 }
 
 void fail_without_surfaces(const std::filesystem::path& file, std::string_view problem,

@@ -136,9 +136,6 @@ std::vector<Eigen::Matrix<double, size, 1>> values_of(const draco::Mesh& mesh, s
       fail_damaged(primitive, draco_name);
     }
     for (int c = 0; c < size; ++c) values[i][c] = static_cast<double>(value[c]);
-    if (!values[i].allFinite()) {
-      primitive.fail(fmt::format("vector {} has a coordinate that is not a finite number", i));
-    }
   }
   return values;
 }

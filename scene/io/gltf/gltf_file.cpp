@@ -302,10 +302,6 @@ std::vector<Eigen::Matrix<double, size, 1>> GltfFile::tuples(std::size_t accesso
       result[i][static_cast<int>(c)] =
           from.normalized ? std::max(x / from.component.largest, -1.0) : x;
     }
-    if (!result[i].allFinite()) {
-      at("accessors", accessor, asking)
-          .fail(fmt::format("vector {} has a coordinate that is not a finite number", i));
-    }
   }
   return result;
 }

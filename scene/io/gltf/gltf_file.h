@@ -30,9 +30,9 @@ class GltfFile {
   /// Member `index` of a list ("nodes"). Throws InputError naming `asking` if there is none.
   const JsonObject& at(const char* list, std::size_t index, const JsonObject& asking) const;
 
-  /// Elements of a VEC3 accessor (floats or integers), all finite.
+  /// Elements of a VEC3 accessor (floats or integers), which may be no finite numbers.
   std::vector<Eigen::Vector3d> vectors(std::size_t accessor, const JsonObject& asking) const;
-  /// Elements of a VEC2 accessor (texture coordinates), all finite.
+  /// Elements of a VEC2 accessor (texture coordinates), which may be no finite numbers.
   std::vector<Eigen::Vector2d> pairs(std::size_t accessor, const JsonObject& asking) const;
   /// Elements of a SCALAR accessor of whole numbers, all below `limit`.
   std::vector<int> indices(std::size_t accessor, std::size_t limit, const JsonObject& asking) const;

@@ -240,6 +240,7 @@ class GltfReader {
     const std::size_t count = mode == triangle_list ? corners / 3 : corners < 3 ? 0 : corners - 2;
     if (!is_packed) count_in(static_cast<std::int64_t>(count));
     const bool is_mirrored = to_world.linear().determinant() < 0.0;
+    const int placeless_before = repairs_.placeless;
     MeshBuilder mesh;
     for (std::size_t i = 0; i < count; ++i) {
       Loop loop;
@@ -251,12 +252,22 @@ class GltfReader {
         if (!geometry.uv.empty()) of_loop.push_back(geometry.uv[vertex]);
         if (!geometry.normals.empty()) normals_there.push_back(geometry.normals[vertex]);
       }
+      if (const auto corner = placeless_corner(loop)) {
+        repairs_.drop_placeless(
+            fmt::format("{}: vertex {} of {} has a coordinate that is not a finite number",
+                        scene_.file.string(), geometry.vertex(corners_of(mode, i)[*corner]),
+                        primitive.place()));
+        continue;
+      }
       if (is_mirrored) {  // mirroring must not exchange front and back
         std::swap(loop[1], loop[2]);
         if (!of_loop.empty()) std::swap(of_loop[1], of_loop[2]);
         if (!normals_there.empty()) std::swap(normals_there[1], normals_there[2]);
       }
       add_repaired(mesh, std::move(loop), repairs_, std::move(of_loop), std::move(normals_there));
+    }
+    if (mesh.empty() && repairs_.placeless > placeless_before) {
+      primitive.fail("has no triangle with an area and finite coordinates");
     }
     return mesh.mesh();
   }

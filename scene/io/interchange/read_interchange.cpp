@@ -124,13 +124,17 @@ class InterchangeReader {
       for (unsigned i = 0; i < face.mNumIndices; ++i) {
         const unsigned v = face.mIndices[i];
         loop.push_back(vector_of(mesh.mVertices[v]));
-        if (!loop.back().allFinite()) {
-          throw InputError(fmt::format("vertex {} is no finite number", v));
-        }
         // The files count v from the picture's bottom.
         const aiVector3D* coordinates = uv ? mesh.mTextureCoords[uv_set] + v : nullptr;
         if (uv) uv->emplace_back(coordinates->x, 1.0 - static_cast<double>(coordinates->y));
         if (normals) normals->push_back(vector_of(mesh.mNormals[v]));
+      }
+      if (const auto corner = placeless_corner(loop)) {
+        repairs_.drop_placeless(fmt::format("{}: mesh '{}': vertex {} is not finite",
+                                            scene_.file.string(), name, face.mIndices[*corner]));
+        result.loops.pop_back();
+        if (uv) result.uv.pop_back();
+        if (normals) result.normals.pop_back();
       }
     }
     return result;

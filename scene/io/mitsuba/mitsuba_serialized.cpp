@@ -209,9 +209,6 @@ Scene read_serialized_file(const std::filesystem::path& path, int number, MeshMa
       const std::size_t at = v;
       const double* const p = &from.positions[3 * at];
       loop.emplace_back(p[0], p[1], p[2]);
-      if (!loop.back().allFinite()) {
-        fail_serialized(path, fmt::format("vertex {} is not finite", v));
-      }
       if (materials == MeshMaterials::with_uv && !from.uv.empty()) {
         uv.emplace_back(from.uv[2 * at], 1.0 - from.uv[2 * at + 1]);
       }
@@ -219,6 +216,12 @@ Scene read_serialized_file(const std::filesystem::path& path, int number, MeshMa
       const double* const n = &from.normals[3 * at];
       normals.emplace_back(n[0], n[1], n[2]);
       sum += normals.back();
+    }
+    if (const auto corner = placeless_corner(loop)) {
+      polygons.repairs.drop_placeless(
+          fmt::format("{}: vertex {} is not finite", path.string(), triangle[*corner]));
+      ++polygons.count;
+      continue;
     }
     if (polygons.has_normals && area_vector(loop).dot(sum) < 0.0) {
       std::ranges::reverse(loop);
@@ -228,9 +231,7 @@ Scene read_serialized_file(const std::filesystem::path& path, int number, MeshMa
     add_repaired(builder, std::move(loop), polygons.repairs, std::move(uv), std::move(normals));
     polygons.of_facet.resize(builder.mesh().facets.size(), polygons.count++);
   }
-  if (builder.empty()) {
-    throw NoAreaError(fmt::format("{}: the file has no polygons with an area", path.string()));
-  }
+  if (builder.empty()) fail_without_area(path, polygons.repairs);
   Scene scene{.file = path, .title = path.stem().string()};
   scene.materials.push_back(default_material(scene.bands));
   scene.surfaces.push_back(

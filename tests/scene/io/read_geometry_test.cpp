@@ -99,6 +99,27 @@ TEST(ReadPly, StripsAreTrianglesOfOneFront) {
   expect_square(read_ply(square("ascii", vertices + "7 0 1 2 -1 2 1 3\n", strips)), 2);
 }
 
+// Programs write vertices that they could not compute in several ways.
+TEST(ReadPly, AVertexWithoutNumbersCostsItsPolygonsAlone) {
+  const std::string faces = "element face 2\nproperty list uchar int vertex_index";
+  for (const std::string word : {"nan", "-inf", "-nan(ind)", "1.#QNAN", "1e999"}) {
+    const std::string vertices = "0 0 0 9\n1 0 0 9\n1 1 0 9\n0 " + word + " 0 9\n";
+    const TemporaryFolder folder;
+    const Scene scene =
+        read_scene(folder.write("a.ply", square("ascii", vertices + "3 0 1 2\n3 0 2 3\n", faces)));
+    EXPECT_EQ(std::get<PolygonMesh>(scene.surfaces.at(0).shape).facets.size(), 1u) << word;
+    ASSERT_EQ(scene.losses.size(), 1u) << word;
+    EXPECT_TRUE(says(scene.losses[0], "1 polygon with a vertex that has no finite coordinates"));
+    EXPECT_TRUE(says(scene.losses[0], "a.ply: vertex 3 has"));
+  }
+}
+
+TEST(ReadPly, AByteOrderMarkIsNoPartOfTheFile) {
+  expect_square(
+      read_ply("\xef\xbb\xbf" + square("ascii", "0 0 0 9 1 0 0 9\n1 1 0 9\n0 1 0 9\n4 0 1 2 3\n")),
+      1);
+}
+
 TEST(ReadPly, WrongBodiesAreRefusedWithThePlace) {
   const auto refusal = [](const std::string& polygons) {
     return message_of<InputError>(

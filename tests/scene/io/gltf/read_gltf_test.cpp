@@ -369,6 +369,19 @@ TEST_F(Gltf, WhatIsNotUsedIsNamed) {
   }
 }
 
+// The square's fourth vertex, which its second triangle alone has, begins at byte 36.
+TEST_F(Gltf, AVertexWithoutNumbersCostsItsTrianglesAlone) {
+  std::string nan = square_gltf(one_node);
+  nan.replace(nan.find("base64,") + 7 + 36 / 3 * 4, 6, "AADAf/");  // a quiet nan, 0x7fc00000
+  const Scene scene = read_file("it.gltf", nan);
+  ASSERT_EQ(scene.surfaces.size(), 1u);
+  EXPECT_EQ(std::get<PolygonMesh>(scene.surfaces[0].shape).facets.size(), 1u);
+  EXPECT_EQ(scene.dropped_polygons, 1);
+  ASSERT_EQ(scene.losses.size(), 1u);
+  EXPECT_NE(scene.losses[0].find("vertex 3 of meshes[0].primitives[0]"), std::string::npos)
+      << scene.losses[0];
+}
+
 TEST_F(Gltf, MistakesAreToldWithTheirPlace) {
   expect_error("{\n\"asset\":{\"version\":\"2.0\"},\n\"nodes\":[}", {"it.gltf:3:", "JSON"});
   expect_error(R"({"asset":{"version":"1.0"}})", {"version '1.0'"});
@@ -392,7 +405,7 @@ TEST_F(Gltf, MistakesAreToldWithTheirPlace) {
   expect_error(huge, {"accessors[0]", "do not fit"});
   std::string nan = square_gltf(one_node);
   nan.replace(nan.find("base64,") + 7, 6, "AADAf/");  // the first float becomes 0x7fc00000
-  expect_error(nan, {"accessors[0]", "finite"});
+  expect_error(nan, {"meshes[0].primitives[0]", "finite"});
   std::string gone = square_gltf(one_node);
   const std::size_t data = gone.find("data:");
   gone.replace(data, gone.find('"', data) - data, "gone%20away.bin");
