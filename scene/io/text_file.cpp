@@ -115,8 +115,13 @@ void TextFile::for_each_line(
   std::string_view rest = text_;
   constexpr std::string_view byte_order_mark = "\xef\xbb\xbf";
   if (rest.starts_with(byte_order_mark)) rest.remove_prefix(byte_order_mark.size());
+  if (rest.starts_with("\xff\xfe") || rest.starts_with("\xfe\xff")) {
+    throw InputError(fmt::format("{}: the text is UTF-16; save the file as UTF-8", path_.string()));
+  }
+  // Systems of before 2001 end lines with a carriage return alone.
+  const char line_end = rest.find('\n') == std::string_view::npos ? '\r' : '\n';
   for (int line = 1; !rest.empty(); ++line) {
-    const std::size_t end = rest.find('\n');
+    const std::size_t end = rest.find(line_end);
     std::string_view text = rest.substr(0, end);
     if (text.ends_with('\r')) text.remove_suffix(1);
     visit(line, text);
