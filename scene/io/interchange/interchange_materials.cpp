@@ -13,9 +13,9 @@
 
 #include "scene/errors.h"
 #include "scene/io/default_material.h"
+#include "scene/io/foreign_path.h"
 #include "scene/io/glossy.h"
 #include "scene/io/sheets.h"
-#include "scene/io/text_file.h"
 
 namespace lightwell {
 namespace {
@@ -96,18 +96,6 @@ int first_uv_set(const aiMaterial& from) {
     if (const auto picture = picture_of(from, types)) return picture->uv_set;
   }
   return 0;
-}
-
-// Places where a picture may lie: many programs write paths of their own machine.
-std::vector<std::filesystem::path> places_of(const std::filesystem::path& scene, std::string name) {
-  std::ranges::replace(name, '\\', '/');
-  if (name.starts_with("file://")) name = name.substr(std::string_view("file://").size());
-  const std::filesystem::path path(name);
-  const std::filesystem::path beside = scene.parent_path() / path.filename();
-  const bool has_drive = name.size() > 1 && name[1] == ':';
-  if (has_drive) return {beside};
-  if (path.is_absolute()) return {beside, path};
-  return {scene.parent_path() / path, beside};
 }
 
 }  // namespace
@@ -303,8 +291,8 @@ std::optional<Picture> InterchangeMaterials::read_picture_of(const ImportedPictu
     }
     return entry->second;
   }
-  for (const auto& place : places_of(scene_.file, picture.name)) {
-    if (is_file(place)) return pictures_.picture(place, code);
+  if (const auto place = find_foreign_file(scene_.file.parent_path(), picture.name)) {
+    return pictures_.picture(*place, code);
   }
   throw InputError(
       fmt::format("'{}' is missing, and no file of this name lies beside the scene", picture.name));

@@ -7,6 +7,8 @@
 #include <limits>
 #include <unordered_map>
 
+#include "scene/io/non_finite.h"
+
 namespace lightwell {
 namespace {
 
@@ -56,7 +58,7 @@ class ObjParser {
   void read_line(std::string_view text) {
     const std::string_view key = next_word(text);
     if (key == "v") {
-      content_.vertices.push_back(metres_per_unit_ * read_triple(text));
+      read_vertex(text);
     } else if (key == "vt") {
       read_uv(text);
     } else if (key == "vn") {
@@ -79,19 +81,23 @@ class ObjParser {
     if (key == "o" || key == "g") current_group_ = -1;
   }
 
-  Eigen::Vector3d read_triple(std::string_view text) const {
+  // Programs write "nan" for vertices that they could not compute, in files that are otherwise
+  // whole. Other words show that the file is damaged or no OBJ file.
+  void read_vertex(std::string_view text) {
+    const auto number = static_cast<int>(content_.vertices.size());
     Eigen::Vector3d p;
     for (double& x : p) {
       const std::string_view word = next_word(text);
       const auto value = parse_finite(word);
-      if (!value) {
+      if (!value && !names_non_finite(word)) {
         file_.fail(line_, word.empty() ? std::string("a vertex needs three coordinates")
                                        : fmt::format("coordinate '{}' is not a finite number",
                                                      excerpt(word)));
       }
-      x = *value;
+      if (!value) content_.placeless.emplace(number, PlacelessVertex{line_, excerpt(word)});
+      x = value.value_or(std::numeric_limits<double>::quiet_NaN());
     }
-    return p;
+    content_.vertices.push_back(metres_per_unit_ * p);
   }
 
   // A malformed number does not make the file unreadable: facets that use the entry have no texture
@@ -207,6 +213,11 @@ class ObjParser {
 };
 
 }  // namespace
+
+std::string_view without_quotes(std::string_view name) {
+  const bool is_quoted = name.size() > 2 && name.front() == '"' && name.back() == '"';
+  return is_quoted ? name.substr(1, name.size() - 2) : name;
+}
 
 ObjContent read_obj_content(const TextFile& file, double metres_per_unit) {
   return ObjParser(file, metres_per_unit).parse();

@@ -6,12 +6,16 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "scene/errors.h"
+#include "scene/io/default_material.h"
+#include "scene/io/foreign_path.h"
 #include "scene/io/glossy.h"
+#include "scene/io/obj/obj_file.h"
 #include "scene/io/pictures/picture_mean.h"
 #include "scene/io/sheets.h"
 #include "scene/io/text_file.h"
@@ -22,7 +26,6 @@ namespace {
 // A newmtl block of the file.
 struct MtlBlock {
   std::string name{};
-  int line = 0;
   std::optional<Spectrum> diffuse{}, mirror{}, filter{}, radiance{};
   std::optional<float> index{}, dissolve{}, transparency{};
   int illumination = -1;
@@ -30,6 +33,8 @@ struct MtlBlock {
   std::string normal_map{}, bump_map{}, roughness_map{}, metal_map{};
   std::optional<float> roughness{}, metal{};  ///< Pr, Pm
   bool has_other_map = false;
+  bool was_cut_off = false;  ///< a number outside [0, 1]
+  std::string fault{};       ///< of the first line that cannot be read
 };
 
 // The remarks on one MTL file, each with the file's name in front.
@@ -38,10 +43,7 @@ class MtlRemarks {
   MtlRemarks(const TextFile& file, Remarks& remarks)
       : file_(file.path().filename().string()), remarks_(remarks) {}
 
-  void add(std::string_view what, std::string_view name) {
-    remarks_.add(fmt::format("{}: {}", file_, what), name);
-  }
-  void add_unusable(std::string_view what, std::string_view name, std::string_view why) {
+  void add(std::string_view what, std::string_view name, std::string_view why = {}) {
     remarks_.add_unusable(fmt::format("{}: {}", file_, what), name, why);
   }
 
@@ -51,6 +53,8 @@ class MtlRemarks {
 };
 
 const char* const textures_left_out = "textures were left out in";
+const char* const cut_off = "colours and shares outside [0, 1] were cut off there in";
+constexpr float rounding = 1e-5f;  // of colours, which files give by six digits or so
 
 Spectrum black_spectrum() {
   return Spectrum::Zero(3);
@@ -64,49 +68,50 @@ class MtlParser {
     file_.for_each_line([&](int line, std::string_view text) {
       line_ = line;
       const std::string_view key = next_word(text);
-      if (key == "newmtl") {
-        blocks_.push_back({.name = std::string(trimmed(text)), .line = line});
+      if (lower_case(key) == "newmtl") {
+        blocks_.push_back({.name = std::string(trimmed(text))});
         if (blocks_.back().name.empty()) file_.fail(line, "newmtl lacks the material's name");
       } else if (!blocks_.empty()) {
-        read_property(key, text, blocks_.back());
+        MtlBlock& block = blocks_.back();
+        try {
+          if (block.fault.empty()) read_property(key, text, block);
+        } catch (const InputError& error) {
+          block.fault = error.what();
+        }
       }
     });
     return std::move(blocks_);
   }
 
  private:
+  // Some programs write all keys in lower case.
   void read_property(std::string_view key, std::string_view rest, MtlBlock& block) {
+    const std::string kind = lower_case(key);
     constexpr float no_limit = std::numeric_limits<float>::max();
-    if (key == "Kd") block.diffuse = rgb(key, rest, 1.0f);
-    // The Ks of a highlight is unbounded; the Ks of a mirror is checked once the block is complete.
-    if (key == "Ks") block.mirror = rgb(key, rest, no_limit);
-    if (key == "Tf") block.filter = rgb(key, rest, 1.0f);
-    if (key == "Ke") block.radiance = rgb(key, rest, no_limit);
-    if (key == "Ni") block.index = number(key, next_word(rest), no_limit);
-    if (key == "d") {
+    if (kind == "kd") block.diffuse = rgb(key, rest, 1.0f);
+    // The Ks of a highlight is unbounded; the Ks of a mirror is cut off once the block is complete.
+    if (kind == "ks") block.mirror = rgb(key, rest, no_limit);
+    if (kind == "tf") block.filter = rgb(key, rest, 1.0f);
+    if (kind == "ke") block.radiance = rgb(key, rest, no_limit);
+    if (kind == "ni") block.index = number(key, next_word(rest), no_limit);
+    if (kind == "d") {
       std::string_view word = next_word(rest);
       if (word == "-halo") word = next_word(rest);
       block.dissolve = number(key, word, 1.0f);
     }
-    if (key == "Pr") block.roughness = number(key, next_word(rest), 1.0f);
-    if (key == "Pm") block.metal = number(key, next_word(rest), 1.0f);
-    if (key == "Tr") block.transparency = number(key, next_word(rest), 1.0f);
-    if (key == "illum") block.illumination = static_cast<int>(number(key, next_word(rest), 10.0f));
-    if (key == "map_Kd") {
-      block.diffuse_map = trimmed(rest);
-    } else if (key == "map_Ke") {
-      block.radiance_map = trimmed(rest);
-    } else if (key == "map_d") {
-      block.dissolve_map = trimmed(rest);
-    } else if (key == "map_Pr") {
-      block.roughness_map = trimmed(rest);
-    } else if (key == "map_Pm") {
-      block.metal_map = trimmed(rest);
-    } else if (key == "norm" || key == "map_Kn") {
-      block.normal_map = trimmed(rest);
-    } else if (key == "bump" || key == "map_bump" || key == "map_Bump") {
-      block.bump_map = trimmed(rest);
-    } else if (key.starts_with("map_") || key == "disp") {
+    if (kind == "pr") block.roughness = number(key, next_word(rest), 1.0f);
+    if (kind == "pm") block.metal = number(key, next_word(rest), 1.0f);
+    if (kind == "tr") block.transparency = number(key, next_word(rest), 1.0f);
+    if (kind == "illum") block.illumination = static_cast<int>(number(key, next_word(rest), 10.0f));
+    static const std::map<std::string_view, std::string MtlBlock::*> maps = {
+        {"map_kd", &MtlBlock::diffuse_map}, {"map_ke", &MtlBlock::radiance_map},
+        {"map_d", &MtlBlock::dissolve_map}, {"map_pr", &MtlBlock::roughness_map},
+        {"map_pm", &MtlBlock::metal_map},   {"norm", &MtlBlock::normal_map},
+        {"map_kn", &MtlBlock::normal_map},  {"bump", &MtlBlock::bump_map},
+        {"map_bump", &MtlBlock::bump_map}};
+    if (const auto map = maps.find(kind); map != maps.end()) {
+      block.*(map->second) = trimmed(rest);
+    } else if (kind.starts_with("map_") || kind == "disp") {
       block.has_other_map = true;
     }
   }
@@ -115,26 +120,27 @@ class MtlParser {
     const auto value = parse_finite(word);
     if (!value)
       file_.fail(line_, fmt::format("{} is '{}', not a finite number", key, excerpt(word)));
+    if (most == 1.0f) {
+      const double within = std::clamp(*value, 0.0, 1.0);
+      if (std::abs(*value - within) > rounding) blocks_.back().was_cut_off = true;
+      return static_cast<float>(within);
+    }
     if (!(*value >= 0.0 && *value <= most)) {
-      file_.fail(line_, most == 1.0f
-                            ? fmt::format("{} is {}; it must lie between 0 and 1", key, *value)
-                            : fmt::format("{} is {}; it is out of range", key, *value));
+      file_.fail(line_, fmt::format("{} is {}; it is out of range", key, *value));
     }
     return static_cast<float>(*value);
   }
 
   // One number gives all three components.
   Spectrum rgb(std::string_view key, std::string_view rest, float most) {
-    std::string_view first = next_word(rest);
+    const std::string_view first = next_word(rest);
     if (first == "spectral" || first == "xyz") {
       file_.fail(line_,
                  fmt::format("'{} {}' is not supported; give red, green and blue", key, first));
     }
     Spectrum value = Spectrum::Constant(3, number(key, first, most));
-    const std::string_view second = next_word(rest);
-    if (second.empty() || second.front() == '#') return value;
-    value[1] = number(key, second, most);
-    value[2] = number(key, next_word(rest), most);
+    if (trimmed(rest).empty() || trimmed(rest).front() == '#') return value;
+    for (const int band : {1, 2}) value[band] = number(key, next_word(rest), most);
     return value;
   }
 
@@ -176,7 +182,7 @@ void make_clear(const MtlBlock& b, Material& material, MtlRemarks& remarks) {
   }
 }
 
-void make_opaque(const TextFile& file, const MtlBlock& b, Material& material, MtlRemarks& remarks) {
+void make_opaque(const MtlBlock& b, Material& material, MtlRemarks& remarks) {
   Spectrum diffuse = b.diffuse.value_or(black_spectrum()),
            mirror = b.mirror.value_or(black_spectrum());
   const bool black = !(diffuse > 0.0f).any();
@@ -188,12 +194,9 @@ void make_opaque(const TextFile& file, const MtlBlock& b, Material& material, Mt
     }
     mirror.setZero();
   }
-  if ((mirror > 1.0f).any()) {
-    file.fail(b.line, fmt::format("Ks of mirror '{}' is {}; it must lie between 0 and 1", b.name,
-                                  mirror.maxCoeff()));
-  }
+  if ((mirror > 1.0f + rounding).any()) remarks.add(cut_off, b.name);
+  mirror = mirror.min(1.0f);
   const Spectrum sum = diffuse + mirror;
-  constexpr float rounding = 1e-5f;
   if ((sum > 1.0f).any()) {
     if ((sum > 1.0f + rounding).any()) {
       remarks.add("Kd + Ks exceeded 1 and was scaled down in", b.name);
@@ -201,19 +204,24 @@ void make_opaque(const TextFile& file, const MtlBlock& b, Material& material, Mt
     diffuse /= sum.max(1.0f);
     mirror /= sum.max(1.0f);
   }
+  if (!b.diffuse && !b.mirror && !b.radiance && b.diffuse_map.empty() && b.radiance_map.empty()) {
+    remarks.add("materials without a colour got a diffuse reflectance of 0.5", b.name);
+    diffuse.setConstant(0.5f);
+  }
   material.reflectance = diffuse;
   material.specular = mirror;
   material.emission = static_cast<float>(std::numbers::pi) * b.radiance.value_or(black_spectrum());
 }
 
-Material make_material(const TextFile& file, const MtlBlock& b, MtlRemarks& remarks) {
+Material make_material(const MtlBlock& b, MtlRemarks& remarks) {
   const Spectrum zero = black_spectrum();
   Material material{.name = b.name, .reflectance = zero, .specular = zero, .emission = zero};
   if (is_clear(b)) {
     make_clear(b, material, remarks);
   } else {
-    make_opaque(file, b, material, remarks);
+    make_opaque(b, material, remarks);
   }
+  if (b.was_cut_off) remarks.add(cut_off, b.name);
   if (b.has_other_map) remarks.add(textures_left_out, b.name);
   return material;
 }
@@ -255,8 +263,7 @@ MapStatement read_map_statement(std::string_view text) {
     }
     text = trimmed(rest);
   }
-  map.file = text;
-  std::ranges::replace(map.file, '\\', '/');
+  map.file = without_quotes(text);
   // With v upwards v' = s v + o; with v downwards v' = s v + 1 - s - o.
   map.image.placement << scale.x(), 0.0, offset.x(), 0.0, scale.y(), 1.0 - scale.y() - offset.y();
   return map;
@@ -360,7 +367,7 @@ class MapReader {
                             ? relief_of_normals(map.image, map.bump)
                             : relief_of_heights(map.image, map.bump, DepthUnit::texel);
     } catch (const InputError& fault) {
-      remarks_.add_unusable("relief that cannot be used was left out in", b.name, fault.what());
+      remarks_.add("relief that cannot be used was left out in", b.name, fault.what());
     }
   }
 
@@ -375,20 +382,20 @@ class MapReader {
   template <class Read>
   auto open_by(const std::string& name, const MtlBlock& b, const char* others, Read&& read)
       -> decltype(read(std::filesystem::path())) {
-    const auto path = file_.path().parent_path() / name;
-    if (!is_file(path)) {
-      remarks_.add("pictures that are missing were left out", path.string());
+    const auto folder = file_.path().parent_path();
+    const auto path = find_foreign_file(folder, name);
+    if (!path) {
+      remarks_.add("pictures that are missing were left out", (folder / name).string());
       return std::nullopt;
     }
     try {
-      auto picture = read(path);
+      auto picture = read(*path);
       if (!picture) remarks_.add(fmt::format("{} were left out in", others), b.name);
       return picture;
     } catch (const LimitError&) {
       throw;
     } catch (const InputError& fault) {
-      remarks_.add_unusable("pictures that cannot be read were left out", path.string(),
-                            fault.what());
+      remarks_.add("pictures that cannot be read were left out", path->string(), fault.what());
       return std::nullopt;
     }
   }
@@ -405,17 +412,36 @@ void dissolve(const MtlBlock& b, Material& material, MtlRemarks& remarks) {
   let_through(material, Spectrum::Constant(3, opacity(b)));
 }
 
+// The material of a block; a grey one, with a remark, if the block cannot be read.
+Material material_of(const MtlBlock& block, MapReader& maps, MtlRemarks& remarks) {
+  try {
+    if (!block.fault.empty()) throw InputError(block.fault);
+    Material material = make_material(block, remarks);
+    maps.add_maps(block, material);
+    if (is_sheet(block)) dissolve(block, material, remarks);
+    return material;
+  } catch (const LimitError&) {
+    throw;
+  } catch (const InputError& fault) {
+    remarks.add("materials that cannot be read got a diffuse reflectance of 0.5", block.name,
+                fault.what());
+    Material material = default_material(Scene().bands);
+    material.name = block.name;
+    return material;
+  }
+}
+
 }  // namespace
 
-std::vector<Material> read_obj_materials(const std::filesystem::path& path, Remarks& remarks) {
+std::vector<Material> read_obj_materials(const std::filesystem::path& path,
+                                         const std::function<bool(const std::string&)>& is_shown,
+                                         Remarks& remarks) {
   const TextFile file(path);
   MtlRemarks of_file(file, remarks);
   std::vector<Material> materials;
   MapReader maps(file, of_file);
   for (const MtlBlock& block : MtlParser(file).parse()) {
-    materials.push_back(make_material(file, block, of_file));
-    maps.add_maps(block, materials.back());
-    if (is_sheet(block)) dissolve(block, materials.back(), of_file);
+    if (is_shown(block.name)) materials.push_back(material_of(block, maps, of_file));
   }
   return materials;
 }

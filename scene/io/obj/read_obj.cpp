@@ -9,6 +9,7 @@
 #include "scene/io/convex_cut.h"
 #include "scene/io/corner_maps.h"
 #include "scene/io/default_material.h"
+#include "scene/io/foreign_path.h"
 #include "scene/io/mesh_builder.h"
 #include "scene/io/mesh_file.h"
 #include "scene/io/numbered_names.h"
@@ -25,13 +26,13 @@ namespace {
 
 // Paths in an mtllib line: "a.mtl b.mtl" names two files, "my room.mtl" usually one.
 std::vector<std::filesystem::path> files_named(const std::filesystem::path& folder,
-                                               std::string names) {
-  std::replace(names.begin(), names.end(), '\\', '/');
-  if (is_file(folder / names)) return {folder / names};
+                                               const std::string& names) {
+  if (auto found = find_foreign_file(folder, std::string(without_quotes(names)))) return {*found};
   std::vector<std::filesystem::path> files;
   std::string_view rest = names;
-  for (auto word = next_word(rest); !word.empty(); word = next_word(rest)) {
-    files.push_back(folder / word);
+  for (auto word = next_word(rest); !word.empty() && word.front() != '#'; word = next_word(rest)) {
+    const std::string_view name = without_quotes(word);
+    files.push_back(find_foreign_file(folder, std::string(name)).value_or(folder / name));
   }
   return files;
 }
@@ -44,8 +45,16 @@ struct MaterialFiles {
   std::vector<std::string> missing{};  // files
 };
 
+// Reads the materials that faces show. Those that the scene replaces may lack their pictures.
 MaterialFiles read_material_files(const std::filesystem::path& path, const ObjContent& content,
-                                  Remarks& remarks) {
+                                  const IsReplaced& is_replaced, Remarks& remarks) {
+  std::set<std::string, std::less<>> shown;
+  for (const ObjFace& face : content.faces) {
+    if (face.material < 0) continue;
+    const auto& name = content.material_names[static_cast<std::size_t>(face.material)];
+    if (!(is_replaced && is_replaced(name))) shown.insert(name);
+  }
+  const auto is_shown = [&](const std::string& name) { return shown.contains(name); };
   MaterialFiles result;
   for (const std::string& names : content.material_files) {
     for (const auto& file : files_named(path.parent_path(), names)) {
@@ -53,7 +62,7 @@ MaterialFiles read_material_files(const std::filesystem::path& path, const ObjCo
         result.missing.push_back(file.string());
         continue;
       }
-      auto read = read_obj_materials(file, remarks);
+      auto read = read_obj_materials(file, is_shown, remarks);
       result.materials.insert(result.materials.end(), std::make_move_iterator(read.begin()),
                               std::make_move_iterator(read.end()));
     }
@@ -173,6 +182,16 @@ std::vector<char> materials_with_uv(const Scene& scene, const ObjRequest& reques
   return keeps_uv;
 }
 
+// The first vertex of a face that has no finite coordinates; null if all have them.
+const PlacelessVertex* placeless_vertex(const ObjContent& content, const ObjFace& face) {
+  if (content.placeless.empty()) return nullptr;
+  for (std::size_t i = face.first; i < face.first + face.count; ++i) {
+    const auto found = content.placeless.find(content.corners[i]);
+    if (found != content.placeless.end()) return &found->second;
+  }
+  return nullptr;
+}
+
 void build_surfaces(const ObjContent& content, const std::map<int, int>& materials,
                     const ObjRequest& request, Scene& scene, FilePolygons& polygons) {
   const std::vector<char> keeps_uv = materials_with_uv(scene, request);
@@ -184,6 +203,12 @@ void build_surfaces(const ObjContent& content, const std::map<int, int>& materia
   const bool by_normals = request.fronts == MeshFronts::from_normals;
   polygons.has_normals = by_normals && !content.normals.empty();
   for (const ObjFace& face : content.faces) {
+    if (const PlacelessVertex* vertex = placeless_vertex(content, face)) {
+      polygons.repairs.drop_placeless(fmt::format("{}:{}: coordinate '{}' is not a finite number",
+                                                  scene.file.string(), vertex->line, vertex->word));
+      ++polygons.count;
+      continue;
+    }
     const std::pair key(face.group, materials.at(face.material));
     const auto [entry, is_new] = surface_of.emplace(key, meshes.size());
     if (is_new) {
@@ -234,7 +259,7 @@ Scene read_requested(const std::filesystem::path& path, const ObjRequest& reques
   Remarks remarks;
   std::map<int, int> materials = {{-1, 0}};
   if (request.wanted == MeshMaterials::from_file) {
-    const MaterialFiles files = read_material_files(path, content, remarks);
+    const MaterialFiles files = read_material_files(path, content, request.is_replaced, remarks);
     remark_undefined(content, files, request.is_replaced, remarks);
     materials = take_materials(content, files.materials, scene);
   } else {
@@ -246,10 +271,8 @@ Scene read_requested(const std::filesystem::path& path, const ObjRequest& reques
   remark_pictures_without_uv(scene, remarks);
   remarks.report_to(scene);
   note_repairs(found.repairs, scene);
+  if (scene.surfaces.empty()) fail_without_area(path, found.repairs);
   if (polygons) *polygons = std::move(found);
-  if (scene.surfaces.empty()) {
-    throw NoAreaError(fmt::format("{}: the file has no polygons with an area", path.string()));
-  }
   validate(scene);
   return scene;
 }

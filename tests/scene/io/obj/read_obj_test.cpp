@@ -104,6 +104,41 @@ TEST(ReadObj, RepairsWhatItCanAndCountsIt) {
   EXPECT_TRUE(is_noted(room(), "1 polygon that crosses itself was cut"));
 }
 
+// Programs write vertices that they could not compute in several ways.
+TEST(ReadObj, AVertexWithoutNumbersCostsItsPolygonsAlone) {
+  for (const std::string word : {"nan", "-inf", "-nan(ind)", "1.#QNAN", "1e999"}) {
+    const std::string vertex = "v 1 " + word + " 0\n";
+    const Scene scene =
+        read_text(vertex + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\nf 1 3 4\nf 4 2 1\n");
+    EXPECT_EQ(std::get<PolygonMesh>(scene.surfaces.at(0).shape).facets.size(), 1u) << word;
+    EXPECT_EQ(scene.dropped_polygons, 2);
+    EXPECT_TRUE(is_noted(scene,
+                         "2 polygons with vertices that have no finite coordinates were "
+                         "dropped; the first such vertex: "));
+    EXPECT_TRUE(is_noted(scene, "text.obj:2: coordinate '" + word + "'"));
+    EXPECT_EQ(scene.losses.size(), scene.notes.size() - 1) << "grey polygons are no loss";
+    EXPECT_EQ(read_text(vertex + "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 2 3 4\n").dropped_polygons, 0);
+  }
+}
+
+TEST(ReadObj, LinesMayEndAsOnAnySystem) {
+  for (const char* end : {"\r\n", "\r"}) {
+    std::string text = triangle;
+    for (std::size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 2)) {
+      text.replace(at, 1, end);
+    }
+    const TemporaryFolder folder;
+    EXPECT_EQ(read_scene(folder.write("text.obj", text)).surfaces.size(), 1u);
+  }
+  const TemporaryFolder folder;
+  try {
+    read_scene(folder.write("wide.obj", std::string("\xff\xfev\0 \0", 6)));
+    FAIL() << "UTF-16 was read";
+  } catch (const InputError& error) {
+    EXPECT_NE(std::string(error.what()).find("UTF-16"), std::string::npos) << error.what();
+  }
+}
+
 TEST(ReadObj, KsIsAMirrorOnlyWhereIllumSaysSo) {
   expect_rgb(material(room(), "wall").reflectance, 0.6f, 0.5f, 0.4f);
   EXPECT_FALSE(material(room(), "wall").is_specular());
@@ -212,6 +247,59 @@ TEST(ReadObj, MissingPicturesLeaveThePlainColourOrGrey) {
   expect_rgb(bare.materials[0].reflectance, 0.5f, 0.5f, 0.5f);
   ASSERT_EQ(bare.losses.size(), 1u);
   EXPECT_NE(bare.losses[0].find("gone.png"), std::string::npos);
+}
+
+// Windows tells no letters from capitals, and programs write paths of the machine they run on.
+TEST(ReadObj, FilesAreFoundByNamesOfOtherSystems) {
+  for (const std::string name :
+       {"My Room.MTL", "\"my room.mtl\"", "C:\\models\\my room.mtl", "/home/joe/my room.mtl"}) {
+    const TemporaryFolder folder;
+    folder.write("my room.mtl", "newmtl m\nKd 0.3 0.3 0.3\nmap_Ks .\n");
+    const Scene scene = read_scene(folder.write("text.obj", "mtllib " + name + "\n" + triangle));
+    expect_rgb(scene.materials[0].reflectance, 0.3f, 0.3f, 0.3f);
+  }
+  for (const std::string name : {"Two-Pixels.PNG", "\"two-pixels.png\"", "D:\\maps\\two-pixels.png",
+                                 "/home/joe/maps/two-pixels.png", "maps\\two-pixels.png"}) {
+    const TemporaryFolder folder;
+    std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", folder / "two-pixels.png");
+    folder.write("text.mtl", "newmtl m\nmap_Kd " + name + "\n");
+    const Scene scene = read_scene(folder.write("text.obj", "mtllib text.mtl\n" + triangle));
+    EXPECT_TRUE(scene.materials[0].texture) << name;
+  }
+}
+
+TEST(ReadObj, AMaterialThatCannotBeReadIsGrey) {
+  for (const std::string line : {"Kd nan 0.1 0.1", "Kd 0.1 0.1", "Kd spectral m.rfl", "Ke -1 0 0",
+                                 "Kd 0.1 0.1 0.1\nNi one"}) {
+    const Scene scene = read_text(triangle, "newmtl m\n" + line + "\nKs 0 0 0\n");
+    expect_rgb(scene.materials[0].reflectance, 0.5f, 0.5f, 0.5f);
+    EXPECT_EQ(scene.materials[0].name, "m");
+    ASSERT_EQ(scene.losses.size(), 1u) << line;
+    EXPECT_NE(scene.losses[0].find("cannot be read got a diffuse reflectance of 0.5: 'm': "),
+              std::string::npos);
+    EXPECT_NE(scene.losses[0].find("text.mtl:"), std::string::npos) << scene.losses[0];
+  }
+}
+
+TEST(ReadObj, ColoursOutsideOfTheirRangeAreCutOff) {
+  const Scene scene = read_text(triangle, "newmtl m\nKd 1.7 -0.2 0.3\n");
+  expect_rgb(scene.materials[0].reflectance, 1.0f, 0.0f, 0.3f);
+  EXPECT_TRUE(is_noted(scene, "outside [0, 1] were cut off there in: 'm'"));
+  const Scene rounded = read_text(triangle, "newmtl m\nKd 1.000001 0.2 0.3\n");
+  expect_rgb(rounded.materials[0].reflectance, 1.0f, 0.2f, 0.3f);
+  EXPECT_TRUE(rounded.losses.empty());
+}
+
+TEST(ReadObj, KeysMayBeInLowerCase) {
+  const Scene scene = read_text(triangle, "NEWMTL m\nkd 0.1 0.2 0.3\nke 1 1 1\n");
+  expect_rgb(scene.materials[0].reflectance, 0.1f, 0.2f, 0.3f);
+  EXPECT_TRUE(scene.materials[0].is_emitter());
+}
+
+TEST(ReadObj, AMaterialWithoutAColourIsGreyAndNoted) {
+  const Scene scene = read_text(triangle, "newmtl m\nNs 10\nillum 2\n");
+  expect_rgb(scene.materials[0].reflectance, 0.5f, 0.5f, 0.5f);
+  EXPECT_TRUE(is_noted(scene, "without a colour got a diffuse reflectance of 0.5: 'm'"));
 }
 
 TEST(ReadObj, OneNumberStandsForThree) {

@@ -32,6 +32,18 @@ TEST(ReadTomlMeshes, MaterialsOfMeshesAreMissingOnlyWhereTheSceneHasNone) {
   }
 }
 
+TEST(ReadTomlMeshes, PicturesOfReplacedMaterialsAreNotMissed) {
+  const TemporaryFolder folder;
+  folder.write("mesh.mtl", "newmtl wood\nmap_Kd gone.png\nnewmtl unused\nKd nan\n");
+  folder.write("mesh.obj", "mtllib mesh.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wood\nf 1 2 3\n");
+  const std::string surfaces = "[[surfaces]]\nmesh = \"mesh.obj\"\n";
+  const Scene replaced =
+      read_scene(folder.write("replaced.toml", "[materials.wood]\nreflectance = 0.3\n" + surfaces));
+  EXPECT_TRUE(replaced.notes.empty()) << replaced.notes.front();
+  EXPECT_FLOAT_EQ(replaced.materials.at(0).reflectance[0], 0.3f);
+  EXPECT_EQ(read_scene(folder.write("kept.toml", surfaces)).losses.size(), 1u);
+}
+
 TEST(ReadTomlMeshes, MaterialsOfTheSceneShowPicturesOnMeshes) {
   const TemporaryFolder folder;
   std::filesystem::copy(LIGHTWELL_TEST_DATA "/scene/two-pixels.png", folder / "print.png");
