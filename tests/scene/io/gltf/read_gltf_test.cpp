@@ -374,9 +374,7 @@ TEST_F(Gltf, AVertexWithoutNumbersCostsItsTrianglesAlone) {
   std::string nan = square_gltf(one_node);
   nan.replace(nan.find("base64,") + 7 + 36 / 3 * 4, 6, "AADAf/");  // a quiet nan, 0x7fc00000
   const Scene scene = read_file("it.gltf", nan);
-  ASSERT_EQ(scene.surfaces.size(), 1u);
-  EXPECT_EQ(std::get<PolygonMesh>(scene.surfaces[0].shape).facets.size(), 1u);
-  EXPECT_EQ(scene.dropped_polygons, 1);
+  EXPECT_EQ(std::get<PolygonMesh>(scene.surfaces.at(0).shape).facets.size(), 1u);
   ASSERT_EQ(scene.losses.size(), 1u);
   EXPECT_NE(scene.losses[0].find("vertex 3 of meshes[0].primitives[0]"), std::string::npos)
       << scene.losses[0];
