@@ -17,6 +17,7 @@
 #include "bench/stopwatch.h"
 #include "mesh/build_patches.h"
 #include "radiosity/direct_light/direct_light.h"
+#include "radiosity/emitters/emitter.h"
 #include "radiosity/emitters/emitter_point.h"
 #include "raytrace/cameras/camera_ray.h"
 #include "scene/io/read_scene.h"

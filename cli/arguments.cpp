@@ -10,6 +10,7 @@
 #include "cli/many_lights.h"
 #include "cli/memory_size.h"
 #include "cli/refinement.h"
+#include "mesh/geometry/cut_size.h"
 #include "radiosity/effective_options.h"
 #include "radiosity/paths/caustic_photons.h"
 #include "radiosity/solve_words.h"

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "cli/report.h"
-#include "radiosity/accuracy.h"
 #include "radiosity/refine/refine_solution.h"
+#include "radiosity/solve.h"
 
 namespace lightwell {
 

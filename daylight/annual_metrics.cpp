@@ -8,6 +8,7 @@
 
 #include "scene/errors.h"
 #include "scene/io/dashed_pair.h"
+#include "scene/io/weather/weather_file.h"
 #include "scene/parallel.h"
 
 namespace lightwell {

@@ -7,9 +7,12 @@
 #include <numbers>
 
 #include "scene/errors.h"
+#include "scene/io/weather/sun_hours.h"
+#include "scene/io/weather/weather_file.h"
 #include "scene/parallel.h"
 #include "scene/perez_sky.h"
 #include "scene/sky_patch_means.h"
+#include "scene/sun_position.h"
 
 namespace lightwell {
 namespace {

@@ -7,12 +7,13 @@
 #include <vector>
 
 #include "scene/bands.h"
-#include "scene/io/weather/sun_hours.h"
 #include "scene/sky.h"
 #include "scene/sky_patches.h"
-#include "scene/sun_position.h"
 
 namespace lightwell {
+
+struct ClockTime;
+struct Weather;
 
 /// Sun and sky of one hour, even over the hour.
 struct SkyHour {

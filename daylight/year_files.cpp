@@ -7,6 +7,7 @@
 #include <string>
 
 #include "scene/io/comma_fields.h"
+#include "scene/io/weather/weather_file.h"
 
 namespace lightwell {
 namespace {

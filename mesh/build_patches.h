@@ -1,10 +1,11 @@
 #pragma once
 
-#include "mesh/geometry/cut_size.h"
 #include "mesh/patches/patch_mesh.h"
 #include "scene/progress.h"
 
 namespace lightwell {
+
+struct CutSize;
 
 struct MeshOptions {
   /// Longest patch edge, metres. 0: chosen so that the diffuse surfaces make about

@@ -9,13 +9,6 @@
 
 namespace lightwell {
 
-/// The error of irradiance to reach, compared with RadiositySolution::error_estimate (RMS). Exactly
-/// one of the two is above 0.
-struct Accuracy {
-  double share = 0.0;  ///< share of the mean irradiance
-  double lux = 0.0;    ///< lx
-};
-
 /// The settings that decide over the error of a solution, apart from the form factors.
 struct Effort {
   double refine_tolerance = 0.0;  ///< RefineOptions::tolerance; 0: nothing is refined

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "radiosity/accuracy.h"
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/gap_errors.h"

@@ -11,6 +11,7 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/translucency.h"
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/refine/error_reference.h"
 #include "radiosity/solution/light_channel.h"

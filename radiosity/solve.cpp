@@ -10,8 +10,11 @@
 #include <string>
 
 #include "mesh/build_patches.h"
+#include "radiosity/accuracy.h"
+#include "radiosity/direct_light/cut_sizes.h"
 #include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/effective_options.h"
+#include "radiosity/emitters/emitter.h"
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/illuminate_elements.h"
 #include "radiosity/importance/importance.h"

@@ -3,11 +3,10 @@
 #include <optional>
 
 #include "mesh/build_patches.h"
-#include "radiosity/accuracy.h"
-#include "radiosity/direct_light/cut_sizes.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/journal/run_control.h"
+#include "radiosity/many_lights/light_choice.h"
 #include "radiosity/paths/free_light.h"
 #include "radiosity/refine/refine_options.h"
 #include "radiosity/solution/emitter_channels.h"
@@ -16,6 +15,13 @@
 #include "radiosity/solvers/solve_radiosity.h"
 
 namespace lightwell {
+
+/// The error of irradiance to reach, compared with RadiositySolution::error_estimate (RMS). Exactly
+/// one of the two is above 0.
+struct Accuracy {
+  double share = 0.0;  ///< share of the mean irradiance
+  double lux = 0.0;    ///< lx
+};
 
 /// Options of the first pass, from the scene to a solution.
 struct SolveOptions {

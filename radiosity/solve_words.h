@@ -5,7 +5,6 @@
 #include <string_view>
 #include <vector>
 
-#include "radiosity/accuracy.h"
 #include "radiosity/solve.h"
 
 namespace lightwell {

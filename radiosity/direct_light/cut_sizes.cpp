@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "mesh/elements/element_caster.h"
+#include "radiosity/direct_light/direct_light.h"
+
 namespace lightwell {
 
 CutSizes cut_sizes(const ElementCaster& caster, const DirectLight& direct_light,

@@ -14,6 +14,7 @@
 #include "radiosity/emitters/emitter_point.h"
 #include "radiosity/emitters/emitter_shadows.h"
 #include "radiosity/emitters/find_emitters.h"
+#include "radiosity/emitters/light_list.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/many_lights/light_sampler.h"
 #include "radiosity/sky/sky_light.h"
@@ -21,6 +22,7 @@
 #include "radiosity/visibility/shadow_rays.h"
 #include "scene/random_purpose.h"
 #include "scene/rays/float_rounding.h"
+#include "scene/receiver_gain.h"
 
 namespace lightwell {
 namespace {
@@ -150,6 +152,22 @@ Spectrum DirectLight::passed(const ElementCaster& caster, const Ray& ray) const 
   caster.occluded({&ray, 1}, {&blocked, 1});
   if (blocked == 0) return Spectrum::Ones(bands_);
   return panes_.empty() ? Spectrum(Spectrum::Zero(bands_)) : panes_.passed(caster, ray);
+}
+
+const std::vector<Emitter>& DirectLight::emitters() const {
+  return lights_->emitters;
+}
+
+const std::vector<FreeSource>& DirectLight::free_sources() const {
+  return lights_->sources;
+}
+
+int DirectLight::light_count() const {
+  return lights_->count();
+}
+
+int DirectLight::channel_count() const {
+  return lights_->channel_count;
 }
 
 const FreeSource* DirectLight::dome() const {

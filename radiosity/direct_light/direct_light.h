@@ -7,13 +7,11 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/emitters/light_list.h"
 #include "radiosity/many_lights/light_choice.h"
 #include "radiosity/sky/noise_goal.h"
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/visibility/clear_panes.h"
 #include "scene/coat.h"
-#include "scene/receiver_gain.h"
 #include "scene/sampling.h"
 #include "scene/scene.h"
 #include "scene/surface_point.h"
@@ -24,7 +22,11 @@ class AbsorbingBodies;
 class ExactShadows;
 class LightSampler;
 class SkyLight;
+struct Emitter;
+struct FreeSource;
+struct LightList;
 struct LightPilot;
+struct ReceiverGain;
 struct SkyGlow;
 
 constexpr int most_shadow_rays = 256;  ///< that pictures and solves choose
@@ -129,22 +131,22 @@ class DirectLight {
   DirectLight(const Scene& scene, std::vector<FreeSource> sources,
               std::shared_ptr<const AbsorbingBodies> bodies);
 
-  const std::vector<Emitter>& emitters() const { return lights_->emitters; }
-  const std::vector<FreeSource>& free_sources() const { return lights_->sources; }
+  const std::vector<Emitter>& emitters() const;
+  const std::vector<FreeSource>& free_sources() const;
   /// The dome of the sky; null if there is none.
   const FreeSource* dome() const;
   /// The light of the dome; null if there is none.
   const SkyLight* sky() const { return sky_.get(); }
   /// Absorbing bodies that surfaces lie within; null: none.
   const std::shared_ptr<const AbsorbingBodies>& bodies() const { return bodies_; }
-  int light_count() const { return lights_->count(); }
+  int light_count() const;
   /// True if the emission of that side of a facet is direct light, which other rays must not count
   /// again. Only the outside of a sphere is; its inside sees itself all around.
   bool owns(int facet, bool is_back) const {
     return owned_[facet] == Owned::whole || (owned_[facet] == Owned::front && !is_back);
   }
   /// The number of channels; 1 without channels.
-  int channel_count() const { return lights_->channel_count; }
+  int channel_count() const;
   int column_count() const { return channel_count() * bands_; }
   /// The first column of a facet's emission; 0 for a facet that does not emit.
   int first_column(int facet) const { return first_column_[facet]; }

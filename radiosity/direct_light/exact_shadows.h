@@ -7,6 +7,7 @@
 
 #include "mesh/geometry/box_tree.h"
 #include "radiosity/direct_light/direct_light.h"
+#include "radiosity/emitters/emitter.h"
 #include "radiosity/visibility/occluders.h"
 #include "scene/surface_point.h"
 

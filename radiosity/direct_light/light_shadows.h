@@ -9,6 +9,7 @@
 #include "radiosity/direct_light/direct_light.h"
 #include "radiosity/direct_light/exact_shadows.h"
 #include "radiosity/emitters/emission_tree.h"
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/visibility/shadow_rays.h"
 

@@ -6,6 +6,8 @@
 #include "radiosity/direct_light/light_shadows.h"
 #include "radiosity/emitters/emission_tree.h"
 #include "radiosity/emitters/emitter_shadows.h"
+#include "radiosity/emitters/free_source.h"
+#include "radiosity/emitters/light_list.h"
 #include "radiosity/emitters/solid_angle_sampler.h"
 #include "radiosity/sky/sky_light.h"
 

@@ -8,6 +8,7 @@
 
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
+#include "radiosity/emitters/emitter.h"
 #include "scene/parallel.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"

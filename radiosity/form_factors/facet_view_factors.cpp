@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "mesh/build_patches.h"
+#include "radiosity/form_factors/view_factor_scene.h"
 
 namespace lightwell {
 namespace {

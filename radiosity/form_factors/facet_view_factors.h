@@ -3,9 +3,11 @@
 #include <functional>
 #include <optional>
 
+#include "mesh/cleaning/facet_check.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/form_factors/view_factor_rows.h"
 #include "radiosity/form_factors/view_factors.h"
+#include "scene/io/numbered_scene.h"
 
 namespace lightwell {
 

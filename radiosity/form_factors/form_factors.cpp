@@ -10,6 +10,7 @@
 
 #include "mesh/patches/area_shares.h"
 #include "mesh/patches/patch_sampler.h"
+#include "radiosity/emitters/emitter.h"
 #include "radiosity/form_factors/analytic_exchange.h"
 #include "radiosity/form_factors/emitter_exchange.h"
 #include "radiosity/form_factors/form_factor_assembly.h"

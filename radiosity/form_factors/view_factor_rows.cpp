@@ -3,6 +3,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "mesh/cleaning/facet_check.h"
+#include "radiosity/form_factors/view_factor_scene.h"
+#include "scene/io/numbered_scene.h"
+
 namespace lightwell {
 namespace {
 

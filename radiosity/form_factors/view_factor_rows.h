@@ -3,11 +3,12 @@
 #include <string>
 #include <vector>
 
-#include "mesh/cleaning/facet_check.h"
-#include "radiosity/form_factors/view_factor_scene.h"
-#include "scene/io/numbered_scene.h"
-
 namespace lightwell {
+
+struct FacetCheck;
+struct NumberedScene;
+struct PatchMesh;
+struct ViewFactorScene;
 
 /// Surface, facet and side of each row of a view-factor matrix.
 struct ViewFactorRows {

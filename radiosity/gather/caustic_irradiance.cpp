@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "mesh/patches/patch_sampler.h"
+#include "radiosity/emitters/emitter.h"
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/journal/journal_phase.h"
 #include "radiosity/paths/light_path.h"
 #include "scene/parallel.h"

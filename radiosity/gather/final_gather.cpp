@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "radiosity/emitters/emitter.h"
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/gather/hemisphere_gather.h"
 #include "radiosity/journal/journal_phase.h"
 #include "scene/random_purpose.h"

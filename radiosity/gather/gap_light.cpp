@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "mesh/patches/patch_sampler.h"
+#include "radiosity/emitters/free_source.h"
 #include "scene/random_purpose.h"
 #include "scene/rays/surface_ray.h"
 #include "scene/sampling.h"

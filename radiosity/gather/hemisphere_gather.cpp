@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "radiosity/emitters/free_source.h"
 #include "scene/random_purpose.h"
 
 namespace lightwell {

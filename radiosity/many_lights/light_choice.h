@@ -36,6 +36,13 @@ struct LightChoice {
   ManyLights many_lights = ManyLights::lightcuts;
 };
 
+/// Lights that points ask for their direct light.
+struct CutSizes {
+  int lights = 0;     ///< all of them
+  double mean = 0.0;  ///< over points in the middle of patches
+  int most = 0;
+};
+
 /// The fewest emitters, or lamps, of a channel that are clustered. A cut of fewer has few clusters,
 /// and saves less than its pilot costs.
 constexpr int fewest_clustered = 32;

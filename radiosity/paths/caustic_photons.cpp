@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "radiosity/emitters/emitter_point.h"
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/paths/specular_targets.h"
 #include "scene/parallel.h"

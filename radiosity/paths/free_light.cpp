@@ -9,8 +9,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "mesh/elements/element_caster.h"
 #include "mesh/patches/area_shares.h"
 #include "mesh/patches/patch_sampler.h"
+#include "radiosity/direct_light/direct_light.h"
+#include "radiosity/emitters/free_source.h"
+#include "radiosity/paths/light_path.h"
 #include "radiosity/paths/mirrored_shares_of_patches.h"
 #include "scene/coat.h"
 #include "scene/parallel.h"

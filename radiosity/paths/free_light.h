@@ -1,12 +1,14 @@
 #pragma once
 
-#include "mesh/elements/element_caster.h"
-#include "radiosity/direct_light/direct_light.h"
-#include "radiosity/paths/light_path.h"
 #include "radiosity/solution/light_channel.h"
 #include "scene/progress.h"
 
 namespace lightwell {
+
+class DirectLight;
+class ElementCaster;
+class LightPaths;
+struct Scene;
 
 /// Irradiance of patches from free sources, straight and through mirrors and glass: the E0 of
 /// B = M + rho (E0 + F B). Columns are bands, channel after channel as in DirectLight. Empty

@@ -5,16 +5,33 @@
 
 #include "mesh/patches/patch_patterns.h"
 #include "radiosity/visibility/absorbing_bodies.h"
+#include "scene/facet_normals.h"
 #include "scene/facet_textures.h"
 #include "scene/optics.h"
 #include "scene/random_purpose.h"
 #include "scene/sampling.h"
+#include "scene/specular.h"
 
 namespace lightwell {
 
 bool takes_diffuse_light(const Material& material) {
   return material.is_diffuse() || material.is_emitter() || !material.is_specular();
 }
+
+/// Light along a path.
+struct LightPaths::PathLight {
+  Media media{};
+  Spectrum throughput{};
+  Polarisation polarisation{};
+  double radiance_scale = 1.0;  ///< product over the surfaces crossed
+  bool through_panes_only = true;
+  /// The throughput of a quantity.
+  Spectrum of(PathQuantity quantity) const {
+    return quantity == PathQuantity::power
+               ? throughput
+               : Spectrum(static_cast<float>(radiance_scale) * throughput);
+  }
+};
 
 LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
                        PathDetail detail, PathArrivals arrivals)
@@ -27,7 +44,7 @@ LightPaths::LightPaths(const Scene& scene, const ElementCaster& caster, int max_
       bases_(scene.materials),
       round_(scene) {
   if (patterns_) textures_ = caster.mesh().textures;
-  if (detail == PathDetail::points) smooth_.emplace(scene);
+  if (detail == PathDetail::points) smooth_ = std::make_shared<const FacetNormals>(scene);
   for (const FacetRef& ref : scene_facets(scene)) {
     const Surface& surface = scene.surfaces[ref.surface];
     const Material& material = scene.materials[surface.material];

@@ -7,14 +7,13 @@
 
 #include "mesh/elements/element_caster.h"
 #include "scene/coat.h"
-#include "scene/facet_normals.h"
 #include "scene/round_shape.h"
 #include "scene/scene.h"
-#include "scene/specular.h"
 
 namespace lightwell {
 
 class AbsorbingBodies;
+class FacetNormals;
 
 /// The part of a ray's unit of light that arrived at no diffuse surface.
 struct PathLosses {
@@ -117,20 +116,7 @@ class LightPaths {
                     PathQuantity quantity = PathQuantity::power) const;
 
  private:
-  // Light along a path.
-  struct PathLight {
-    Media media{};
-    Spectrum throughput{};
-    Polarisation polarisation{};
-    double radiance_scale = 1.0;  // product over the surfaces crossed
-    bool through_panes_only = true;
-    // The throughput of a quantity.
-    Spectrum of(PathQuantity quantity) const {
-      return quantity == PathQuantity::power
-                 ? throughput
-                 : Spectrum(static_cast<float>(radiance_scale) * throughput);
-    }
-  };
+  struct PathLight;
   // The material of a hit at `point`; `own` holds the numbers of a pattern.
   const Material& material_at(const ElementCaster& caster, const ElementHit& hit,
                               const Eigen::Vector3d& point, std::optional<Material>& own) const;
@@ -155,7 +141,7 @@ class LightPaths {
   std::vector<int> material_;            // per facet
   std::vector<Eigen::Vector3d> normal_;  // per facet; zero for round shapes
   RoundShapes round_;
-  std::optional<FacetNormals> smooth_;  // null: the facets' own
+  std::shared_ptr<const FacetNormals> smooth_{};  // null: the facets' own
 };
 
 }  // namespace lightwell

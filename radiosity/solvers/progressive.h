@@ -8,16 +8,15 @@
 
 #include "radiosity/form_factors/estimated_row.h"
 #include "radiosity/paths/free_light.h"
-#include "radiosity/paths/light_path.h"
 #include "radiosity/solution/emitter_channels.h"
 #include "radiosity/solution/solution.h"
 #include "scene/progress.h"
 
 namespace lightwell {
 
-class MirroredShares;
-
 class JournalPhase;
+class LightPaths;
+class MirroredShares;
 
 /// A shooting patch, and its number of rays where rows are sampled by rays.
 struct RowRequest {

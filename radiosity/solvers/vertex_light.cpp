@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "radiosity/emitters/free_source.h"
 #include "scene/parallel.h"
 
 namespace lightwell {

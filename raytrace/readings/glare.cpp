@@ -11,6 +11,7 @@
 #include "mesh/patches/patch_textures.h"
 #include "mesh/patches/pictured_emission.h"
 #include "mesh/patches/translucency.h"
+#include "radiosity/emitters/free_source.h"
 #include "raytrace/readings/specular_light.h"
 #include "scene/lamp_faces.h"
 

@@ -13,6 +13,8 @@
 
 namespace lightwell {
 
+struct FreeSource;
+
 /// Guth's position index p >= 1 of a source in a direction `sigma` degrees from the line of sight,
 /// [0, 90), and `tau` degrees from straight up around the line of sight, [0, 180]. Above the line
 /// of sight (tau <= 90) after Levin 1975, the formula of the table in CIE 117:
@@ -50,6 +52,12 @@ struct Glare {
   std::vector<GlareSource> sources{};
   /// Lamps without a luminous area, for which UGR is undefined.
   std::vector<std::string> left_out{};
+};
+
+/// Light that comes straight from a luminaire, or from a part of one.
+struct ArrivingLight {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, towards the luminaire
+  double lux = 0.0;                                      ///< across the direction, lx
 };
 
 /// GlareSource::share of one lamp with an opening for an eye, as unified_glare_rating() has it: 0

@@ -7,6 +7,7 @@
 
 #include "mesh/patches/pictured_emission.h"
 #include "mesh/patches/translucency.h"
+#include "radiosity/emitters/free_source.h"
 #include "raytrace/readings/glare.h"
 #include "scene/degree.h"
 #include "scene/lamp_faces.h"

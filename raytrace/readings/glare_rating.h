@@ -5,15 +5,10 @@
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/direct_light/direct_light.h"
+#include "raytrace/readings/glare.h"
 #include "scene/scene.h"
 
 namespace lightwell {
-
-/// Light that comes straight from a luminaire, or from a part of one.
-struct ArrivingLight {
-  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit, towards the luminaire
-  double lux = 0.0;                                      ///< across the direction, lx
-};
 
 /// The light of all luminaires that a point sees: lamps, each from the middle of its opening, and
 /// elements of surfaces that emit. Sky and sun are no luminaires; light through glass and by

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/refine/error_reference.h"
 
 namespace lightwell {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "radiosity/direct_light/patch_base.h"
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/gather/vertex_points.h"
 #include "radiosity/sky/sky_light.h"

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <span>
 
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/gather/gatherable_radiosity.h"
 #include "scene/random_purpose.h"

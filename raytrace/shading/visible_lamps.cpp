@@ -6,6 +6,7 @@
 #include <span>
 #include <variant>
 
+#include "radiosity/emitters/free_source.h"
 #include "raytrace/shading/shown_radiance.h"
 #include "scene/lamp_faces.h"
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mesh/build_patches.h"
+#include "mesh/geometry/cut_size.h"
 #include "radiosity/gather/vertex_points.h"
 #include "radiosity/refine/even_out_noise.h"
 #include "scene/parallel.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/errors.h"
+#include "scene/io/weather/weather_file.h"
 
 namespace lightwell::annual_metrics_test {
 namespace {

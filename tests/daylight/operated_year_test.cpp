@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "daylight/year_error.h"
+#include "scene/io/weather/weather_file.h"
 #include "tests/daylight/daylight_rooms.h"
 
 namespace lightwell::operated_year_test {

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "scene/errors.h"
+#include "scene/io/weather/weather_file.h"
 #include "scene/sun_position.h"
 
 namespace lightwell::sky_year_test {

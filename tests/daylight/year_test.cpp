@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "daylight/year_error.h"
+#include "scene/io/weather/weather_file.h"
 #include "scene/parallel.h"
 #include "tests/daylight/daylight_rooms.h"
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "mesh/geometry/cut_size.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
 #include "tests/mesh/mesh_scenes.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mesh/build_patches.h"
+#include "mesh/geometry/cut_size.h"
 #include "mesh/patches/mesh_bounds.h"
 #include "tests/mesh/mesh_scenes.h"
 

@@ -13,6 +13,7 @@
 #include "radiosity/form_factors/form_factors.h"
 #include "radiosity/openings/find_openings.h"
 #include "radiosity/paths/free_light.h"
+#include "radiosity/paths/light_path.h"
 #include "radiosity/solve.h"
 #include "tests/radiosity/test_scenes.h"
 #include "tests/sample_mean.h"

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "mesh/build_patches.h"
+#include "mesh/geometry/cut_size.h"
 #include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/solve.h"
 #include "tests/radiosity/test_scenes.h"

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "radiosity/emitters/emitter.h"
 #include "radiosity/paths/light_path.h"
 #include "radiosity/solve.h"
 #include "raytrace/shading/shade.h"

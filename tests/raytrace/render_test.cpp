@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "radiosity/emitters/emitter.h"
 #include "radiosity/journal/journal.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "radiosity/emitters/emitter.h"
 #include "raytrace/pictures/layers.h"
 #include "scene/parallel.h"
 #include "tests/pictures.h"

@@ -19,6 +19,8 @@
 #include "scene/rotation_between.h"
 #include "viewer/export/appearance.h"
 #include "viewer/export/baked_channels.h"
+#include "viewer/export/drawn_pictures.h"
+#include "viewer/export/shown_sides.h"
 #include "viewer/export/sky_grid.h"
 #include "viewer/export/start_view.h"
 

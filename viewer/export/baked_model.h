@@ -10,8 +10,6 @@
 
 #include "radiosity/solve.h"
 #include "scene/scene.h"
-#include "viewer/export/drawn_pictures.h"
-#include "viewer/export/shown_sides.h"
 
 namespace lightwell {
 
@@ -20,6 +18,18 @@ class JoinedSurfaces;
 
 /// One row of linear Rec. 709 RGB per vertex.
 using RgbArray = Eigen::Array<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// A surface's texture and mask in the form of graphics hardware and model files.
+struct DrawnPicture {
+  int width = 0, height = 0;
+  /// 4 bytes a texel, rows from the top: sRGB of rho, or of the exitance of a picture of emission,
+  /// over `brightest`; alpha 0 in holes, else 255.
+  std::vector<std::uint8_t> rgba{};
+  Eigen::Array3f brightest = Eigen::Array3f::Ones();  ///< of a white texel, > 0
+  bool has_holes = false;
+  bool is_smooth = true;  ///< texels are interpolated; else flat squares
+  std::array<TextureWrap, 2> wrap = {TextureWrap::repeat, TextureWrap::repeat};
+};
 
 /// One side of a surface, restricted to facets with one picture or to those without. A part's
 /// vertices and faces are consecutive and belong to no other part.
@@ -151,6 +161,15 @@ struct BakedModel {
   int vertex_count() const { return static_cast<int>(position.size()); }
   int face_count() const { return static_cast<int>(faces.size()); }
   int corner_count(int face) const { return faces[static_cast<std::size_t>(face)][3] < 0 ? 3 : 4; }
+};
+
+/// Choice of the sides of thin surfaces that a model has. The two sides of a thin surface lie on
+/// each other, and programs that draw the backs of faces too show now the one, now the other. In
+/// all three an unlit side is left out if its other side has light.
+enum class Sides : std::uint8_t {
+  lit,    ///< all with light, in their places: for a drawer that shows no backs, such as the page
+  front,  ///< those that are seen from within rooms or by cameras; two of them are moved apart
+  both,   ///< all with light; two of them are moved apart
 };
 
 /// Collects a solution's geometry, light and pictures into a model.

@@ -1,26 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
-#include <cstdint>
 #include <vector>
 
 #include "mesh/patches/patch_mesh.h"
 #include "scene/scene.h"
+#include "viewer/export/baked_model.h"
 
 namespace lightwell {
-
-/// A surface's texture and mask in the form of graphics hardware and model files.
-struct DrawnPicture {
-  int width = 0, height = 0;
-  /// 4 bytes a texel, rows from the top: sRGB of rho, or of the exitance of a picture of emission,
-  /// over `brightest`; alpha 0 in holes, else 255.
-  std::vector<std::uint8_t> rgba{};
-  Eigen::Array3f brightest = Eigen::Array3f::Ones();  ///< of a white texel, > 0
-  bool has_holes = false;
-  bool is_smooth = true;  ///< texels are interpolated; else flat squares
-  std::array<TextureWrap, 2> wrap = {TextureWrap::repeat, TextureWrap::repeat};
-};
 
 /// Pictures of a scene's materials, textures with masks as alpha, and their placement on facets.
 /// Facets are numbered as by scene_facets. Scenes of bands other than RGB and materials that emit

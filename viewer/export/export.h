@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "raytrace/display/light_meter.h"
-#include "viewer/export/appearance.h"
 #include "viewer/export/baked_model.h"
+#include "viewer/export/false_color.h"
 #include "viewer/export/lightmap.h"
 
 namespace lightwell {

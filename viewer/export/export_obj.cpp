@@ -5,6 +5,7 @@
 #include <string_view>
 #include <utility>
 
+#include "viewer/export/appearance.h"
 #include "viewer/export/export.h"
 #include "viewer/export/write_whole.h"
 

@@ -8,6 +8,7 @@
 
 #include "scene/errors.h"
 #include "viewer/export/lightmap.h"
+#include "viewer/export/lightmap_charts.h"
 #include "viewer/export/pack_rectangles.h"
 
 namespace lightwell {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 
 #include "daylight/sky_year.h"
+#include "scene/io/weather/sun_hours.h"
 #include "viewer/export/baked_year.h"
 #include "viewer/export/page_arrays.h"
 

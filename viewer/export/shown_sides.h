@@ -4,17 +4,9 @@
 #include <vector>
 
 #include "viewer/export/appearance.h"
+#include "viewer/export/baked_model.h"
 
 namespace lightwell {
-
-/// Choice of the sides of thin surfaces that a model has. The two sides of a thin surface lie on
-/// each other, and programs that draw the backs of faces too show now the one, now the other. In
-/// all three an unlit side is left out if its other side has light.
-enum class Sides : std::uint8_t {
-  lit,    ///< all with light, in their places: for a drawer that shows no backs, such as the page
-  front,  ///< those that are seen from within rooms or by cameras; two of them are moved apart
-  both,   ///< all with light; two of them are moved apart
-};
 
 enum class SideUse : std::uint8_t { left_out, in_place, moved };
 

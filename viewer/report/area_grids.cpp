@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "raytrace/cameras/choose_camera.h"
+#include "raytrace/readings/glare_rating.h"
 #include "scene/errors.h"
 #include "standards/activities.h"
 #include "standards/emergency.h"

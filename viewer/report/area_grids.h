@@ -5,9 +5,16 @@
 
 #include "scene/io/activity_file.h"
 #include "standards/requirement.h"
+#include "standards/sports.h"
 #include "viewer/report/lighting_report.h"
 
 namespace lightwell {
+
+/// Tables of limits by keys.
+struct LimitTables {
+  std::vector<Activity> activities{};
+  std::vector<Sport> sports{};
+};
 
 /// Indices into LightingReport::surfaces of what was measured for a design area.
 struct AreaGrids {

@@ -5,25 +5,15 @@
 #include <vector>
 
 #include "raytrace/readings/glare.h"
-#include "raytrace/readings/glare_rating.h"
 #include "raytrace/readings/lux_grid.h"
-#include "scene/io/activity_file.h"
 #include "scene/io/lighting_design.h"
 #include "scene/io/luminaires/luminaire_file.h"
 #include "standards/colour_fidelity.h"
 #include "standards/eye_light.h"
 #include "standards/requirement.h"
-#include "standards/sports.h"
-#include "viewer/export/appearance.h"
 #include "viewer/report/plan_lines.h"
 
 namespace lightwell {
-
-/// Tables of limits by keys.
-struct LimitTables {
-  std::vector<Activity> activities{};
-  std::vector<Sport> sports{};
-};
 
 /// A line of the schedule of luminaires: all emitters of one name.
 struct LuminaireRow {

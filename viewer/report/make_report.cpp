@@ -8,9 +8,11 @@
 #include <set>
 #include <utility>
 
+#include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/elements/element_caster.h"
 #include "mesh/patches/mesh_bounds.h"
 #include "radiosity/direct_light/direct_light.h"
+#include "radiosity/emitters/free_source.h"
 #include "raytrace/cameras/choose_camera.h"
 #include "raytrace/pictures/encode_png.h"
 #include "raytrace/scene_renderer.h"
@@ -207,9 +209,9 @@ ReportPlan plan_report(const Scene& scene, ReportRequest request) {
   }
   ReportPlan plan{.design = request.design ? *request.design : read_lighting_design(scene)};
   if (!request.areas.empty()) read_design_tables(request.areas, scene, plan.design);
-  plan.tables = {
+  plan.tables = std::make_shared<const LimitTables>(LimitTables{
       request.activities.empty() ? usual_activities() : read_activities(request.activities),
-      request.sports.empty() ? usual_sports() : read_sports(request.sports)};
+      request.sports.empty() ? usual_sports() : read_sports(request.sports)});
   if (!request.colours.empty()) {
     plan.colours = read_colour_samples(request.colours);
     if (scene.bands.wavelengths_nm.empty()) {
@@ -219,7 +221,7 @@ ReportPlan plan_report(const Scene& scene, ReportRequest request) {
     }
   }
   if (!request.activity.empty()) {
-    find_activity(plan.tables.activities, request.activity, "--activity");
+    find_activity(plan.tables->activities, request.activity, "--activity");
   }
   for (const DesignArea& area : plan.design.areas) {
     for (const std::string& name : area.observers) {
@@ -259,7 +261,7 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   std::optional<LuxGrid> floor;
   if (plan.design.use) floor = lux_grid(apart, plan.design.use->surface, up);
   const std::vector<AreaGrids> of_areas =
-      add_area_grids(areas, plan.tables, apart, caster, up, grids);
+      add_area_grids(areas, *plan.tables, apart, caster, up, grids);
   if (!plan.colours.empty()) what.colours = &plan.colours;
   what.has_glare_rating =
       std::ranges::any_of(areas, [](const DesignArea& area) { return area.sport.has_value(); });
@@ -268,7 +270,7 @@ LightingReport make_report(const ReportPlan& plan, const ReportedScene& of, Solv
   }
   measure(scene, solved, lights, what, made);
   if (floor) made.energy = energy_of(plan.design, made, *floor);
-  made.requirements = judge_areas(areas, plan.tables, of_areas, up, made);
+  made.requirements = judge_areas(areas, *plan.tables, of_areas, up, made);
   made.picture = picture_of(plan.request, scene, solved, progress);
   return made;
 }

@@ -1,19 +1,22 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "mesh/cleaning/joined_surfaces.h"
 #include "radiosity/solution/solution.h"
-#include "scene/io/activity_file.h"
 #include "scene/progress.h"
+#include "viewer/export/false_color.h"
+#include "viewer/report/language.h"
 #include "viewer/report/lighting_report.h"
 #include "viewer/report/requested_grids.h"
-#include "viewer/report/words.h"
 
 namespace lightwell {
+
+class JoinedSurfaces;
+struct LimitTables;
 
 /// Request for a lighting report, besides the calculation grids of the scene file. Lengths in
 /// metres.
@@ -39,9 +42,9 @@ struct ReportRequest {
 struct ReportPlan {
   ReportRequest request{};
   LightingDesign design{};
-  LimitTables tables{};
-  ColourSamples colours{};     ///< empty: none
-  std::vector<Camera> eyes{};  ///< of the observers, those of areas included
+  std::shared_ptr<const LimitTables> tables{};  ///< limits by keys; set by plan_report()
+  ColourSamples colours{};                      ///< empty: none
+  std::vector<Camera> eyes{};                   ///< of the observers, those of areas included
 
   /// True if there is nothing to measure.
   bool is_empty() const { return design.grids.empty() && request.grids.is_empty() && eyes.empty(); }

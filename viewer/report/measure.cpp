@@ -4,7 +4,9 @@
 #include <optional>
 #include <utility>
 
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/solution/relight.h"
+#include "raytrace/readings/glare_rating.h"
 #include "viewer/report/plan_lines.h"
 
 namespace lightwell {

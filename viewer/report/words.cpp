@@ -1,12 +1,10 @@
 #include "viewer/report/words.h"
 
-#include <algorithm>
 #include <array>
+#include <string_view>
 
 namespace lightwell {
 namespace {
-
-constexpr std::array<const char*, language_count> language_codes = {"en", "de", "fr", "es"};
 
 struct Entry {
   Word word;
@@ -385,25 +383,6 @@ constexpr bool entries_are_in_order() {
 static_assert(entries_are_in_order());
 
 }  // namespace
-
-std::optional<Language> language_of(std::string_view code) {
-  const auto at = std::ranges::find(language_codes, code);
-  if (at == language_codes.end()) return {};
-  return static_cast<Language>(at - language_codes.begin());
-}
-
-const char* code_of(Language language) {
-  return language_codes[static_cast<std::size_t>(language)];
-}
-
-char decimal_sign(Language language) {
-  return language == Language::english ? '.' : ',';
-}
-
-std::string number_in(Language language, std::string number) {
-  std::ranges::replace(number, '.', decimal_sign(language));
-  return number;
-}
 
 const char* word_in(Language language, Word word) {
   return entries[static_cast<std::size_t>(word)].texts[static_cast<std::size_t>(language)];

@@ -7,6 +7,7 @@
 #include "daylight/glare_of_year.h"
 #include "daylight/operated_year.h"
 #include "scene/errors.h"
+#include "scene/sun_position.h"
 
 namespace lightwell {
 namespace {

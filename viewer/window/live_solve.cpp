@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "mesh/build_patches.h"
+#include "radiosity/paths/light_path.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solvers/vertex_light.h"
 #include "scene/errors.h"

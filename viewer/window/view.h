@@ -10,8 +10,9 @@
 
 #include "radiosity/solution/cues.h"
 #include "radiosity/solve.h"
+#include "raytrace/display/light_meter.h"
 #include "scene/scene.h"
-#include "viewer/export/appearance.h"
+#include "viewer/export/false_color.h"
 
 namespace lightwell {
 

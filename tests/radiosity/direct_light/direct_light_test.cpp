@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "mesh/build_patches.h"
+#include "radiosity/closed_forms/polygon_form_factor.h"
+#include "radiosity/emitters/emitter.h"
 #include "tests/radiosity/test_scenes.h"
 
 namespace lightwell::direct_light_test {

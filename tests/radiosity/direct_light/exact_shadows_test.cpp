@@ -7,6 +7,8 @@
 #include <cmath>
 
 #include "mesh/build_patches.h"
+#include "radiosity/closed_forms/polygon_form_factor.h"
+#include "radiosity/emitters/emitter.h"
 #include "scene/sampling.h"
 #include "tests/radiosity/test_scenes.h"
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
+#include "mesh/geometry/cut_size.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "scene/parallel.h"
 #include "tests/radiosity/named_methods.h"

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "mesh/build_patches.h"
+#include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/form_factors/form_factors.h"
 #include "tests/radiosity/test_scenes.h"
 

@@ -8,10 +8,12 @@
 #include <numbers>
 
 #include "mesh/build_patches.h"
+#include "radiosity/emitters/free_source.h"
 #include "radiosity/gather/caustic_irradiance.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/gather/vertex_points.h"
 #include "radiosity/paths/caustic_photons.h"
+#include "radiosity/paths/light_path.h"
 #include "radiosity/solution/relight.h"
 #include "radiosity/solve.h"
 #include "scene/optics.h"

@@ -4,6 +4,7 @@
 
 #include "mesh/build_patches.h"
 #include "radiosity/gather/vertex_points.h"
+#include "radiosity/paths/light_path.h"
 #include "radiosity/solve.h"
 #include "radiosity/solvers/solve_channels.h"
 #include "radiosity/solvers/solve_radiosity.h"

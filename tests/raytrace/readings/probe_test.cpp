@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "radiosity/emitters/emitter.h"
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
 #include "tests/raytrace/lit_scene.h"

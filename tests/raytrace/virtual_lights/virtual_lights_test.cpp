@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "radiosity/emitters/emitter.h"
 #include "radiosity/solve.h"
 #include "raytrace/virtual_lights/virtual_light_paths.h"
 #include "scene/parallel.h"

@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "radiosity/emitters/emitter.h"
 #include "raytrace/readings/probe.h"
 #include "scene/errors.h"
 #include "scene/parallel.h"
