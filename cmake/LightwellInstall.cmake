@@ -1,4 +1,5 @@
-# find_package(lightwell): targets lightwell::scene, ::mesh, ::radiosity, ::raytrace, ::standards, ::daylight, ::export, ::design, ::validation and, if built, ::viewer.
+# find_package(lightwell): targets lightwell::scene, ::mesh, ::radiosity, ::raytrace, ::standards, ::daylight, ::export and, if
+# built, ::viewer.
 include(CMakePackageConfigHelpers)
 set(lightwell_config_dir ${CMAKE_INSTALL_LIBDIR}/cmake/lightwell)
 
@@ -11,7 +12,7 @@ configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/lightwellConfig.cmake.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/lightwellConfigVersion.cmake
   COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/lightwellConfig.cmake
-  ${PROJECT_BINARY_DIR}/lightwellConfigVersion.cmake ${PROJECT_SOURCE_DIR}/cmake/FindGLPK.cmake DESTINATION ${lightwell_config_dir} COMPONENT development)
+  ${PROJECT_BINARY_DIR}/lightwellConfigVersion.cmake DESTINATION ${lightwell_config_dir} COMPONENT development)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE ${PROJECT_SOURCE_DIR}/CHANGELOG.md ${PROJECT_SOURCE_DIR}/packaging/copyright
         DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES ${PROJECT_SOURCE_DIR}/packaging/copyright DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/liblightwell-dev COMPONENT development)

@@ -95,7 +95,9 @@ function(lightwell_program target)
 endfunction()
 
 # lightwell_library(NAME HEADERS ... SOURCES ... PUBLIC ... PRIVATE ...)
-# One static library per room, lightwell::NAME, with headers beside the sources, included as "room/header.h".
+# One static library per room, lightwell::NAME, with headers beside the sources, included as "room/header.h". HEADERS are
+# those that are installed for users of the library; rooms above include any header. A library without HEADERS serves
+# the program alone, and is not installed.
 function(lightwell_library name)
   cmake_parse_arguments(arg "" "" "HEADERS;SOURCES;PUBLIC;PRIVATE" ${ARGN})
   set(target lightwell_${name})
@@ -112,8 +114,10 @@ function(lightwell_library name)
   elseif(NOT name STREQUAL scene)
     lightwell_precompile(${target})
   endif()
-  install(TARGETS ${target} EXPORT lightwellTargets
-          ARCHIVE COMPONENT development LIBRARY COMPONENT development
-          FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell COMPONENT development
-          INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell)
+  if(arg_HEADERS)
+    install(TARGETS ${target} EXPORT lightwellTargets
+            ARCHIVE COMPONENT development LIBRARY COMPONENT development
+            FILE_SET HEADERS DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell COMPONENT development
+            INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/lightwell)
+  endif()
 endfunction()

@@ -29,7 +29,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblightwell-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
   libeigen3-dev libtbb-dev libfmt-dev libembree-dev libcgal-dev libopenmesh-dev libvtk9-dev libtomlplusplus-dev
-  libassimp-dev libdraco-dev libmeshoptimizer-dev libpugixml-dev libmuparser-dev libglpk-dev libjpeg-dev libopenexr-dev libpng-dev
+  libassimp-dev libdraco-dev libmeshoptimizer-dev libpugixml-dev libmuparser-dev libjpeg-dev libopenexr-dev libpng-dev
   pkgconf libcairo2-dev libpango1.0-dev librsvg2-dev zlib1g-dev nlohmann-json3-dev)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
 "Headers and static libraries of Lightwell.
