@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "viewer/document/document.h"
+#include "viewer/export/false_color.h"
 #include "viewer/report/lighting_report.h"
 #include "viewer/report/words.h"
 

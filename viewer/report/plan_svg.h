@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "viewer/export/false_color.h"
 #include "viewer/report/lighting_report.h"
 #include "viewer/report/words.h"
 
