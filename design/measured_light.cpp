@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "mesh/cleaning/joined_surfaces.h"
 #include "mesh/patches/mesh_bounds.h"
 #include "radiosity/solution/relight.h"
 #include "viewer/export/start_view.h"
