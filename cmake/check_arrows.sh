@@ -2,8 +2,8 @@
 # Holds every #include of the house to the tables of allowed arrows: arrows.txt for rooms, ROOM/arrows.txt for the rooms
 # within one. Each line of a table names a folder and, behind a colon, the folders above it that it may include, so no
 # table can hold a cycle. Prints one sentence for each arrow that is not allowed, for each one allowed that no file
-# needs, for each folder that no table names, and for each line of a library that writes to the terminal, which only
-# programs do (cli/); exits with 1 if there is any.
+# needs, for each folder that no table names, for each installed header that includes one that is not installed, and for
+# each line of a library that writes to the terminal, which only programs do (cli/); exits with 1 if there is any.
 #   cmake/check_arrows.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -70,10 +70,22 @@ for table in */arrows.txt; do
   check "$table" "${table%arrows.txt}" || status=1
 done
 libraries=(scene mesh radiosity standards daylight raytrace viewer design validation)
+installed=$(for room in "${libraries[@]}"; do
+  awk -v room="$room" '/^  HEADERS /{ on = 1 } /^  SOURCES/{ on = 0 }
+    on { for (i = 1; i <= NF; ++i) if ($i ~ /\.h$/) print room "/" $i }' "$room/CMakeLists.txt"
+done)
+# shellcheck disable=SC2086
+if hidden=$(grep -oE '^#include "[^"]*"' $installed /dev/null | sed 's/:#include "/ /; s/"$//' |
+    awk -v installed="$installed" 'BEGIN { n = split(installed, name); for (i = 1; i <= n; ++i) is_installed[name[i]] = 1 }
+      !($2 in is_installed) { print $1 " is installed, and includes " $2 ", which is not."; found = 1 }
+      END { exit !found }'); then
+  printf '%s\n' "$hidden"
+  status=1
+fi
 if written=$(grep -rnE --include='*.h' --include='*.cpp' \
     '\bstd(err|out)\b|std::(cerr|cout|clog)|\b(f?printf|puts|perror)\(|fmt::print\("' "${libraries[@]}"); then
   printf '%s\n' "$written" | sed 's/^\([^:]*:[0-9]*\):.*/\1: a library may not write to the terminal./'
   status=1
 fi
-[ $status = 0 ] && echo "Every #include follows the tables of arrows, and no library writes to the terminal."
+[ $status = 0 ] && echo "Every #include follows the tables of arrows, installed headers are complete, and no library writes to the terminal."
 exit $status
