@@ -25,8 +25,8 @@ struct DaylightOptions {
   int sky_subdivision = 4;  ///< of SkyPatches: 2305 patches
   MeshOptions mesh{.auto_patch_count = 3200};
   FormFactorOptions form_factors{};
-  /// Error of the equations (see solve_columns), relative to the brightest patch. That patch lies
-  /// outdoors, and a room behind a window may have a thousandth of its light.
+  /// Error of the equations, relative to the brightest patch. That patch lies outdoors, and a room
+  /// behind a window may have a thousandth of its light.
   double tolerance = 1e-6;
   DomeEffort points{.search = 4, .rays = 4096};
   DomeEffort patches{.search = 1, .rays = 1024, .stride = 4};
@@ -62,8 +62,8 @@ struct SensorLight {
 /// of all surfaces by a final gather.
 ///
 /// A room has thousands of sources and mostly fewer sensors. Reflected light is then found from the
-/// other side: the importance of all patches for each sensor (see solve_importance()) is a column,
-/// and the light of every source a sum over patches.
+/// other side: the importance of all patches for each sensor is a column, and the light of every
+/// source a sum over patches.
 ///
 /// Illuminance is per unit: of a sky patch lx over cd/m^2, of the sun lx over the lx across its
 /// rays. Daylight is white, with the same power in each band; materials tint the light.

@@ -32,9 +32,9 @@ struct SkyHour {
 ///
 /// - The sun stands where it is in the middle of the hour. Hours with the middle of the sun below
 ///   the horizon then, or without light of the dome, are dark.
-/// - Positions are those of the dates of year_of_dates().
-/// - The dome is Perez' all-weather sky (perez_sky()) of the hour's irradiances, its state within
-///   the model's data.
+/// - Positions are those of the dates of 2017, or of the leap year 2016.
+/// - The dome is Perez' all-weather sky of the hour's irradiances, its state within the model's
+///   data.
 /// - Lux follow from watts by the efficacies of the same model, with the water in the air by the
 ///   hour's dew point.
 std::vector<SkyHour> sky_hours(const Weather& weather, const Eigen::Vector3d& up,
@@ -58,7 +58,7 @@ std::string note_on_dark_hours(const Weather& weather, const std::vector<SkyHour
 Eigen::ArrayXf column_luminances(const SkyPatches& sky, const SkyHour& hour,
                                  double ground_reflectance);
 
-/// The same for each of `hours`: columns x hours.
+/// column_luminances() of each of `hours`: columns x hours.
 BandArray hour_luminances(const SkyPatches& sky, std::span<const SkyHour> hours,
                           double ground_reflectance);
 

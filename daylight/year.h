@@ -15,8 +15,8 @@ struct HourBlock {
   Eigen::ArrayXXf total{};
   Eigen::ArrayXXf sunlight{};  ///< the part straight from the sun, through panes
 
-  /// Illuminance of a sensor in an hour, with `factor` on all light but the sun's own. It shows
-  /// what an error of that light does to measures; direct sunlight is taken as it is.
+  /// Illuminance of a sensor in an hour, with `factor` on all light but the sun's own. The factor
+  /// shows what an error of that light does to measures; direct sunlight is taken as it is.
   float light(Eigen::Index sensor, Eigen::Index hour, float factor) const {
     const float sun = sunlight(sensor, hour);
     return sun + factor * (total(sensor, hour) - sun);

@@ -7,13 +7,14 @@ namespace lightwell {
 
 struct CutSize;
 
+/// Sizes and borders of patches and elements.
 struct MeshOptions {
   /// Longest patch edge, metres. 0: chosen so that the diffuse surfaces make about
   /// `auto_patch_count` patches, or up to 2.5 times as many in a scene with much area in little
-  /// space: of 1600 patches, no edge is longer than a quarter of the mean free path, 4 V / A
-  /// with the volume V of the scene's box and the area A within. In a scene with surroundings, such
-  /// as a ground of kilometres, this size is that of what is near, and the surroundings' patches
-  /// grow with the distance from it (PatchSizes).
+  /// space: of 1600 patches, no edge is longer than a quarter of the mean free path, 4 V / A with
+  /// the volume V of the scene's box and the area A within. In a scene with surroundings, such as a
+  /// ground of kilometres, this size is that of what is near, and the surroundings' patches grow
+  /// with the distance from there.
   double max_patch_size = 0.0;
   int auto_patch_count = 1600;
   /// Elements along a patch edge, 1 to 1000. A larger number follows shadows more closely, at
@@ -25,9 +26,9 @@ struct MeshOptions {
   /// alone.
   double max_element_size = 0.0;
   int most_patches = 6400;
-  /// True: elements of polygons are twice as long, since RefinedElements will split those that
-  /// matter (odd numbers per patch edge are rounded up). Elements of round shapes are never split:
-  /// they keep their size, and those of spheres are fine_enough().
+  /// True: elements of polygons are twice as long, since refinement will split those that matter
+  /// (odd numbers per patch edge are rounded up). Elements of round shapes are never split: they
+  /// keep their size, and those of few spheres span 22.5 degrees at most.
   bool to_be_refined = false;
   /// True: receivers are cut along the critical lines of emitters, those of greatest weight first:
   /// D1, and D2 where the penumbra is not much wider than the elements.
@@ -47,9 +48,9 @@ struct MeshOptions {
 /// by another surface lying on the facet become elements of their own. With `discontinuity`, no
 /// element straddles an important bound of a shadow.
 ///
-/// A polygon that crosses itself is meshed as convex_pieces() would cut it, but without the lines
-/// where others touch it; emitters should be cut before (see merge_planar_regions()). A polygon
-/// without area is left out. PatchMesh::notes counts both.
+/// A polygon that crosses itself is meshed as convex pieces, but without the lines where others
+/// touch it; emitters should be cut before (see merge_planar_regions()). A polygon without area is
+/// left out. PatchMesh::notes counts both.
 ///
 /// Throws InputError for a scene without surfaces, for options out of range, and for sizes that
 /// would make more than 20 million elements.

@@ -33,7 +33,8 @@ struct SolveOptions {
   /// not kept. Of the options of form factors and solver only `form_factors.max_specular_depth`
   /// then counts. Empty: all form factors are kept, and a solver reads them.
   std::optional<ProgressiveOptions> progressive{};
-  /// Effort of the final gather. `rays` 0 stands for rays_by_default, or fewer (see rays_worth()).
+  /// Effort of the final gather. `rays` 0 stands for 1024, or fewer where refinement ended at a
+  /// limit with an error that hides their noise.
   GatherOptions gather{.rays = 0, .shadows = {.min_rays = 32, .max_rays = 256, .sky_rays = 1024}};
   RefineOptions refine{};
   /// The error to reach. Chooses the rays of `gather` and, if `refine` has a tolerance, that
@@ -51,10 +52,10 @@ struct SolveOptions {
   /// emission may differ. Must outlive the solve. Not with `progressive`.
   const SolvedScene* start = nullptr;
   /// Rays from where somebody looks, such as those of a camera. Errors matter where they end, and
-  /// less the less light comes from elsewhere to there (see find_importance); the error estimate is
-  /// of what they see. Empty: errors matter everywhere.
+  /// less the less light comes from elsewhere to there; the error estimate is of what they see.
+  /// Empty: errors matter everywhere.
   std::vector<Ray> view_rays{};
-  int error_points = 512;  ///< sample points of the error estimate, see estimate_points
+  int error_points = 512;  ///< sample points of the error estimate
   /// The journal must belong to this scene. (`form_factors` has a journal of its own: that of
   /// another solve, whose form factors serve where only reflectances or emission have changed.)
   RunControl run{};
@@ -86,7 +87,7 @@ void require_light(const Scene& scene);
 /// 2. form factors and solver, or shooting,
 /// 3. refinement of the elements,
 /// 4. final gather to their vertices,
-/// 5. error estimate (see estimate_error).
+/// 5. error estimate.
 ///
 /// Throws InputError if nothing in the scene emits light, if light never ends, if the start has
 /// other patches or is given to the progressive solver, if an accuracy in lux is requested of a
@@ -95,8 +96,8 @@ void require_light(const Scene& scene);
 /// another scene.
 ///
 /// If `options.run` limits the time, steps 2 to 4 take as many rays and elements as there is time
-/// for (see illuminate_elements). Once the time is up, the result is the best there is; the outcome
-/// is Outcome::cut_short if a step could not be finished. Step 1 takes the time that it takes.
+/// for. Once the time is up, the result is the best there is; the outcome is Outcome::cut_short if
+/// a step could not be finished. Step 1 takes the time that it takes.
 SolvedScene solve_scene(const Scene& scene, const SolveOptions& options = {},
                         SolveReport* report = nullptr);
 

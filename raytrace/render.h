@@ -10,6 +10,7 @@
 
 namespace lightwell {
 
+/// Effort of a picture.
 struct RenderReport {
   double seconds = 0.0;
   std::int64_t eye_rays = 0;   ///< pixel samples
@@ -22,8 +23,8 @@ struct RenderReport {
 };
 
 /// Second pass: Whitted's recursive ray tracing (1980) over the radiosity solution. A pixel is the
-/// mean radiance over its square, or the result of PixelSamples with a lens, motion or where it
-/// shows gloss. Pictures have the same bits for any number of threads.
+/// mean radiance over its square, or over many samples with a lens, with motion or where the pixel
+/// shows gloss (see SampleOptions). Pictures have the same bits for any number of threads.
 ///
 /// Light is solved for one instant and moves with the surfaces; shadows and gathers are sampled in
 /// time. Throws:

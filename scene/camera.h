@@ -123,9 +123,9 @@ bool is_panorama(Projection projection);
 /// Empty: nothing.
 std::string projection_fault(const Camera& camera);
 
-/// Checks a camera: finite places and times within farthest_coordinate, direction and up unit
-/// vectors at right angles, within 1e-6, a projection without fault, an aperture and a distance of
-/// focus that rays can be computed with. Throws InputError naming camera and value.
+/// Checks a camera: finite places and times of at most 1e9, direction and up unit vectors at right
+/// angles, within 1e-6, a projection without fault, an aperture and a distance of focus that rays
+/// can be computed with. Throws InputError naming camera and value.
 void validate(const Camera& camera);
 
 /// Sets the size of the whole picture, of which `window` is rendered: its edges move to whole

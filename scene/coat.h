@@ -31,7 +31,7 @@ class CoatedBase {
   double factor(double cosine) const;
   /// Share of even light that a coat of `specular` 1 mirrors, [0,1].
   double mean_mirrored() const { return mean_; }
-  /// The same where the coat covers the share `cover`, [0,1], of the base.
+  /// This base where the coat covers the share `cover`, [0,1], of the base.
   CoatedBase covering(float cover) const;
 
  private:

@@ -104,8 +104,8 @@ double relative_flux(const Lamp& lamp);
 /// Flux of a lamp, W per band.
 Spectrum lamp_flux(const Lamp& lamp);
 
-/// A ray that leaves a lamp. It carries `intensity` times weight times colour, in the mean over its
-/// random numbers.
+/// A ray that leaves a lamp. The ray carries `intensity` times weight times colour, in the mean
+/// over its random numbers.
 struct LampRay {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();      ///< m
   Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit

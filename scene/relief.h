@@ -16,7 +16,7 @@ struct Relief {
   double steepest = 1.0;
   double scale = 1.0;  ///< factor of the slopes
   /// The slopes are those of heights in metres by texel, so they depend on the size of the picture
-  /// on the surface. Otherwise they are rise over run.
+  /// on the surface. Other slopes are rise over run.
   bool is_in_metres = false;
 };
 
@@ -32,9 +32,9 @@ inline constexpr double most_relief_scale = 100.0, most_relief_depth = 1e4;
 /// InputError, "is ...; ...", for a picture that has no normals.
 Relief relief_of_normals(const SurfaceTexture& image, double scale);
 
-/// Relief of a picture of heights, the mean of r, g and b. White lies `depth` above black: in
-/// metres, or in widths of a texel.
+/// Unit of the depth of a picture of heights: metres, or widths of a texel.
 enum class DepthUnit { metre, texel };
+/// Relief of a picture of heights, the mean of r, g and b. White lies `depth` above black.
 Relief relief_of_heights(const SurfaceTexture& image, double depth, DepthUnit unit);
 
 /// True if a picture is one of normals rather than one of heights: not grey, and blue on the whole.

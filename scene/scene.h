@@ -33,7 +33,7 @@ struct Dielectric {
   /// then applies once to the light that crosses the pane, and there is no absorption.
   bool thin = false;
   /// Share of light, [0,1], that crosses the body of a thin pane once along the normal. Inclined
-  /// light crosses more of the body (see pane_shares); empty: all.
+  /// light crosses more of the body; empty: all.
   Spectrum transmissivity{};
 };
 
@@ -81,7 +81,8 @@ struct Mask {
 enum class StatedPower { none, watts, lumens };
 
 /// Reflection, transmission, refraction and emission of a surface. Energy: reflectance +
-/// transmittance + mean_specular() <= 1 in every band.
+/// transmittance + the mean share that is mirrored or passes straight on is at most 1 in every
+/// band.
 struct Material {
   std::string name{};
   Spectrum reflectance{};  ///< diffuse rho, [0,1]; with a texture: of facets without UV
@@ -102,20 +103,20 @@ struct Material {
   /// incidence; empty: `specular` alone.
   std::optional<Conductor> metal{};
   std::optional<Dielectric> dielectric{};  ///< if set, the surface is clear; rho and specular are 0
-  /// Exitance M = pi L of a Lambertian emitter, W/m^2, >= 0; with a picture of it: of facets
+  /// Exitance M = pi L of a Lambertian emitter, W/m^2, >= 0; with a picture of emission: of facets
   /// without UV.
   Spectrum emission{};
   bool one_sided = false;         ///< nothing is reflected from behind; the back is black
   bool emits_both_sides = false;  ///< emission leaves the back as well as the front
-  /// Unless `none`, `emission` is a stated power over an area. What changes the area scales the
-  /// emission (see keep_stated_power()).
+  /// Unless `none`, `emission` is a stated power over an area. What changes the area, as
+  /// merge_planar_regions() may, scales the emission.
   StatedPower stated_power = StatedPower::none;
   /// Diffuse rho that varies over facets with UV; only in scenes of RGB bands.
   std::optional<ReflectanceTexture> texture{};
   /// Emission that varies over facets with UV; only in scenes of RGB bands.
   std::optional<EmissionTexture> emission_texture{};
   std::optional<Mask> mask{};  ///< holes in facets with UV; of materials that emit nothing
-  /// Bends the normals of facets with UV in pictures. Solutions do not depend on it.
+  /// Bends the normals of facets with UV in pictures. Solutions do not depend on relief.
   std::optional<Relief> relief{};
   /// Shares and roughness that vary over facets with UV; null: none (see material_at()).
   std::shared_ptr<const SurfacePattern> pattern{};

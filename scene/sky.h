@@ -14,7 +14,7 @@ namespace lightwell {
 /// The sun: a disc of uniform radiance at infinite distance.
 struct Sun {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitY();  ///< unit, towards the middle of the disc
-  Spectrum irradiance{};         ///< on a surface that faces it, W/m^2, >= 0
+  Spectrum irradiance{};         ///< on a surface that faces the sun, W/m^2, >= 0
   double angle_degrees = 0.533;  ///< across the disc, (0, 10]; 0.533 seen from the earth's mean
                                  ///< distance
 

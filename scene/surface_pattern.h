@@ -27,7 +27,7 @@ struct ShareTexture {
 /// translucency, each from a picture or constant; F is the coat's Fresnel reflectance, A its mean
 /// for even light (see CoatedBase), and s tints the coat. No sum of shares exceeds 1 if none of
 /// `base`, `behind_base` + `passed`, `metal` and s does. The material's own numbers are those for
-/// the pictures' means (see set_pattern).
+/// the pictures' means.
 struct SurfacePattern {
   std::optional<ShareTexture> roughness{};  ///< GGX alpha of mirror, coat or glass
   std::optional<ShareTexture> metal{};      ///< m; absent: the mirror is as it is, and m 0 in rho

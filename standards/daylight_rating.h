@@ -41,9 +41,9 @@ struct HoursLimit {
   double lux = 0.0, hours = 0.0;
 };
 
-/// A credit of a rating system. It gives points by the sDA of all rooms (`autonomy`), or by the
-/// share of the area in rooms that comply (`area`). A room complies by its daylight factors, or by
-/// the hours in which it has enough light.
+/// A credit of a rating system. The credit gives points by the sDA of all rooms (`autonomy`), or by
+/// the share of the area in rooms that comply (`area`). A room complies by its daylight factors, or
+/// by the hours in which it has enough light.
 struct DaylightRating {
   std::string key{}, title{};
   std::string source{};              ///< of the numbers

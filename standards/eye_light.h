@@ -55,7 +55,7 @@ std::optional<SpectralPower> spectral_power(const Bands& bands, const Spectrum& 
 /// have values from 380 to 780 nm. Empty without light.
 std::optional<EyeLight> eye_light(const SpectralPower& power);
 
-/// The same power in intervals twice as wide: pairs of neighbours, from the first one on. Figures
+/// Power in intervals twice as wide: pairs of neighbours, from the first one on. Figures
 /// change by about the error that the width of the intervals makes.
 SpectralPower in_wider_intervals(const SpectralPower& power);
 
@@ -64,7 +64,7 @@ SpectralPower in_wider_intervals(const SpectralPower& power);
 struct RatedColour {
   double rendering = 0.0, within = 0.0;
 };
-/// Empty where R_a is not defined (see EyeLight).
+/// R_a of a light with its bound; empty where R_a is not defined (see EyeLight).
 std::optional<RatedColour> rated_colour(const SpectralPower& power);
 
 /// Power of a CIE daylight illuminant of `kelvin`, 4000 to 25 000, in intervals of 1 nm around 380

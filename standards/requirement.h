@@ -40,7 +40,7 @@ enum class Figure {
 /// Symbol of a figure: "E_m".
 const char* figure_symbol(Figure figure);
 
-/// How a figure stands to its limit.
+/// Standing of a figure to its limit.
 enum class Verdict {
   met,       ///< by more than the error of the figure
   missed,    ///< by more than the error of the figure
@@ -65,11 +65,11 @@ struct Requirement {
 /// "met", "missed" or "too close to tell".
 const char* verdict_name(Verdict standing);
 
-/// How a requirement stands. A requirement without a value is met.
+/// Verdict on a requirement. A requirement without a value is met.
 Verdict verdict_of(const Requirement& requirement);
 
-/// How requirements stand together, recommendations left out: missed if one is missed, too close if
-/// one is too close and none is missed.
+/// Verdict on requirements together, recommendations left out: missed if one is missed, too close
+/// if one is too close and none is missed.
 Verdict verdict_of(std::span<const Requirement> requirements);
 
 /// Runs of requirements that belong to one area, in their order.

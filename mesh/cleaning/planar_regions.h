@@ -51,10 +51,9 @@ std::string sentence(const CleanUpReport& report);
 /// 7. Vertices inside straight edges of these polygons, to t, are dropped unless an unchanged facet
 ///    has them.
 ///
-/// Then, of surfaces that differ in name alone, polygons that lie on an equal one are dropped (see
-/// drop_shared_duplicates()), and polygons of one plane are joined (see join_surfaces()). At last
-/// materials whose power the file states get the emission that sends it from the area that is left
-/// (see keep_stated_power()).
+/// Then, of surfaces that differ in name alone, polygons that lie on an equal one are dropped, and
+/// polygons of one plane are joined. At last materials whose power the file states get the emission
+/// that sends it from the area that is left.
 ///
 /// The tolerance is the rounding of single-precision files. No point moves by more than t, so the
 /// area changes by less than t times the length of the facets' edges (measured: at most 3e-9 of the

@@ -13,6 +13,7 @@ namespace lightwell {
 
 struct ElementTree;
 
+/// First element on a ray, and the place met.
 struct ElementHit {
   int facet = -1;  ///< scene-wide number of the facet met; -1: the ray left the scene
   /// Element on the side met; -1: nothing, or the black back of a one-sided surface.

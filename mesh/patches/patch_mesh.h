@@ -63,7 +63,7 @@ struct RoundGrid {
 /// Surfaces cut into *patches*, the sources of energy and unknowns of the solver, and patches cut
 /// into *elements*, which receive light and carry its gradient (Cohen, Greenberg, Immel & Brock
 /// 1986). A patch lies in one facet, or, where facets are small against it, reaches over many
-/// facets that face nearly alike (see group_facets()). Each quantity has an array of its own.
+/// facets that face nearly alike. Each quantity has an array of its own.
 ///
 /// The mesh conforms: no vertex lies inside the edge of another element, except along lines in
 /// which something much finer than an element crosses the inside of a facet.
@@ -101,7 +101,7 @@ struct PatchMesh {
   /// Diffuse transmittance tau_i, patches x bands: light that arrives behind the patch leaves it.
   /// Empty if nothing is translucent.
   BandArray transmittance{};
-  std::vector<int> behind{};    ///< see patches_behind(); empty if nothing is translucent
+  std::vector<int> behind{};    ///< see patch_behind(); empty if nothing is translucent
   BandArray emission{};         ///< M_i, W/m^2, patches x bands
   std::vector<int> surface{};   ///< index into Scene::surfaces
   std::vector<int> material{};  ///< index into Scene::materials

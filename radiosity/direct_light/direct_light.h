@@ -39,11 +39,10 @@ constexpr int most_probe_shadow_rays = 1 << 14;
 struct ShadowOptions {
   int min_rays = 16;
   int max_rays = 64;  ///< 1 to most_probe_shadow_rays
-  /// Rays to the dome of the sky, of which an eighth come first; 0: as to an emitter. 1 to
-  /// most_sky_rays.
+  /// Rays to the dome of the sky, of which an eighth come first; 0: as to an emitter. 1 to 65536.
   int sky_rays = 0;
-  /// The greatest share of a point's light that a cluster of lights may give (see LightTree); 0:
-  /// each light is asked. A channel of fewer than fewest_clustered lights has no clusters.
+  /// The greatest share of a point's light that a cluster of lights may give; 0: each light is
+  /// asked. A channel of fewer than fewest_clustered lights has no clusters.
   double cluster_share = 0.01;
   /// The lights that are asked where there are clusters; `sorted` leaves a rest of cluster_share of
   /// the light, `importance` draws among lights that may give less than that each.
@@ -100,20 +99,20 @@ struct LightQuery {
 /// the scene decides this order; the light itself is PatchMesh::emission, which relight() may have
 /// scaled.
 ///
-/// An emitter that shines by a picture is a sum of closed forms of its parts (see EmissionTree),
-/// and its shadow rays weigh what they see by the picture.
+/// An emitter that shines by a picture is a sum of closed forms of its parts, and its shadow rays
+/// weigh what they see by the picture.
 ///
 /// Free sources (lamps without surface, sky and sun) are always direct light.
 ///
 /// Points ask not all of many lights: of a channel with fewest_clustered emitters or lamps, a point
-/// asks those that give it much, and two drawn members of each cluster of others (see LightTree and
+/// asks those that give it much, and two drawn members of each cluster of others (see
 /// ShadowOptions::cluster_share). The mean over keys of random numbers is the sum over all lights.
 ///
 /// Irradiance includes light that passes straight through ClearPanes; form factors take panes as
 /// opaque. At points within an absorbing body, each shadow ray counts with what the body leaves of
 /// the light over the ray's length; form factors do not.
 ///
-/// With `channels`, the light of channel c lies in the columns from c * bands on.
+/// Light of channel c lies in the columns from c * bands on; without channels there is one.
 class DirectLight {
  public:
   /// `like`: direct light of the same scene and mesh, whose tables of the sky and of occluders are
@@ -193,12 +192,13 @@ class DirectLight {
   bool has_coats() const { return !bases_.empty(); }
   /// Direct light that a coated base gets at a point over that of a base without a coat: the mean
   /// of CoatedBase::factor() over emitters and lamps, by their unoccluded light, and over the dome
-  /// as the surfaces near by see it (see SkyLight::by_cosine). The sun counts as far as the
-  /// surfaces near by see its part of the dome. Of more than 64 lights some stand for all.
+  /// as the surfaces near by see the dome. The sun counts as far as the surfaces near by see its
+  /// part of the dome. Of more than 64 lights some stand for all.
   double base_gain(const SurfacePoint& at, const CoatedBase& base) const;
-  /// The same for ReliefSlope::gain(). 1 under a sky, whose light on slopes is not known here.
+  /// Direct light that a relief gets at a point over that of a flat surface, as base_gain() by
+  /// ReliefSlope::gain(). 1 under a sky, whose light on slopes is not known here.
   double relief_gain(const SurfacePoint& at, const ReliefSlope& relief) const;
-  /// The same for the light of each channel.
+  /// base_gain() for the light of each channel.
   Eigen::ArrayXd base_gains(const SurfacePoint& at, const CoatedBase& base) const;
 
   /// Adds the irradiance of each channel to the channel's columns of E, which has column_count()

@@ -17,7 +17,7 @@ struct FacetViewFactorOptions {
   double target_error = 1e-3;   ///< wanted standard error of every factor, > 0
   double max_patch_size = 0.0;  ///< m: a row for each patch of at most this edge; 0: for each facet
   int hemicube_resolution = 256;  ///< see FormFactorOptions
-  bool two_sided = false;         ///< backs of facets have rows (see make_view_factor_scene())
+  bool two_sided = false;         ///< backs of facets have rows
   MemoryOptions memory{};
   Progress progress{};
   Processes* processes = nullptr;  ///< see RunControl

@@ -89,8 +89,8 @@ FormFactorMethod form_factor_method(std::string_view name);
 struct FormFactorOptions {
   FormFactorMethod method = FormFactorMethod::automatic;
   int rays_per_patch = 512;  ///< powers of two stratify best; noise falls nearly as 1/rays
-  /// Casts fewer rays from small patches, a sixteenth at least (see samples_by_area): for sums of
-  /// power, to which such patches add little. No meaning with `target_error`.
+  /// Casts fewer rays from small patches, a sixteenth at least: for sums of power, to which such
+  /// patches add little. No meaning with `target_error`.
   bool has_rays_by_area = false;
   /// Wanted standard error of every F_ij; rows that need them get more rays. 0: rays_per_patch for
   /// all rows.

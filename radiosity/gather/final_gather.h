@@ -60,8 +60,8 @@ struct GatherOptions {
   ShadowOptions shadows{.min_rays = 32, .max_rays = 256};
   std::uint64_t replica = 0;                 ///< another number gives an independent estimate
   std::shared_ptr<const Portals> portals{};  ///< openings that rays are aimed at; null: none
-  /// Aims rays out of narrow gaps (see GapExits): for points that are read by themselves. Light of
-  /// vertices, of which a gap has few, gains too little for the time.
+  /// Aims rays out of narrow gaps: for points that are read by themselves. Light of vertices, of
+  /// which a gap has few, gains too little for the time.
   bool aims_out_of_gaps = false;
   RunControl run{};  ///< the journal keeps the gathered light
 };
@@ -117,7 +117,7 @@ BandArray gather_shares(const LitScene& lit, const GatherPoints& points,
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
                                const BandArray& irradiance,
                                const Eigen::Ref<const BandArray>& direct = BandArray());
-/// The same for the light of a solution.
+/// Gatherable radiosity of the light of a solution.
 BandArray gatherable_radiosity(const PatchMesh& mesh, const DirectLight& direct_light,
                                const RadiositySolution& solution);
 

@@ -31,12 +31,12 @@ struct RunControl {
   bool is_time_up() const;
   /// True if the time is limited from now on.
   bool has_limit() const;
-  /// The same run with a `share` of the time that is left now.
+  /// This run with a `share` of the time that is left now.
   RunControl with_share(double share) const;
   /// The least value of all processes, for a decision that must be the same in all: to be called by
   /// all in the same order. The value itself without others.
   std::int64_t least(std::int64_t value) const;
-  /// The same run, whose progress says stop once the time is up.
+  /// This run with a progress that says stop once the time is up.
   RunControl stopping_in_time() const;
 };
 

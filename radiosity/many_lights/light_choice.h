@@ -6,7 +6,7 @@
 
 namespace lightwell {
 
-/// How a point chooses among many lights. All but `sorted` are unbiased.
+/// Choices of a point among many lights. All but `sorted` are unbiased.
 enum class ManyLights {
   lightcuts,  ///< clusters of the light tree (Walter et al. 2005)
   sorted,     ///< lights in order of what they may give, until the rest is too little; the rest is

@@ -56,7 +56,7 @@ enum class PathArrivals {
   all,      ///< mirrors and glass along the path, too, whose irradiance is to be measured
 };
 
-/// Quantity that a path weighs at its arrivals and where light escapes. Both are the same unless a
+/// Quantity that a path weighs at its arrivals and where light escapes. The two are equal unless a
 /// path begins and ends in bodies of different indices of refraction.
 enum class PathQuantity {
   power,    ///< the share of the power sent along the ray: form factors, photons
@@ -65,14 +65,13 @@ enum class PathQuantity {
 
 /// Follows rays through mirrors and clear glass to diffuse surfaces (extended form factors, Sillion
 /// & Puech 1989). One scattering sample continues each ray: a branch of glass with Fresnel's
-/// probability, a direction of a rough surface's lobe (see sample_scattering). The mean is exact.
-/// Absorbing bodies attenuate along the path (see Media), also those that a path begins in (see
-/// AbsorbingBodies). Smooth surfaces polarise the light, which
-/// decides over its share at the surfaces behind them (see Polarisation).
+/// probability, a direction of a rough surface's lobe. The mean is exact. Absorbing bodies
+/// attenuate along the path, also those that a path begins in. Smooth surfaces polarise the light,
+/// which decides over its share at the surfaces behind them.
 ///
 /// Weak paths end by Russian roulette, behind two coats, which mirror a twentieth of the light
-/// each, and beyond `max_depth` (see deepest_path()): light in a closed body of brushed metal would
-/// be followed to the last of 128 surfaces otherwise.
+/// each, and beyond `max_depth`: light in a closed body of brushed metal would be followed to the
+/// last of 128 surfaces otherwise.
 class LightPaths {
  public:
   LightPaths(const Scene& scene, const ElementCaster& caster, int max_depth,
@@ -106,7 +105,7 @@ class LightPaths {
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const LightArrival&)>& arrive,
                     PathQuantity quantity = PathQuantity::power) const;
-  /// The same; `arrive` gets the throughput times base_factor.
+  /// Calls `arrive` with the throughput times base_factor, for callers that need no more.
   PathLosses follow(const Ray& ray, const ElementHit& hit, std::uint64_t key,
                     const std::function<void(const ElementHit&, const Spectrum&)>& arrive,
                     PathQuantity quantity = PathQuantity::power) const;

@@ -21,7 +21,8 @@ struct PartEffort {
 /// Options of refinement.
 struct RefineOptions {
   /// RMS error of interpolated irradiance at which refinement stops, over all area that reflects,
-  /// relative to error_reference(). 0: nothing is refined.
+  /// relative to the mean irradiance of the part or a quarter of the place's own, whichever is
+  /// more. 0: nothing is refined.
   double tolerance = 0.007;
   /// Most elements, both sides counted. 0: about as many as an even mesh of a quarter of the
   /// start's edges has, if small elements of the start are not split.

@@ -10,6 +10,7 @@ namespace lightwell {
 
 class SpillFile;
 
+/// Limits of memory, and the folder of rows beyond the limits.
 struct MemoryOptions {
   /// Most resident bytes of the process. 0: three quarters of the memory of the machine or of its
   /// container.
@@ -45,7 +46,7 @@ class MemoryBudget {
 
   /// Approximate bytes of the chunks in which rows are stored and moved.
   std::size_t chunk_bytes() const { return static_cast<std::size_t>(chunk_); }
-  /// Most bytes of a block of a transposed matrix (see ColumnBlock).
+  /// Most bytes of a block of a transposed matrix.
   std::int64_t block_bytes() const { return block_; }
 
   /// True if `bytes` of rows that are already resident may stay resident. Give the bytes back

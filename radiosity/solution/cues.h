@@ -21,8 +21,8 @@ struct Cue {
 
 /// Cues of a file for the channels of a solution. Channels without a level track, as on the
 /// consoles of theatres: they keep the scale of the cue before, and in the first cue the effective
-/// one. Throws InputError as apply_settings() does and for values that channel_setting() refuses,
-/// with file, line and cue.
+/// one. Throws InputError for a level that fits no channel, for two that fit the same one, and for
+/// values that channel_setting() refuses, with file, line and cue.
 std::vector<Cue> cues_for(const RadiositySolution& solution, std::span<const WordedCue> worded);
 
 /// A cross-fade between two states of all channels, linear in time and so in light:
@@ -49,7 +49,7 @@ struct FadeShare {
 
 /// The scales of scales_at() as a mean of a few states' scales, by shares that add up to 1. Light
 /// is linear in scales, so the light of the moment is the same mean of the light of these states.
-/// They are those of the fade whatever the moment, and at most one more than the different
+/// The states are those of the fade whatever the moment, and at most one more than the different
 /// durations of its channels: state k has the channels of the k shortest durations at their end,
 /// and the others at their start.
 std::vector<FadeShare> shares_at(const CueFade& fade, double second);
@@ -63,7 +63,7 @@ class CueSequence {
   double seconds() const { return ends_.empty() ? 0.0 : ends_.back(); }
   /// Scales at a time (s) in [0, seconds()]; later those of the last cue.
   std::vector<Spectrum> at(double second) const;
-  /// The same by shares_at().
+  /// The scales of at() as a mean of a few states, as shares_at() of a fade gives them.
   std::vector<FadeShare> shares_at(double second) const;
 
  private:

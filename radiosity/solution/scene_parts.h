@@ -20,11 +20,11 @@ struct ScenePart {
   double error_estimate = -1.0;
 };
 
-/// The parts of a scene (see find_parts). Patches of mirrors and clear glass alone belong to none.
+/// The parts of a scene. Patches of mirrors and clear glass alone belong to none.
 struct SceneParts {
   std::vector<int> of_patch{};  ///< index into `parts`, or -1 for none; empty: not known
   std::vector<ScenePart> parts{};
-  /// How much errors on each patch matter, 0 to 1 (see find_importance); empty: all alike.
+  /// Weight of errors on each patch, 0 to 1; empty: 1 on all.
   std::vector<float> importance{};
 
   float importance_of(int patch) const {

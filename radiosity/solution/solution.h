@@ -19,6 +19,7 @@ enum class Outcome {
   cut_short  ///< the time was up, or somebody stopped the solve, before it was finished
 };
 
+/// Residual of a solver after a step.
 struct StepRecord {
   double residual = 0.0;  ///< max over patches of |M + rho F B - B| relative to the largest B
   double seconds = 0.0;   ///< since the solver started
@@ -39,11 +40,13 @@ struct EnergyBalance {
 /// Sum over all bands.
 EnergyBalance total(const BandEnergy& by_band, const FreeEnergy& free = {});
 
+/// Wall time of a phase of the solve.
 struct PhaseSeconds {
   std::string phase{};
   double seconds = 0.0;
 };
 
+/// Origin of a solution.
 struct Provenance {
   std::string version{};  ///< version of the program
   std::string scene_file{};
@@ -95,8 +98,8 @@ struct RadiositySolution {
   double residual = 0.0;
   EnergyBalance energy{};
   /// Parts of the scene that exchange little light, each with its own error estimate; empty in
-  /// files of earlier versions. Errors are relative to the mean irradiance of the part they are in
-  /// (see error_reference).
+  /// files of earlier versions. Errors are relative to the mean irradiance of the part that the
+  /// error is in.
   SceneParts parts{};
   /// Relative RMS error of interpolated irradiance: independent gathers at random points against
   /// the interpolation, relative to the mean irradiance of the part or a quarter of the point's

@@ -62,8 +62,8 @@ struct ProgressiveOptions {
 /// in parallel. Light between shooters of a round counts from the next round on. The result is the
 /// same for any number of threads. Keeps references to scene and mesh.
 ///
-/// With `channels` the light of each channel has columns of its own, as in DirectLight; the same
-/// rays shoot all columns. Light has channels * bands columns below.
+/// Light of each of `channels` has columns of its own, as in DirectLight; the same rays shoot all
+/// columns. Light has channels * bands columns below.
 class ProgressiveRadiosity {
  public:
   struct Shot {
@@ -81,7 +81,7 @@ class ProgressiveRadiosity {
   /// done nothing, once the tolerance or max_shots is reached.
   bool step(int most = std::numeric_limits<int>::max());
 
-  /// Shots of the last round, for observers such as VertexLight.
+  /// Shots of the last round, for observers.
   const std::vector<Shot>& last_shots() const { return last_shots_; }
   int shots() const { return shots_; }
   /// B_i so far, without the ambient term, patches x columns, W/m^2.

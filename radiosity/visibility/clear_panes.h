@@ -19,9 +19,8 @@ class ClearPanes {
   bool empty() const { return panes_.empty(); }
 
   /// Transmittance per band from the ray's origin to its t_max or its target group: the product of
-  /// what each pane crossed passes at its angle of the light that the panes before it polarised
-  /// (see smooth_scattering). 0 in all bands where anything but a pane blocks the ray, and behind
-  /// 64 panes.
+  /// what each pane crossed passes at its angle of the light that the panes before it polarised. 0
+  /// in all bands where anything but a pane blocks the ray, and behind 64 panes.
   Spectrum passed(const ElementCaster& caster, const Ray& ray) const;
 
  private:

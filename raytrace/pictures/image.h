@@ -54,11 +54,12 @@ void write_exr(const std::filesystem::path& path, const Image& image, const Band
 void write_hdr(const std::filesystem::path& path, const Image& image, const Bands& bands,
                const std::vector<std::string>& header = {});
 
+/// Channels to read of an EXR file: R, G and B, also those of wavelengths, or all.
+enum class ExrChannels { rgb, bands, all };
 /// Reads channels R, G, B of an EXR file, half or float, as radiance. ExrChannels::bands adds
 /// channels of wavelengths ("400-404nm") as layers, ExrChannels::all adds all other channels, in
 /// the order of their names. Throws InputError if the file is missing, not an EXR with R, G and B,
 /// or larger than max_image_pixels, or if a channel is subsampled.
-enum class ExrChannels { rgb, bands, all };
 Image read_exr(const std::filesystem::path& path, ExrChannels which = ExrChannels::rgb);
 
 /// Curve from exposed radiance to display values.

@@ -26,7 +26,7 @@ struct FreeSource;
 /// for r = tan sigma below 0.6, else 1 + 1.2 r.
 double position_index(double sigma, double tau);
 
-/// The same of a unit vector from an eye, within 90 degrees of the eye's direction.
+/// Position index of a unit vector from an eye, within 90 degrees of the eye's direction.
 double position_index(const Camera& eye, const Eigen::Vector3d& towards);
 
 /// Returns whether a point counts for glare, by its distances along the line of sight, beside it
@@ -73,8 +73,8 @@ double glare_share(const Bands& bands, const ElementCaster& caster, const FreeSo
 ///   mirrors are left out.
 /// - Background: E_i is the illuminance of the eye by reflected light alone, from a final gather
 ///   with `gathering`.
-/// - `luminous_heights`, m: per lamp of the scene, the height of luminous sides around its opening
-///   (see luminous_area); empty: no sides. Sides are treated as if they stood at the opening.
+/// - `luminous_heights`, m: per lamp of the scene, the height of luminous sides around its opening;
+///   empty: no sides. Sides are treated as if they stood at the opening.
 Glare unified_glare_rating(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            const Camera& eye, const GatherOptions& gathering,

@@ -109,8 +109,8 @@ double bound_at(const LuxField& field, double lux);
 LuxField sum_of(const LuxField& a, const LuxField& b);
 
 /// Illuminance at the points of a grid, times `factor` (for example a maintenance factor). The
-/// gathers are those of probe_irradiance() with bounds; of a grid of cylinders, those of
-/// cylinder_probes().
+/// gathers are those of probe_irradiance() with bounds; of a grid of cylinders, those of probes all
+/// around each cylinder.
 LuxField measure_grid(const Scene& scene, const ElementCaster& caster,
                       const DirectLight& direct_light, const RadiositySolution& solution,
                       const LuxGrid& grid, double factor, const GatherOptions& options);

@@ -26,15 +26,15 @@ std::vector<Probe> read_probes(const std::filesystem::path& csv, double metres_p
 /// light is not estimated.
 SolveOptions options_for_probes();
 
-/// How sure the irradiance of probes is.
+/// Bounds of the error of the irradiance of probes.
 struct ProbeBounds {
-  /// The bound to reach, as a share of the illuminance of each probe (see sure_gather); 0: the rays
-  /// of the options, whatever noise they leave.
+  /// The bound to reach, as a share of the illuminance of each probe; 0: the rays of the options,
+  /// whatever noise they leave.
   double accuracy = 0.0;
   /// Per probe, lx, with odds of about 19 to 1: the noise of the gather, and the error of the
-  /// solution's light that its rays read (see read_errors), as far as the solution knows its own
-  /// error. Caustics count as uncertain by all of their light, at the brightest corner of their
-  /// element. NaN where nothing is known: there is no light at all.
+  /// solution's light that its rays read, as far as the solution knows its own error. Caustics
+  /// count as uncertain by all of their light, at the brightest corner of their element. NaN where
+  /// nothing is known: there is no light at all.
   Eigen::ArrayXd lux_within{};
   /// The part of `lux_within` that comes from the solution, and that probes near each other share.
   Eigen::ArrayXd read_within{};
@@ -43,7 +43,7 @@ struct ProbeBounds {
 
 /// Irradiance at each probe, probes x bands, W/m^2, by a final gather in the solved scene. If
 /// `options` leave the number of sky rays open, it is four times that of hemisphere rays. With
-/// `bounds`, the gather is a sure_gather(), which takes about twice the time.
+/// `bounds`, the gather takes about twice the time.
 BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
                            const DirectLight& direct_light, const RadiositySolution& solution,
                            std::span<const Probe> probes,

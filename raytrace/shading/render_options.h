@@ -24,7 +24,7 @@ enum class Pass {
   gather,          ///< direct light by shadow rays, indirect light by a final gather at every hit
   virtual_lights,  ///< direct light by shadow rays, indirect light by VirtualLights, without a
                    ///< solution
-  automatic,  ///< as `direct`, but light of the sky's dome interpolated where DomeOnMesh is fine
+  automatic,       ///< as `direct`, but the dome's light interpolated where the mesh is fine
 };
 
 /// Options of many samples per pixel in place of subdivision: for pictures with a lens or motion,
@@ -44,8 +44,8 @@ struct SampleOptions {
 
 struct RenderOptions {
   Pass pass = Pass::automatic;
-  /// Most mirrors and clear surfaces along one path of the ray tree, at least 128 (see
-  /// deepest_path). Photons and gathers end by chance beyond this number where they are weak.
+  /// Most mirrors and clear surfaces along one path of the ray tree, at least 128. Photons and
+  /// gathers end by chance beyond this number where they are weak.
   int max_depth = 10;
   /// Branches of less weight do not fork, and end by chance below a tenth of it.
   float min_contribution = 1e-3f;

@@ -22,9 +22,9 @@ struct PolygonArrays {
 };
 
 /// Gives the surfaces of `scene`, which have names and materials, the polygons of the arrays. A row
-/// is a polygon of the arrays. Polygons are repaired as those of mesh files are (add_repaired()),
-/// surfaces without a polygon that has an area are left out, and names become plain text; notes and
-/// losses of the scene say so.
+/// is a polygon of the arrays. Polygons are repaired as those of mesh files are, surfaces without a
+/// polygon that has an area are left out, and names become plain text; notes and losses of the
+/// scene say so.
 ///
 /// Throws InputError
 ///   - if the arrays do not fit each other, or name a vertex or surface that does not exist;

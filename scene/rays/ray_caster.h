@@ -17,8 +17,7 @@ namespace lightwell {
 ///
 /// A *group* joins primitives that cannot see each other because they lie in one plane (a facet),
 /// or are one round shape. A ray never meets the group it starts from, whatever rounding does to
-/// the ray's origin. Where groups lie on each other, the group that is met first hides the others
-/// (see CoplanarGroups for the order).
+/// the ray's origin. Where groups lie on each other, the group that is met first hides the others.
 struct CastGeometry {
   std::vector<Eigen::Vector3d> vertices{};
   std::vector<std::array<int, 3>> triangles{};
@@ -30,6 +29,7 @@ struct CastGeometry {
   std::vector<char> has_holes{};  ///< per triangle, then quad: 1 if is_hole applies; empty: none
 };
 
+/// Ray from `origin` to the distance t_max.
 struct Ray {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   Eigen::Vector3d direction =
@@ -40,6 +40,7 @@ struct Ray {
   int target_group = -1;  ///< for occluded(): group that does not count as an occluder
 };
 
+/// First primitive on a ray, and the place met.
 struct Hit {
   int primitive = -1;  ///< -1: nothing was hit
   int group = -1;      ///< of the primitive
@@ -56,8 +57,7 @@ struct Hit {
 ///
 /// Triangles and quads are watertight along shared edges (Embree's robust mode). Of rays aimed at a
 /// vertex itself, to the last float digit, one in 1e4 slips through. Small quads in even rows and
-/// columns of a group are cast as one (see CellSheet). Round shapes are intersected in double
-/// precision.
+/// columns of a group are cast as one. Round shapes are intersected in double precision.
 class RayCaster {
  public:
   /// Throws std::invalid_argument if `group` does not match the primitives, std::runtime_error if

@@ -47,7 +47,7 @@ struct BakedPart {
 struct BakedMaterial {
   std::string name{};  ///< "material 2" where the scene has no name
   bool is_glass = false;
-  /// Mirrors are drawn as if they scattered the mirrored light diffusely (see shown_radiance).
+  /// Mirrors are drawn as if they scattered the mirrored light diffusely.
   bool is_mirror = false;
 };
 
@@ -57,7 +57,7 @@ struct BakedCamera {
   double scale = 1.0;  ///< from radiance to display values (see exposure_scale)
 };
 
-/// A plane face of a luminaire (see DrawnLamps), of one colour.
+/// A plane face of a luminaire, of one colour.
 struct BakedLampFace {
   int lamp = 0;                                      ///< index into BakedModel::lamp_names
   std::vector<Eigen::Vector3d> outline{};            ///< convex; metres, the scene's axes
@@ -72,7 +72,7 @@ struct BakedChannel {
   std::string name{};
   // Per vertex.
   RgbArray radiance{};     ///< as BakedModel::radiance
-  RgbArray illuminance{};  ///< lx, see illuminance_shares()
+  RgbArray illuminance{};  ///< lx
   /// Luminous flux of the channel's emitters: of red, green and blue; spectral: one number.
   Spectrum lumens{};
   Eigen::Array3f weight = Eigen::Array3f::Ones();  ///< effective; spectral: three equal numbers
@@ -88,8 +88,8 @@ struct BakedCue {
 /// Sky, ground and sun around the scene. Radiance is linear Rec. 709 RGB, W/(m^2 sr), before the
 /// weight of the dome's or the sun's channel. Directions are unit vectors in the scene's axes.
 struct BakedSky {
-  int columns = 0, rows_above = 0, rows_below = 0;     ///< see SkyGrid
-  RgbArray radiance{};                                 ///< rows * columns, as SkyGrid::radiance
+  int columns = 0, rows_above = 0, rows_below = 0;     ///< steps of azimuth; of altitude
+  RgbArray radiance{};                                 ///< rows * columns, the zenith's row first
   Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();  ///< columns: north, east and up
   int channel = -1;                      ///< the dome's, index into BakedModel::channels; -1: none
   std::optional<Eigen::Vector3d> sun{};  ///< direction towards the sun
@@ -114,18 +114,18 @@ struct BakedModel {
   // Per vertex.
   std::vector<int> mesh_vertex{};           ///< vertex of the solution's mesh
   std::vector<Eigen::Vector3d> position{};  ///< metres, the scene's axes
-  RgbArray radiance{};                      ///< W/(m^2 sr) shown as light: see shown_radiance
+  RgbArray radiance{};                      ///< W/(m^2 sr) shown as light: B / pi
   BandArray radiosity{};                    ///< B, W/m^2, vertices x bands
   BandArray irradiance{};                   ///< E, W/m^2, vertices x bands
   std::vector<float> illuminance{};         ///< lx
   // Per vertex; empty in a model without pictures. The radiosity above is for the mean reflectance
   // of each patch.
-  std::vector<Eigen::Vector2f> place{};  ///< in the part's picture (see DrawnPictures::place)
+  std::vector<Eigen::Vector2f> place{};  ///< in the part's picture; (0, 0): top left
   RgbArray picture_gain{};               ///< factor from `radiance` to that of a white texel
 
   std::vector<BakedChannel> channels{};  ///< the light above by channel; empty: not separated
 
-  std::vector<BakedCue> cues{};  ///< for pages; see bake_cues()
+  std::vector<BakedCue> cues{};  ///< for pages
 
   /// Names of the scene's lamps, numbered where another lamp or a surface has that name.
   std::vector<std::string> lamp_names{};
@@ -133,19 +133,18 @@ struct BakedModel {
 
   // Per face.
   /// Vertices, counter-clockwise seen from the face's side; [3] is -1 for a triangle. Two triangles
-  /// of a quad share the diagonal from [0] to [2] (see first_corner).
+  /// of a quad share the diagonal from [0] to [2].
   std::vector<std::array<int, 4>> faces{};
   std::vector<int> element{};  ///< element of the mesh
-  /// Bound of the error of illuminance in each face, lx, odds of about 19 to 1 (see
-  /// illuminance_bounds); empty if the solution has no error estimate.
+  /// Bound of the error of illuminance in each face, lx, odds of about 19 to 1; empty if the
+  /// solution has no error estimate.
   std::vector<float> lux_within{};
   std::vector<std::uint8_t> black_behind{};  ///< 1: the face's other side was left out
 
   std::optional<BakedSky> sky{};
-  /// Data of pages of a year; see bake_year(). The light above is then the mean of the year's hours
-  /// with light.
+  /// Data of pages of a year. The light above is then the mean of the year's hours with light.
   std::shared_ptr<const BakedYear> year{};
-  std::vector<BakedCamera> cameras{};  ///< the scene's, or one of find_start; never empty
+  std::vector<BakedCamera> cameras{};  ///< the scene's, or a chosen one; never empty
   bool cameras_are_given = false;      ///< `cameras` are the scene's
   /// Scale of linear colours, which files clip at 1: that of the first camera, or as little as an
   /// eighth of it, so that 99 of 100 vertices are not clipped; lamps do not count.
@@ -174,17 +173,18 @@ enum class Sides : std::uint8_t {
 
 /// Collects a solution's geometry, light and pictures into a model.
 /// - `scene` supplies names, mirrors, glass, pictures, sky and cameras. Surfaces and materials
-///   without a name are numbered. Without cameras the model has one, from find_start.
+///   without a name are numbered. Without cameras the model has one, of the whole scene from
+///   outside or across the room.
 /// - `exposure_ev`: stops added to the automatic exposure of every camera.
 /// - `names`, of this scene: polygons that join several surfaces; null: none. An element belongs to
 ///   the surface that contains the element's centre.
-/// - `sides`: which sides of thin surfaces the model has (see choose_sides).
+/// - `sides`: which sides of thin surfaces the model has.
 /// Throws InputError if the scene has surfaces, but fewer than the solution, and for bands other
 /// than RGB without wavelengths.
 BakedModel bake_model(const SolvedScene& solved, const Scene& scene, double exposure_ev = 0.0,
                       const JoinedSurfaces* names = nullptr, Sides sides = Sides::lit);
 
-/// Colours at the exposure of the first camera, 8-bit sRGB, 3 bytes a vertex (see display_colors).
+/// Colours at the exposure of the first camera, 8-bit sRGB, 3 bytes a vertex.
 std::vector<std::uint8_t> srgb_colors(const BakedModel& model);
 
 /// Triangles of a model's faces first_face to first_face + face_count - 1, as vertices.

@@ -25,6 +25,7 @@ namespace lightwell {
 ///   picture_gain.
 void write_gltf(const std::filesystem::path& path, const BakedModel& model);
 
+/// Lightmaps that were written.
 struct LightmapReport {
   int atlases = 0, charts = 0;
   double texels_per_metre = 0.0;

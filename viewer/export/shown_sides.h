@@ -15,8 +15,7 @@ enum class SideUse : std::uint8_t { left_out, in_place, moved };
 double half_gap(const PatchMesh& mesh);
 
 /// Decides for each element whether a model of `sides` has it. `caster` is of the solution's mesh.
-/// `kinds` count a side as lit by a
-/// channel that is off. For front and both:
+/// `kinds` count a side as lit by a channel that is off. For front and both:
 ///
 /// - A side is dark if its illuminance is below 1e-4 of the mean of the sides that are not outside.
 ///   It is shut in if it sees dark sides alone, such as the inside of a chest. A side that is both

@@ -30,8 +30,8 @@ struct ReportRequest {
   std::optional<LightingDesign> design{};
   std::filesystem::path areas{};       ///< file with tables of the design; empty: the scene's
   std::string activity{};              ///< of all working planes without an area; empty: none
-  std::filesystem::path activities{};  ///< table of activities; empty: usual_activities()
-  std::filesystem::path sports{};      ///< table of sports; empty: usual_sports()
+  std::filesystem::path activities{};  ///< table of activities; empty: the program's
+  std::filesystem::path sports{};      ///< table of sports; empty: the program's
   std::filesystem::path colours{};     ///< colour evaluation samples of TM-30; empty: none
   int rays = 1024;                     ///< of the gather at each point, a power of two
   bool has_picture = false;
@@ -52,7 +52,7 @@ struct ReportPlan {
 
 /// Reads the lighting design of a scene and looks names of cameras up, before anything is computed.
 /// Throws InputError for a scene without units of light, for a name or an activity that is not
-/// there, and as read_lighting_design() and read_activities() do.
+/// there, and as read_lighting_design() does; also for a table that cannot be read.
 ReportPlan plan_report(const Scene& scene, ReportRequest request);
 
 /// A scene after merge_planar_regions(), and the surfaces that it joined; null: none.

@@ -31,19 +31,19 @@ struct GridRequest {
 };
 
 /// Indices into Scene::surfaces: the surface of this name, or else all whose name or material fits
-/// it as a pattern (see matches_glob()). Throws InputError if there is none.
+/// it as a pattern, as in a shell. Throws InputError if there is none.
 std::vector<int> surfaces_named(const Scene& scene, const std::string& name);
 
 /// Throws InputError unless a surface of each name is there: before the long work that the grids
 /// wait for.
 void require_surfaces(const GridRequest& asked, const Scene& scene);
 
-/// The grids of a scene file, of surfaces and of planes, in this order. They lie before the front
-/// of their surface; above a level surface of two sides whose front faces down, unless far more of
-/// the scene is around its front than around its back, as with a ceiling. `scene` has the surfaces
-/// of the file by their names (see JoinedSurfaces::apart), and `caster` is of its mesh. Throws
-/// InputError for a surface that is not there, and what lux_grid() throws, also for one of the
-/// surfaces that fit a pattern.
+/// The grids of a scene file, of surfaces and of planes, in this order. The grids lie before the
+/// front of their surface; above a level surface of two sides whose front faces down, unless far
+/// more of the scene is around its front than around its back, as with a ceiling. `scene` has the
+/// surfaces of the file by their names (see JoinedSurfaces::apart), and `caster` is of its mesh.
+/// Throws InputError for a surface that is not there, and what lux_grid() throws, also for one of
+/// the surfaces that fit a pattern.
 std::vector<LuxGrid> requested_grids(const GridRequest& asked,
                                      std::span<const CalculationGrid> of_file, const Scene& scene,
                                      const ElementCaster& caster, const Eigen::Vector3d& up);

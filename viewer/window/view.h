@@ -29,8 +29,8 @@ struct Annotations {
 };
 
 struct ViewOptions {
-  /// First view; empty: the first of `cameras`, or without cameras the view that find_start()
-  /// chooses.
+  /// First view; empty: the first of `cameras`, or without cameras a view that is chosen for the
+  /// scene.
   std::optional<Camera> camera{};
   std::vector<Camera> cameras{};   ///< bookmarks on the keys 1..9
   int width = 1024, height = 768;  ///< pixels
@@ -52,8 +52,8 @@ struct ViewOptions {
   bool lux_classes =
       false;  ///< false colours of illuminance show the classes of lighting standards
   std::optional<LuxRange> lux_range{};  ///< range of `measure`; empty: of what the first view shows
-  /// Begin with the interpolation error estimated by refinement, in the false colours of
-  /// error_colors(). The solution must have the error.
+  /// Begin with the interpolation error estimated by refinement, in false colours from 0.1 % of the
+  /// mean irradiance to 10 %. The solution must have the error.
   bool interpolation_error = false;
   bool relative_units = false;  ///< the numbers of the scale have no known unit
   /// File to which a key saves the solution; empty: a free name in screenshot_folder.
@@ -87,16 +87,16 @@ void show_window(const SolvedScene& solved, const ViewOptions& options);
 /// Pictures of a film: along a recorded path, around the scene (a turntable), or of a camera that
 /// stands still; with ViewOptions::cues the light goes through all cues meanwhile.
 struct FilmOptions {
-  std::filesystem::path path{};  ///< file with a path (see read_views()); empty: none
+  std::filesystem::path path{};  ///< file with a path that a window saved; empty: none
   int frames = 0;                ///< number of pictures, > 0, at even steps
   bool turntable = false;
 };
 
 /// Draws the pictures of a film as write_snapshot() does, all with the first one's exposure, and
-/// with cues with that of the first one's view in the brightest cue. Files
-/// are numbered from 0 by a pattern such as "out-%04d.png" (see frame_name()). Returns the names of
-/// the files. Throws as write_snapshot(), read_views() and frame_name() do, and InputError for an
-/// empty path, and for cues without duration.
+/// with cues with that of the first one's view in the brightest cue. Files are numbered from 0 by a
+/// pattern such as "out-%04d.png". Returns the names of the files. Throws as write_snapshot() does,
+/// and InputError for a file of paths or a pattern that cannot be used, for an empty path, and for
+/// cues without duration.
 std::vector<std::filesystem::path> write_film(const SolvedScene& solved, const ViewOptions& options,
                                               const FilmOptions& film, const std::string& pattern,
                                               const Progress& progress = {});
@@ -111,11 +111,11 @@ struct LiveViewOptions {
   std::function<std::vector<Spectrum>(const RadiositySolution&)> scales{};
 };
 
-/// Opens the window at once and shows a sketch of the light within seconds (see sketch_scene()),
-/// then the light shot by shot, while a thread solves (progressive refinement, see live_solve.h),
-/// and then the solution. There is no sketch where channels begin dimmed. Keys pause, shoot once,
-/// switch the ambient term, and stop and save. Channels can be dimmed meanwhile. Throws as
-/// show_window() does, and InputError if nothing emits light.
+/// Opens the window at once and shows a sketch of the light within seconds, then the light shot by
+/// shot, while a thread solves (progressive refinement), and then the solution. There is no sketch
+/// where channels begin dimmed. Keys pause, shoot once, switch the ambient term, and stop and save.
+/// Channels can be dimmed meanwhile. Throws as show_window() does, and InputError if nothing emits
+/// light.
 void show_live_window(const Scene& scene, const LiveViewOptions& live, const ViewOptions& options);
 
 /// Writes a strip of pictures of the light after each of `shots` (rising numbers of shots), from

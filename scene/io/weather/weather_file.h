@@ -45,8 +45,8 @@ int number_of(const HourOfYear& hour, bool is_leap_year);
 /// Reads hourly weather: EnergyPlus' .epw or RADIANCE's .wea, by the extension. Values of an EPW
 /// row hold for the hour that ends at its label; a WEA row names the middle of its hour. Values
 /// that are missing are 0, with a note, unless a row's global light tells its direct or diffuse
-/// light; hours that a WEA file leaves out are dark. Throws
-/// InputError naming file, line, fault and remedy.
+/// light; hours that a WEA file leaves out are dark. Throws InputError naming file, line, fault and
+/// remedy.
 Weather read_weather(const std::filesystem::path& path);
 
 /// The two formats of read_weather().
