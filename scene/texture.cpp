@@ -35,6 +35,7 @@ std::vector<Cover> texel_covers(int from, int to) {
 }
 
 int wrapped_texel(int i, int size, TextureWrap wrap) {
+  if (i >= 0 && i < size) return i;  // divisions would take most of the time here
   switch (wrap) {
     case TextureWrap::clamp:
       return std::clamp(i, 0, size - 1);
