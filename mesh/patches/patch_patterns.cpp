@@ -72,12 +72,12 @@ void PatchPatterns::add_element(const Scene& scene, const PatchMesh& mesh, int e
   const bool has_pattern = textures.has_pattern(facet), has_holes = textures.has_holes(facet);
   const Material& even =
       scene.materials[static_cast<std::size_t>(mesh.material[mesh.patch[element]])];
-  const int points = has_holes     ? most_texture_points
-                     : has_pattern ? points_across(textures, facet, corner)
-                                   : 1;
-  for (int i = 0; i < points; ++i) {
-    for (int j = 0; j < points; ++j) {
-      const TextureCell cell = texture_cell(corner, points, i, j);
+  const CellGrid grid = has_holes     ? finest_cells
+                        : has_pattern ? cells_over(textures, facet, corner)
+                                      : CellGrid{.along = 1, .across = 1};
+  for (int i = 0; i < grid.along; ++i) {
+    for (int j = 0; j < grid.across; ++j) {
+      const TextureCell cell = texture_cell(corner, grid, i, j);
       if (has_holes && textures.is_hole(facet, cell.middle)) continue;
       if (has_pattern) {
         sums.add(textures.material(facet, cell.middle, filter_of(cell)), cell.area);

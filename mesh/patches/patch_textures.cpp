@@ -28,11 +28,11 @@ Covered covered_light(const PatchMesh& mesh, const FacetTextures& textures, int 
   const int facet = mesh.facet[element];
   const auto corner = corners_of(mesh, element);
   const bool has_holes = textures.has_holes(facet), is_textured = textures.is_textured(facet);
-  const int points = has_holes ? most_texture_points : points_across(textures, facet, corner);
+  const CellGrid grid = has_holes ? finest_cells : cells_over(textures, facet, corner);
   Covered sum{.reflected = Eigen::ArrayXd::Zero(bands)};
-  for (int i = 0; i < points; ++i) {
-    for (int j = 0; j < points; ++j) {
-      const TextureCell cell = texture_cell(corner, points, i, j);
+  for (int i = 0; i < grid.along; ++i) {
+    for (int j = 0; j < grid.across; ++j) {
+      const TextureCell cell = texture_cell(corner, grid, i, j);
       sum.area += cell.area;
       if (has_holes && textures.is_hole(facet, cell.middle)) continue;
       sum.cover += cell.area;
@@ -66,7 +66,7 @@ void lay_on_patch(const Scene& scene, const FacetTextures& textures, int patch, 
     area += mesh.element_area[e];
   }
   mesh.area[patch] = area;
-  if (!(cover > 0.0) || (mesh.is_back[patch] != 0 && material.one_sided)) return;
+  if (!(cover > 0.0)) return;
   mesh.reflectance.row(patch) = (reflected / cover).cast<float>().min(1.0f).transpose();
 }
 
@@ -79,6 +79,23 @@ void shine_on_patch(const FacetTextures& textures, int patch, PatchMesh& mesh) {
     area += mesh.element_area[e];
   }
   if (area > 0.0) mesh.emission.row(patch) = (power / area).cast<float>().transpose();
+}
+
+// The patch on the other side of a front patch; -1: none.
+int back_of(const PatchMesh& mesh, int front) {
+  const int twin = mesh.twin[mesh.first_element[front]];
+  return twin < 0 ? -1 : mesh.patch[twin];
+}
+
+// The back shows what the front shows, element by element.
+void copy_to_back(const Scene& scene, int front, int back, PatchMesh& mesh) {
+  const int first = mesh.first_element[front], count = mesh.first_element[front + 1] - first;
+  mesh.element_area.segment(mesh.first_element[back], count) =
+      mesh.element_area.segment(first, count);
+  mesh.area[back] = mesh.area[front];
+  const Material& material = scene.materials[static_cast<std::size_t>(mesh.material[front])];
+  if (!material.one_sided) mesh.reflectance.row(back) = mesh.reflectance.row(front);
+  if (material.emits_both_sides) mesh.emission.row(back) = mesh.emission.row(front);
 }
 
 // Mean of the picture by which each facet shines; empty for other facets.
@@ -139,12 +156,12 @@ void keep_integrals(const Scene& scene, const FacetTextures& textures, PatchMesh
 Spectrum mean_emission(const PatchMesh& mesh, const FacetTextures& textures, int element) {
   const int facet = mesh.facet[element];
   const auto corner = corners_of(mesh, element);
-  const int points = points_across(textures, facet, corner);
+  const CellGrid grid = cells_over(textures, facet, corner);
   Eigen::ArrayXd sum = Eigen::ArrayXd::Zero(mesh.emission.cols());
   double area = 0.0;
-  for (int i = 0; i < points; ++i) {
-    for (int j = 0; j < points; ++j) {
-      const TextureCell cell = texture_cell(corner, points, i, j);
+  for (int i = 0; i < grid.along; ++i) {
+    for (int j = 0; j < grid.across; ++j) {
+      const TextureCell cell = texture_cell(corner, grid, i, j);
       sum += cell.area * textures.emission(facet, cell.middle, filter_of(cell)).cast<double>();
       area += cell.area;
     }
@@ -165,11 +182,13 @@ void lay_on_textures(const Scene& scene, PatchMesh& mesh) {
   };
   parallel_for(mesh.patch_count(), 16, [&](int begin, int end) {
     for (int p = begin; p < end; ++p) {
+      if (mesh.is_back[p] != 0) continue;
       if (varies(p)) lay_on_patch(scene, *mesh.textures, p, mesh);
       const int facet = mesh.facet[mesh.first_element[p]];  // emitters' patches lie on one facet
       if (mesh.textures->has_emission(facet) && (mesh.emission.row(p) > 0.0f).any()) {
         shine_on_patch(*mesh.textures, p, mesh);
       }
+      if (const int back = back_of(mesh, p); back >= 0) copy_to_back(scene, p, back, mesh);
     }
   });
   if (mesh.textures->has_emission()) keep_integrals(scene, *mesh.textures, mesh);

@@ -7,9 +7,9 @@ namespace lightwell {
 /// Sets areas, reflectances and emissions of a mesh of `scene` from textures and holes. An
 /// element's area becomes the part that holes leave, and a patch's reflectance the mean of its
 /// texture over that part. A patch's emission becomes the mean of its picture of emission. All are
-/// sums over a grid of points on every element: from 4 x 4 to 16 x 16, as fine as the texels; 16 x
-/// 16 on facets with holes. An element that is all hole keeps a thousandth of its area, which no
-/// light meets.
+/// sums over a grid of points on every element: from 4 to 16 in each direction, as fine as the
+/// texels; 16 x 16 on facets with holes. Both sides of an element have the same numbers. An element
+/// that is all hole keeps a thousandth of its area, which no light meets.
 void lay_on_textures(const Scene& scene, PatchMesh& mesh);
 
 /// Sets the textures and holes of a mesh that was read from a file.

@@ -18,15 +18,23 @@ struct TextureCell {
   double area = 0.0;                  ///< m^2
 };
 
-/// Corners of an element; a triangle repeats its last corner.
+/// Numbers of cells of an element from corner 0 towards corner 1, and from there towards corner 2.
+struct CellGrid {
+  int along = 0, across = 0;
+};
+
+inline constexpr CellGrid finest_cells{.along = most_texture_points, .across = most_texture_points};
+
+/// Corners of an element. A triangle starts with its shortest edge, and repeats its last corner.
 std::array<Eigen::Vector3d, 4> corners_of(const PatchMesh& mesh, int element);
 
-/// Cell (i, j) of points x points cells.
-TextureCell texture_cell(const std::array<Eigen::Vector3d, 4>& corner, int points, int i, int j);
+/// Cell (i, j) of grid.along x grid.across cells.
+TextureCell texture_cell(const std::array<Eigen::Vector3d, 4>& corner, const CellGrid& grid, int i,
+                         int j);
 
-/// Points per direction of an element, as fine as the texels, from 4 to most_texture_points.
-int points_across(const FacetTextures& textures, int facet,
-                  const std::array<Eigen::Vector3d, 4>& corner);
+/// Cells of an element as fine as the texels, from 4 to most_texture_points in each direction.
+CellGrid cells_over(const FacetTextures& textures, int facet,
+                    const std::array<Eigen::Vector3d, 4>& corner);
 
 /// Sides of the parallelogram over which the picture is filtered about the middle of a cell. The
 /// filter itself reaches half a cell farther, so that texels beside the element stay out.

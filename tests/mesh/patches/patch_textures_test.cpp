@@ -2,11 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mesh/build_patches.h"
 #include "mesh/cleaning/planar_regions.h"
 #include "mesh/elements/element_caster.h"
 #include "mesh/elements/refine_elements.h"
 #include "mesh/patches/patch_sampler.h"
+#include "mesh/patches/texture_cells.h"
 #include "scene/facet_textures.h"
 #include "scene/parallel.h"
 #include "tests/pictures.h"
@@ -71,6 +74,66 @@ TEST(PatchTextures, ABlackBackStaysBlack) {
   ASSERT_EQ(mesh.patch_count(), 2);
   EXPECT_NEAR(mesh.reflectance(0, 0), 0.5, rounding);
   EXPECT_EQ(mesh.reflectance(1, 0), 0.0f);
+}
+
+// A needle of 3 m x 0.1 m whose picture brightens evenly along the needle.
+Scene needle(int apex) {
+  Scene scene = plate();
+  std::vector<float> shares;
+  constexpr int texels = 256;
+  for (int i = 0; i < texels; ++i) shares.push_back((static_cast<float>(i) + 0.5f) / texels);
+  SurfaceTexture ramp = picture_of(texels, 1, shares);
+  ramp.is_smooth = true;
+  ramp.wrap = {TextureWrap::clamp, TextureWrap::clamp};
+  put_picture(scene, 0, ramp);
+  auto& mesh = std::get<PolygonMesh>(scene.surfaces[0].shape);
+  mesh.vertices = {{0.5, 0, 0}, {3.5, 0.1, 0}, {0.5, 0.1, 0}};
+  std::rotate(mesh.vertices.begin(), mesh.vertices.begin() + apex, mesh.vertices.end());
+  mesh.facets[0].boundary = {0, 1, 2};
+  return scene;
+}
+
+TEST(PatchTextures, ANeedleReflectsItsMeanWhateverCornerIsFirst) {
+  for (const int apex : {0, 1, 2}) {
+    const PatchMesh mesh =
+        build_patches(needle(apex), {.max_patch_size = 10.0, .elements_per_patch_edge = 1});
+    ASSERT_EQ(mesh.element_count(), 2) << "one on either side";
+    // The mean of a linear function is its value at the centroid, x = 1.5 m of 4 m. Along n = 16
+    // cells of a triangle, whose width falls evenly, the midpoint rule is off by 1 / (6 n^2) of the
+    // function's range, which is 3 m of 4 m.
+    constexpr double midpoints = 0.75 / (6.0 * 16 * 16);
+    EXPECT_NEAR(mesh.reflectance(0, 0), 1.5 / 4.0, midpoints + rounding) << apex;
+  }
+}
+
+TEST(PatchTextures, ANeedleHasFewCellsAcross) {
+  for (const int apex : {0, 1, 2}) {
+    const PatchMesh mesh =
+        build_patches(needle(apex), {.max_patch_size = 10.0, .elements_per_patch_edge = 1});
+    const CellGrid grid = cells_over(*mesh.textures, 0, corners_of(mesh, 0));
+    EXPECT_EQ(grid.along, 4) << "the short edge crosses one texel";
+    EXPECT_EQ(grid.across, most_texture_points) << "the long edges cross 192 texels";
+  }
+}
+
+TEST(PatchTextures, BothSidesOfAnElementAreAlike) {
+  Scene scene = plate();
+  std::vector<float> shares;
+  for (int i = 0; i < 64 * 16; ++i) shares.push_back(static_cast<float>((i * 37) % 101) / 101.0f);
+  put_picture(scene, 0, picture_of(64, 16, shares));
+  put_mask(scene, 0, picture_of(3, 2, {1.0f, 0.0f, 1.0f, 0.0f, 0.7f, 0.6f}));
+  scene.surfaces[0].shape = std::get<PolygonMesh>(needle(0).surfaces[0].shape);
+  lay_uv(scene.surfaces[0]);
+  const PatchMesh mesh = build_patches(scene, {.max_patch_size = 0.3});
+  ASSERT_TRUE((mesh.element_area != mesh.element_area[0]).any()) << "holes are cut";
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    const int twin = mesh.twin[static_cast<std::size_t>(e)];
+    ASSERT_GE(twin, 0);
+    EXPECT_EQ(mesh.element_area[e], mesh.element_area[twin]);
+    EXPECT_TRUE(
+        (mesh.reflectance.row(mesh.patch[e]) == mesh.reflectance.row(mesh.patch[twin])).all());
+    EXPECT_EQ(mesh.area[mesh.patch[e]], mesh.area[mesh.patch[twin]]);
+  }
 }
 
 TEST(PatchTextures, HolesTakeTheirAreaFromElementsAndPatches) {
