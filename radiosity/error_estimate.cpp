@@ -370,8 +370,7 @@ std::vector<double> sampled_means(const PartSamples& samples, const SampledSolut
 
 std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptions& options,
                                            const RadiositySolution& solution,
-                                           Eigen::ArrayXf* of_elements, int batch,
-                                           std::span<const char> wanted) {
+                                           const EstimateTask& task) {
   const PatchMesh& mesh = lit.mesh();
   const SceneParts& parts = solution.parts;
   std::vector<ErrorEstimate> estimates(static_cast<std::size_t>(parts.judged_count()));
@@ -381,16 +380,18 @@ std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptio
       has_indicator ? Eigen::ArrayXf() : indicators(mesh, irradiance, parts);
   const Eigen::ArrayXf& indicator = has_indicator ? solution.interpolation_error : guessed;
   const int points = estimate_points(options.error_points, mesh.vertex_count());
-  const PartSamples samples = draw_samples(lit, indicator, parts, points, batch, wanted);
+  const PartSamples samples = draw_samples(lit, indicator, parts, points, task.batch, task.wanted);
   if (samples.drawn.empty()) return estimates;
 
   SampledSolution sampled = sample_solution(mesh, solution, irradiance, samples);
   const PartMeans means_of_mesh = part_means(mesh, irradiance, parts);
   choose_rays(options, mesh, samples, points, means_of_mesh, sampled);
-  const BandArray radiosity = gatherable_radiosity(lit, irradiance, solution.direct_irradiance);
+  BandArray own;
+  if (!task.radiosity) own = gatherable_radiosity(lit, irradiance, solution.direct_irradiance);
+  const BandArray& radiosity = task.radiosity ? *task.radiosity : own;
   irradiance.resize(0, 0);
   const GatheredIrradiance gathered =
-      gather_irradiance(lit, radiosity, sampled.points, independent_gather(options, batch));
+      gather_irradiance(lit, radiosity, sampled.points, independent_gather(options, task.batch));
   std::vector<BandArray> truth;
   for (std::size_t p = 0; p < estimates.size(); ++p) {
     const int first = samples.begin[p], n = samples.begin[p + 1] - first;
@@ -403,13 +404,13 @@ std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptio
     const int first = samples.begin[p], n = samples.begin[p + 1] - first;
     if (n == 0 || !(means[p] > 0.0)) continue;
     const SampledSolution here = rows(sampled, first, n);
-    const Eigen::ArrayXd own = truth[p].cast<double>().rowwise().mean();
+    const Eigen::ArrayXd light = truth[p].cast<double>().rowwise().mean();
     const Eigen::ArrayXd reference =
-        own.unaryExpr([mean = means[p]](double E) { return error_reference(mean, E); });
+        light.unaryExpr([mean = means[p]](double E) { return error_reference(mean, E); });
     const RelativeErrors errors =
         relative_errors(here, solution, truth[p], gathered.variance.segment(first, n), reference);
     estimates[p] = mean_estimate(here.weight, errors);
-    const auto scale = of_elements ? indicator_scale(indicator, here, errors) : std::nullopt;
+    const auto scale = task.of_elements ? indicator_scale(indicator, here, errors) : std::nullopt;
     if (!scale) continue;
     if (scaled.size() == 0) scaled = indicator;
     for (int e = 0; e < mesh.element_count(); ++e) {
@@ -417,7 +418,7 @@ std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptio
         scaled[e] = *scale * indicator[e];
     }
   }
-  if (scaled.size() > 0) *of_elements = scaled;
+  if (scaled.size() > 0) *task.of_elements = scaled;
   return estimates;
 }
 

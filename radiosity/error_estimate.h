@@ -21,6 +21,22 @@ struct ErrorEstimate {
   double least() const;  ///< lower end: sqrt(square - deviation), at least 0
 };
 
+/// What estimate_errors() is to estimate, and what is known beforehand.
+struct EstimateTask {
+  /// Batches, from 0, have other sample points and rays.
+  int batch = 0;
+  /// Gets the estimated RMS error of interpolation over each element, for solutions that were not
+  /// refined: proportional to the range of the corners' irradiance (plus 5 %, in the square), and
+  /// scaled to the mean square of the errors beyond the noise of both gathers. Unchanged if there
+  /// are no sample points or no light. Null: not wanted.
+  Eigen::ArrayXf* of_elements = nullptr;
+  /// Parts for which this is 0 are left out; empty: none.
+  std::span<const char> wanted{};
+  /// Result of gatherable_radiosity() for the solution, which takes seconds for coats, shared by
+  /// several batches. Null: found for this one.
+  const BandArray* radiosity = nullptr;
+};
+
 /// Relative RMS error of interpolated irradiance over the judged_patches() of each part, compared
 /// with independent gathers at random sample points.
 ///
@@ -38,16 +54,10 @@ struct ErrorEstimate {
 ///   reflected share of all light. This part is corrected, in each part of the scene by itself.
 /// - Noise of both gathers is left in, which makes up for the other errors that both share.
 ///
-/// The caster of `lit` is of the solution's mesh. `of_elements`, if given, gets the estimated RMS
-/// error of interpolation over each element, for solutions that were not refined: proportional to
-/// the range of the corners' irradiance (plus 5 %, in the square), and scaled to the mean square of
-/// the errors beyond the noise of both gathers. `of_elements` is left unchanged if there are no
-/// sample points or no light. Each `batch`, from 0, has other sample points and rays. Parts for
-/// which `wanted` is 0 are left out (empty: none). Throws Interrupted when progress says stop.
+/// The caster of `lit` is of the solution's mesh. Throws Interrupted when progress says stop.
 std::vector<ErrorEstimate> estimate_errors(const LitScene& lit, const SolveOptions& options,
                                            const RadiositySolution& solution,
-                                           Eigen::ArrayXf* of_elements = nullptr, int batch = 0,
-                                           std::span<const char> wanted = {});
+                                           const EstimateTask& task = {});
 
 /// The estimate by the sample points of both, whose batches have the same size; either may be
 /// empty.

@@ -69,7 +69,7 @@ void raise_to(float& value, double to) {
 }  // namespace
 
 void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiositySolution& solution,
-                    int most) {
+                    int most, const BandArray* radiosity) {
   const PatchMesh& mesh = lit.mesh();
   if (solution.interpolation_error.size() != mesh.element_count()) return;
   const BandArray irradiance = solution.irradiance();
@@ -83,7 +83,7 @@ void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiosityS
     if (dark > 0) raise_to(solution.interpolation_error[e], 0.5 * 3.0 / rays);
     if (dark != corners && reference[e] > 0.0) lit_elements.push_back({e});
   }
-  measure_inside(lit, gather, solution, {.most = most}, lit_elements);
+  measure_inside(lit, gather, solution, {.most = most, .radiosity = radiosity}, lit_elements);
   raise_to_measured(lit_elements, solution);
 }
 

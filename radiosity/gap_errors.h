@@ -19,9 +19,11 @@ inline constexpr int most_gap_elements = 2048;
 ///
 /// At most `most` elements are measured one by one (see measure_inside()).
 ///
+/// `radiosity` is the result of gatherable_radiosity() for the solution; null: found here.
+///
 /// Does nothing without an error estimate. The caster of `lit` is of the solution's mesh; `gather`
 /// decides the shadow rays. Throws Interrupted when progress says stop.
 void add_gap_errors(const LitScene& lit, const GatherOptions& gather, RadiositySolution& solution,
-                    int most = most_gap_elements);
+                    int most = most_gap_elements, const BandArray* radiosity = nullptr);
 
 }  // namespace lightwell

@@ -16,6 +16,7 @@
 #include "radiosity/error_estimate.h"
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/gap_errors.h"
+#include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/openings/portals.h"
 #include "radiosity/patch_light.h"
 #include "radiosity/reconstruct.h"
@@ -162,10 +163,9 @@ class GatherAttempts {
     GatherOptions gather = options_.gather;
     gather.run = options_.run;
     constexpr int for_an_early_end = 512;
-    add_gap_errors({scene_, *caster_, sources_.all}, gather, solved_.solution,
-                   is_finished ? most_gap_elements : for_an_early_end);
-    if (is_finished)
-      add_unjudged_errors({scene_, *caster_, sources_.all}, gather, solved_.solution);
+    add_gap_errors(lit(), gather, solved_.solution,
+                   is_finished ? most_gap_elements : for_an_early_end, &radiosity_);
+    if (is_finished) add_unjudged_errors(lit(), gather, solved_.solution, &radiosity_);
     spent_["error_estimate"] += watch_.lap();
   }
 
@@ -181,6 +181,7 @@ class GatherAttempts {
 
  private:
   bool may_repeat() const { return target_ > 0.0; }
+  LitScene lit() const { return {scene_, *caster_, sources_.all}; }
 
   // Takes the efforts of the parts, and shadow rays for the largest of them.
   void take(std::vector<Effort> efforts) {
@@ -262,6 +263,7 @@ class GatherAttempts {
 
   void gather() {
     state_ = State::has_pilot;
+    radiosity_.resize(0, 0);
     reconstruct({scene_, *caster_, sources_.by_channel}, options_, *pilot_, solved_.solution,
                 may_repeat() ? &kept_ : nullptr);
     relight(solved_, effective_scales(solved_.solution));
@@ -272,8 +274,8 @@ class GatherAttempts {
 
   std::vector<ErrorEstimate> estimate_batch(int batch, Eigen::ArrayXf* of_elements,
                                             std::span<const char> wanted) const {
-    return estimate_errors({scene_, *caster_, sources_.all}, options_, solved_.solution,
-                           of_elements, batch, wanted);
+    return estimate_errors(lit(), options_, solved_.solution,
+                           {batch, of_elements, wanted, &radiosity_});
   }
 
   // True if the target of a part is missed, and if either
@@ -293,6 +295,7 @@ class GatherAttempts {
     Eigen::ArrayXf& of_elements = solved_.solution.interpolation_error;
     const bool has_errors = of_elements.size() > 0;
     if (!has_errors) raised_.assign(estimates_.size(), 1);
+    if (radiosity_.size() == 0) radiosity_ = gatherable_radiosity(lit(), solved_.solution);
     const std::vector<ErrorEstimate> first =
         estimate_batch(0, has_errors ? nullptr : &of_elements, raised_);
     for (std::size_t p = 0; p < first.size(); ++p) {
@@ -340,6 +343,7 @@ class GatherAttempts {
       take_mesh(false);
     }
     if (state_ == State::has_pilot) {
+      radiosity_.resize(0, 0);
       take_pilot_light({scene_, *caster_, sources_.by_channel}, options_, *pilot_,
                        may_repeat() ? &kept_ : nullptr, solution);
       relight(solved_, effective_scales(solution));
@@ -434,6 +438,7 @@ class GatherAttempts {
   std::optional<PilotGather> pilot_{};
   std::optional<ElementCaster> caster_{};
   KeptGathers kept_{};
+  BandArray radiosity_{};  // that gathers read, of the solution; empty: not found yet
   std::vector<ErrorEstimate> estimates_{};  // of each part
   std::vector<char> raised_{};  // 1 for each part whose light changed since its estimate
   Stopwatch watch_{};

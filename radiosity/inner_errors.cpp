@@ -106,7 +106,9 @@ void measure_inside(const LitScene& lit, const GatherOptions& gather,
       std::min(effort.most, elements_in_budget(effort.rays, lit.direct_light.light_count()));
   const int step = std::max(1, (all + most - 1) / most);
   const int measured = (all + step - 1) / step;
-  const BandArray radiosity = gatherable_radiosity(lit, irradiance, solution.direct_irradiance);
+  BandArray own;
+  if (!effort.radiosity) own = gatherable_radiosity(lit, irradiance, solution.direct_irradiance);
+  const BandArray& radiosity = effort.radiosity ? *effort.radiosity : own;
   if (solution.caustic_irradiance.size() > 0) irradiance -= solution.caustic_irradiance;
   const auto of = [&](int i) -> InnerError& {
     return elements[static_cast<std::size_t>(step) * static_cast<std::size_t>(i)];

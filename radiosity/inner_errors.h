@@ -28,6 +28,8 @@ struct InnerEffort {
   int rays = 64;                 ///< rays of the hemisphere at each point
   bool counts_noise = true;      ///< whether the noise of these rays counts as an error
   std::uint64_t replica = 4000;  ///< keeps the random numbers apart from those of other gathers
+  /// Result of gatherable_radiosity() for the solution; null: found here.
+  const BandArray* radiosity = nullptr;
 };
 
 /// Measures squared errors of elements: irradiance is gathered at the points inside and compared

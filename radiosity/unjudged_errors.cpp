@@ -35,12 +35,13 @@ std::vector<InnerError> unjudged_elements(const LitScene& lit, const SceneParts&
 }  // namespace
 
 void add_unjudged_errors(const LitScene& lit, const GatherOptions& gather,
-                         RadiositySolution& solution) {
+                         RadiositySolution& solution, const BandArray* radiosity) {
   if (solution.interpolation_error.size() != lit.mesh().element_count()) return;
   std::vector<InnerError> elements = unjudged_elements(lit, solution.parts);
   // Light on these surfaces is even in most places, and the noise of 256 rays is a few percent of
   // the light before it is taken off.
-  const InnerEffort effort{.most = 1024, .rays = 256, .counts_noise = false, .replica = 4500};
+  const InnerEffort effort{
+      .most = 1024, .rays = 256, .counts_noise = false, .replica = 4500, .radiosity = radiosity};
   measure_inside(lit, gather, solution, effort, elements);
   raise_to_measured(elements, solution);
 }

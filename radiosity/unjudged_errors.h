@@ -11,12 +11,13 @@ namespace lightwell {
 /// lit by cracks (see judged_patches()). Each element has at least the RMS difference between
 /// interpolated and gathered irradiance at four points inside, less the noise of these gathers (see
 /// measure_inside()). Crumbs have the error of their records (see add_record_errors()), and round
-/// shapes are left out.
+/// shapes are left out. `radiosity` is the result
+/// of gatherable_radiosity() for the solution; null: found here.
 ///
 /// Does nothing without an error estimate, and where all patches count. The caster of `lit` is of
 /// the solution's mesh; `gather` decides the shadow rays. Throws Interrupted when progress says
 /// stop.
 void add_unjudged_errors(const LitScene& lit, const GatherOptions& gather,
-                         RadiositySolution& solution);
+                         RadiositySolution& solution, const BandArray* radiosity = nullptr);
 
 }  // namespace lightwell

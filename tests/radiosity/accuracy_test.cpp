@@ -11,6 +11,7 @@
 #include "mesh/patches/patch_sampler.h"
 #include "radiosity/direct_light/direct_light.h"
 #include "radiosity/error_estimate.h"
+#include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/refine/error_reference.h"
 #include "radiosity/solve.h"
 #include "scene/errors.h"
@@ -341,7 +342,8 @@ TEST(ErrorEstimate, BatchesJoin) {
   double deviation = 0.0, of_mean = 0.0;
   for (int batch = 0; batch < batches; ++batch) {
     const ErrorEstimate one =
-        estimate_errors({scene, caster, direct_light}, {}, solved.solution, nullptr, batch).front();
+        estimate_errors({scene, caster, direct_light}, {}, solved.solution, {.batch = batch})
+            .front();
     all = batch == 0 ? one : joined(all, one);
     squares.push_back(one.square);
     deviation += one.deviation / batches;
@@ -364,6 +366,24 @@ TEST(ErrorEstimate, BatchesJoin) {
   EXPECT_GT(spread, 0.0);
 }
 
+// Light that is found once serves all batches, with the bits of light that is found anew.
+TEST(ErrorEstimate, ReadsTheLightThatItIsGiven) {
+  const Scene scene = test::two_lamps({.reflectance = 0.5f});
+  SolveOptions options;
+  options.gather.rays = 64;
+  const SolvedScene solved = solve_scene(scene, options);
+  const ElementCaster caster(solved.mesh);
+  const DirectLight direct_light(scene, solved.mesh);
+  const LitScene lit{scene, caster, direct_light};
+  const auto square_with = [&](const BandArray* radiosity) {
+    return estimate_errors(lit, options, solved.solution, {.radiosity = radiosity}).front().square;
+  };
+  const BandArray own = gatherable_radiosity(lit, solved.solution);
+  const BandArray twice = 2.0f * own;
+  EXPECT_EQ(square_with(&own), square_with(nullptr));
+  EXPECT_NE(square_with(&twice), square_with(nullptr));
+}
+
 // Further batches decide whether a target is met. Without one they would cost and decide nothing.
 TEST(ErrorEstimate, IsMadeOfOneBatchWithoutATarget) {
   const Scene scene = test::two_lamps({.reflectance = 0.5f});
@@ -373,7 +393,8 @@ TEST(ErrorEstimate, IsMadeOfOneBatchWithoutATarget) {
   const ElementCaster caster(solved.mesh);
   const DirectLight direct_light(scene, solved.mesh);
   const auto batch = [&](int number) {
-    return estimate_errors({scene, caster, direct_light}, options, solved.solution, nullptr, number)
+    return estimate_errors({scene, caster, direct_light}, options, solved.solution,
+                           {.batch = number})
         .front();
   };
   const ErrorEstimate one = batch(0);
