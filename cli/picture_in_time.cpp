@@ -46,12 +46,15 @@ std::shared_ptr<const IrradianceRecords> records_in_time(SceneRenderer& renderer
   return records;
 }
 
-// Four samples for each pixel, with light from the solution.
+// Samples of each pixel in the quickest picture, and the first ones of gloss in quicker pictures.
+constexpr int quick_samples = 4;
+
+// A few samples for each pixel, with light from the solution.
 RenderOptions quickest(const RenderOptions& given) {
   RenderOptions options;
   options.pass = Pass::interpolate;
   options.glossy_rays = 1;
-  options.sampling.most = options.sampling.least = 4;
+  options.sampling.most = options.sampling.least = quick_samples;
   options.photons = 0;
   options.layers = given.layers;
   options.run = given.run;
@@ -74,6 +77,7 @@ bool is_given_up(SceneRenderer& renderer, const Camera& camera, const RenderOpti
                  bool may_give_up, PictureInTime& picture) {
   RenderOptions options = options_of(picture.arguments, given);
   if (given.run.has_limit()) options.has_records = given.records != nullptr;
+  options.sampling.least = std::min(options.sampling.least, given.sampling.least);
   // Rows tell the pace; the photons of caustics come first, and all pictures share them.
   Pace pace(given.run.time_left());
   bool gave_up = false;
@@ -101,25 +105,48 @@ bool is_given_up(SceneRenderer& renderer, const Camera& camera, const RenderOpti
   return gave_up;
 }
 
+// Renders with the first of `candidates` that keeps the pace, and returns its rows.
+PictureInTime best_in_time(SceneRenderer& renderer, const Camera& camera,
+                           const std::vector<RenderArguments>& candidates,
+                           const RenderOptions& given) {
+  PictureInTime picture;
+  RenderOptions options = given;
+  const bool is_limited = given.run.has_limit();
+  if (is_limited) {
+    options.records = records_in_time(renderer, camera, candidates.front(), given);
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const bool may_give_up = is_limited && i + 1 < candidates.size();
+    if (i > 0) {
+      // The noise of few rays would split all pixels to the end.
+      options.max_subdivision = 1;
+      options.sampling.least = quick_samples;
+    }
+    picture.arguments = candidates[i];
+    if (!is_given_up(renderer, camera, options, may_give_up, picture)) break;
+  }
+  return picture;
+}
+
 }  // namespace
 
 PictureInTime render_in_time(SceneRenderer& renderer, const Camera& camera,
                              const RenderArguments& arguments, const RenderOptions& given) {
-  PictureInTime picture;
   const std::vector<RenderArguments> candidates = from_best_to_quickest(arguments);
-  RenderOptions options = given;
-  if (given.run.has_limit()) options.records = records_in_time(renderer, camera, arguments, given);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const bool may_give_up = given.run.has_limit() && i + 1 < candidates.size();
-    // The noise of few rays would split all pixels to the end.
-    if (i > 0) options.max_subdivision = 1;
-    picture.arguments = candidates[i];
-    if (!is_given_up(renderer, camera, options, may_give_up, picture)) break;
+  PictureInTime picture;
+  RenderReport of_quick;
+  Image quick;
+  if (given.run.has_limit()) quick = renderer.render(camera, quickest(given), &of_quick);
+  if (given.run.is_time_up()) {
+    picture.arguments = candidates.back();
+  } else {
+    picture = best_in_time(renderer, camera, candidates, given);
+    if (picture.rows == camera.height) return picture;
   }
-  if (picture.rows == camera.height) return picture;
-  const Image finished = std::move(picture.image);
-  picture.image = renderer.render(camera, quickest(given), &picture.rendered);
-  if (picture.rows > 0) copy_rows(finished, 0, picture.rows, picture.image);
+  if (quick.width == 0) quick = renderer.render(camera, quickest(given), &of_quick);
+  if (picture.rows > 0) copy_rows(picture.image, 0, picture.rows, quick);
+  picture.image = std::move(quick);
+  picture.rendered = of_quick;
   return picture;
 }
 

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "raytrace/pixel_mean.h"
-#include "raytrace/sampled_rows.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
@@ -91,6 +90,16 @@ void average_pixels(const Eye& eye, const RenderOptions& options, int first_row,
   });
 }
 
+int rows_of_tile(Sampled sampled, const RunControl& run, int width) {
+  // A pixel of gloss takes up to some ten milliseconds. A journal numbers tiles, whatever the time.
+  constexpr int pixels_in_limited_time = 2048;
+  if (run.has_limit() && !run.journal) return std::max(1, pixels_in_limited_time / width);
+  constexpr int sampled_rows = 24;
+  if (sampled != Sampled::none) return sampled_rows;
+  constexpr int pixels_per_tile = 8192;
+  return std::max(1, pixels_per_tile / width);
+}
+
 }  // namespace
 
 TileRenderer::TileRenderer(const Eye& eye, const PixelSamples& samples, Sampled sampled,
@@ -98,20 +107,14 @@ TileRenderer::TileRenderer(const Eye& eye, const PixelSamples& samples, Sampled 
                            LayerFilm& layers)
     : eye_(eye),
       samples_(samples),
+      row_sampler_(samples, image, layers),
       sampled_(sampled),
       options_(options),
       counters_(counters),
       image_(image),
       layers_(layers),
-      corners_(tile_rows() + 1, CornerRow(image.width + 1)) {}
-
-int TileRenderer::tile_rows() const {
-  // Each tile also takes, and discards, the first samples of neighbouring rows.
-  constexpr int sampled_rows = 24;
-  if (sampled_ != Sampled::none) return sampled_rows;
-  constexpr int pixels_per_tile = 8192;
-  return std::max(1, pixels_per_tile / image_.width);
-}
+      tile_rows_(rows_of_tile(sampled, options.run, image.width)),
+      corners_(tile_rows_ + 1, CornerRow(image.width + 1)) {}
 
 void TileRenderer::render(int first_row, int rows) {
   if (sampled_ == Sampled::all) return sample(first_row, rows, nullptr);
@@ -125,8 +128,8 @@ void TileRenderer::render(int first_row, int rows) {
 
 void TileRenderer::sample(int first_row, int rows, const GlossMask* only) {
   const double part = static_cast<double>(first_row) / image_.height;
-  const SampledRows took =
-      sample_rows(samples_, first_row, rows, options_.run.progress, part, image_, layers_, only);
+  const SampledRows took = row_sampler_.sample(
+      first_row, rows, [&] { report(options_.run.progress, "render", part); }, only);
   counters_.eye_rays += took.samples;
   counters_.depth_cut += took.depth_cut;
   counters_.add_cut(took.cut_weight);

@@ -6,6 +6,7 @@
 #include "raytrace/layer_film.h"
 #include "raytrace/pictures/image.h"
 #include "raytrace/pixel_samples.h"
+#include "raytrace/sampled_rows.h"
 
 namespace lightwell {
 
@@ -23,8 +24,9 @@ class TileRenderer {
                const RenderOptions& options, RayCounters& counters, Image& image,
                LayerFilm& layers);
 
-  /// Rows of a tile: few enough to stop soon and to lose little, enough to keep all threads busy.
-  int tile_rows() const;
+  /// Rows of a tile: few enough to stop soon and to lose little, enough to keep all threads busy;
+  /// fewer in limited time, of which a tile that is not finished would waste much.
+  int tile_rows() const { return tile_rows_; }
   /// Fills radiance and sampled layers of a tile.
   void render(int first_row, int rows);
 
@@ -34,11 +36,13 @@ class TileRenderer {
 
   const Eye& eye_;
   const PixelSamples& samples_;
+  RowSampler row_sampler_;
   Sampled sampled_;
   const RenderOptions& options_;
   RayCounters& counters_;
   Image& image_;
   LayerFilm& layers_;
+  int tile_rows_;
   std::vector<CornerRow> corners_;
   int row_of_corners_ = -1;  // row of corners_.front(); -1: none yet
 };

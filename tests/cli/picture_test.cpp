@@ -371,6 +371,24 @@ TEST_F(Pictures, PicturesKeepTheTime) {
   EXPECT_TRUE(exists("Q.exr"));
 }
 
+// A picture without time is whole: it has the light of the solution in every row.
+TEST_F(Pictures, APictureWithoutTimeIsWhole) {
+  const Ended ended = run({"render", "room.toml", "S.vtp", "--size", "800x800", "-o", "Q.exr",
+                           "--shadow-rays", "256", "--time", "0.1s", "--json"});
+  ASSERT_EQ(ended.code, 4) << ended.err;
+  ASSERT_EQ(run({"render", "room.toml", "S.vtp", "--size", "200x200", "-o", "R.exr"}).code, 0);
+  const Image quick = read_exr(folder / "Q.exr"), whole = read_exr(folder / "R.exr");
+  // The mean of errors is at most their RMS.
+  const double rms = read_solution(folder / "S.vtp").solution.error_estimate;
+  constexpr int strip = 100 * 800;
+  for (int first = 0; first < 800 * 800; first += strip) {
+    const double of_quick = quick.radiance.middleRows(first, strip).cast<double>().mean();
+    EXPECT_GT(of_quick, 0.0) << first;
+  }
+  const double of_quick = quick.radiance.cast<double>().mean();
+  EXPECT_NEAR(of_quick / whole.radiance.cast<double>().mean(), 1.0, rms);
+}
+
 TEST_F(Pictures, CompareFailsAboveTheErrorThatIsAllowed) {
   ASSERT_EQ(run(render({"-o", "a.exr"})).code, 0);
   ASSERT_EQ(run({"render", "room.toml", "S.vtp", "--size", "24x18", "-o", "b.exr"}).code, 0);
