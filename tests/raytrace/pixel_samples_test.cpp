@@ -64,6 +64,34 @@ TEST(PixelSamples, StopWhereTheErrorIsAskedFor) {
   EXPECT_LT(fine.eye_rays, 25 * 4096);
 }
 
+// In limited time tiles have fewer rows, which changes no pixel: tiles of 6 rows take over the
+// first samples of the rows beside the tile before, and tiles of 24 rows their own.
+TEST(PixelSamples, BitsDoNotDependOnTheRowsOfTiles) {
+  const TracedScene lit(SceneBuilder()
+                            .square({.specular = 0.9f, .roughness = 0.3f}, {0, 0, 0}, {0, 0, 1}, 3)
+                            .square({.reflectance = 0.5f}, {2, 0, 1}, {-1, 0, 0}, 1)
+                            .sphere({.exitance = pi_f}, {0, 1, 2}, 0.3)
+                            .build());
+  const Camera camera{.position = {-5, 0, 2},
+                      .direction = {0.96, 0, -0.28},
+                      .up = {0.28, 0, 0.96},
+                      .fov_degrees = 40,
+                      .width = 320,
+                      .height = 50};
+  for (const int most : {0, 32}) {  // gloss alone, and all pixels
+    RenderOptions options{.sampling = {.most = most, .least = 4, .noise = 0.2f}};
+    RenderReport usual, limited;
+    const Image image = lit.render(camera, options, &usual);
+    options.run.seconds_left = [] { return 1e6; };
+    const Image in_time = lit.render(camera, options, &limited);
+    EXPECT_EQ(usual.tiles, 3) << "of 24, 24 and 2 rows";
+    EXPECT_EQ(limited.tiles, 9) << "of 6 rows, and 2";
+    EXPECT_EQ(limited.eye_rays, usual.eye_rays);
+    EXPECT_GT(usual.eye_rays, 2 * 320 * 50) << "gloss fills the lower half at least";
+    EXPECT_TRUE((in_time.radiance == image.radiance).all()) << most;
+  }
+}
+
 // A small lamp at distance d before a lens of radius r focused at f is a disk of radius
 // r |1/d - 1/f| on the picture plane at distance 1, with variance radius^2 / 4 along each axis and
 // the total light of a pinhole's picture.
