@@ -44,6 +44,22 @@ void say_bounds(const ProbeBounds& bounds, double accuracy, Console& console, Re
       bounds.missed, bounds.lux_within.size(), 100.0 * accuracy, sure_sets, most_sure_rays));
 }
 
+// Tells of points just behind a surface, whose light is that of its back.
+void note_points_behind(const ElementCaster& caster, std::span<const Probe> probes,
+                        double metres_per_unit, Console& console, Report& report) {
+  const std::vector<int> behind = probes_behind_surfaces(caster, probes);
+  report.add("points_behind_surfaces", behind.size());
+  if (behind.empty()) return;
+  const Eigen::Vector3d at =
+      probes[static_cast<std::size_t>(behind.front())].position / metres_per_unit;
+  console.say(fmt::format(
+      "note: {} of {} points lie a little behind a surface that faces their way, and have the "
+      "light "
+      "of its back; move them forward if they are meant for its front (the first: point {} at "
+      "({:g}, {:g}, {:g})).",
+      behind.size(), probes.size(), behind.front() + 1, at.x(), at.y(), at.z()));
+}
+
 // Refuses an accuracy that is no share from 0.1 % to 100 %.
 double probe_accuracy(const std::string& text) {
   constexpr double least = 1e-3;
@@ -101,6 +117,7 @@ int probe(const ProbeArguments& arguments, Console& console) {
     irradiance = interpolate_irradiance(caster, solved.solution, probes);
     lux_within = interpolation_bound(caster, solved.solution, probes);
   } else {
+    note_points_behind(caster, probes, scene.metres_per_unit, console, report);
     const DirectLight direct_light(scene, caster);
     ProbeBounds bounds{.accuracy = arguments.accuracy};
     irradiance = probe_irradiance(scene, caster, direct_light, solved.solution, probes,

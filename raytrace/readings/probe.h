@@ -62,6 +62,11 @@ BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySol
 Eigen::ArrayXd interpolation_bound(const ElementCaster& caster, const RadiositySolution& solution,
                                    std::span<const Probe> probes);
 
+/// Numbers of the probes that lie on no surface, and less than 1e-3 of the scene's diagonal behind
+/// one that faces their way, so that they see its back: points at the height of a floor whose model
+/// is uneven.
+std::vector<int> probes_behind_surfaces(const ElementCaster& caster, std::span<const Probe> probes);
+
 /// Writes columns x,y,z,nx,ny,nz,E_<band>...,lux and, unless `lux_within` is empty, lux_within, in
 /// which NaN leaves a cell empty; coordinates are in file units. The file is written under a
 /// temporary name and renamed. Throws std::runtime_error that names the file.

@@ -12,6 +12,9 @@ namespace {
 
 // Greatest distance of a probe from its surface, as a share of the scene's diagonal.
 constexpr double reach_share = 1e-4;
+// Greatest distance at which a probe is taken to be meant for the surface before it, over the
+// reach.
+constexpr double behind_share = 10.0;
 
 // Unit normal at a hit, on the side of the probe or the opposite one. The back of a one-sided
 // surface has no element, so the normal is that of its front.
@@ -48,6 +51,14 @@ std::optional<ProbeSurface::Found> ProbeSurface::find(const Probe& probe) const 
     if (!behind) behind = point_on_surface;
   }
   return behind ? behind : straight;
+}
+
+bool ProbeSurface::is_behind_surface(const Probe& probe) const {
+  const Ray ray{
+      .origin = probe.position, .direction = probe.normal, .t_max = behind_share * reach_};
+  ElementHit hit;
+  caster_.closest_hits({&ray, 1}, {&hit, 1});
+  return hit.facet >= 0 && hit.from_back;
 }
 
 // Returns the nearest point of the surfaces within reach above or below `position` that face
@@ -121,6 +132,18 @@ GatherPoint probe_point(const Probe& probe, const std::optional<ProbeSurface::Fo
     point.facet = found->hit.facet;
   }
   return point;
+}
+
+std::vector<int> probes_behind_surfaces(const ElementCaster& caster,
+                                        std::span<const Probe> probes) {
+  const ProbeSurface surface(caster);
+  std::vector<int> behind;
+  for (std::size_t i = 0; i < probes.size(); ++i) {
+    if (surface.is_behind_surface(probes[i]) && !surface.find(probes[i])) {
+      behind.push_back(static_cast<int>(i));
+    }
+  }
+  return behind;
 }
 
 std::vector<GatherPoint> probe_points(const ElementCaster& caster, std::span<const Probe> probes) {

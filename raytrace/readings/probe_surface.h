@@ -26,6 +26,8 @@ class ProbeSurface {
   /// surface stands on its own surface, is moved by a tenth of the reach to a point that lies
   /// clearly within its facet and in front of what stands there.
   std::optional<Found> find(const Probe& probe) const;
+  /// True if a surface shows its back to the probe, less than ten times the reach before it.
+  bool is_behind_surface(const Probe& probe) const;
 
  private:
   struct Frame {

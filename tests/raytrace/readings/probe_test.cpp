@@ -42,6 +42,17 @@ const TracedScene& furnace() {
   return *lit;
 }
 
+// The reach of a surface is 1e-4 of the diagonal, 2 sqrt(3) m, and probes are named up to ten times
+// as far behind it.
+TEST(ProbeSurface, NamesProbesJustBehindSurfaces) {
+  const std::vector<Probe> probes = {{{1.5, 1.5, 0.0}, up},    {{1.5, 1.5, -3e-4}, up},
+                                     {{1.5, 1.5, -1e-3}, up},  {{1.5, 1.5, -3e-3}, up},
+                                     {{1.5, 1.5, -5e-3}, up},  {{1.5, 1.5, 1e-3}, up},
+                                     {{1.5, 1.5, -1e-3}, -up}, {{0.7, 0.7, 0.999}, up},
+                                     {{0.7, 0.7, 1.001}, up},  {{1.5, 1.5, 1.0}, up}};
+  EXPECT_EQ(probes_behind_surfaces(furnace().caster, probes), (std::vector<int>{2, 3, 7}));
+}
+
 struct NamedProbe {
   const char* name;
   Probe probe;
