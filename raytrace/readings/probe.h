@@ -52,7 +52,7 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
 
 /// Irradiance at each probe, probes x bands, W/m^2, interpolated on the solution's mesh. Throws
 /// InputError that names the first probe that lies on no surface facing its way, within 1e-4 of the
-/// scene's diagonal, or on the back of a one-sided surface.
+/// scene's diagonal (at most 2 cm, or 2e-6 of it), or on the back of a one-sided surface.
 BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySolution& solution,
                                  std::span<const Probe> probes);
 
@@ -62,7 +62,7 @@ BandArray interpolate_irradiance(const ElementCaster& caster, const RadiositySol
 Eigen::ArrayXd interpolation_bound(const ElementCaster& caster, const RadiositySolution& solution,
                                    std::span<const Probe> probes);
 
-/// Numbers of the probes that lie on no surface, and less than 1e-3 of the scene's diagonal behind
+/// Numbers of the probes that lie on no surface, and less than ten times that reach behind
 /// one that faces their way, so that they see its back: points at the height of a floor whose model
 /// is uneven.
 std::vector<int> probes_behind_surfaces(const ElementCaster& caster, std::span<const Probe> probes);

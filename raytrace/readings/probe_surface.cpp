@@ -1,6 +1,7 @@
 #include "raytrace/readings/probe_surface.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 
 #include "mesh/patches/mesh_bounds.h"
@@ -10,8 +11,13 @@
 namespace lightwell {
 namespace {
 
-// Greatest distance of a probe from its surface, as a share of the scene's diagonal.
-constexpr double reach_share = 1e-4;
+// Greatest distance of a probe from its surface, m, for a scene's diagonal. Where a facet lies
+// kilometres away, a share of the diagonal would reach from a desk to the floor below. Single
+// precision rounds coordinates to 6e-8 of the diagonal.
+double reach_in(double diagonal) {
+  constexpr double share = 1e-4, most = 0.02, of_rounding = 2e-6;
+  return std::min(share * diagonal, std::max(most, of_rounding * diagonal));
+}
 // Greatest distance at which a probe is taken to be meant for the surface before it, over the
 // reach.
 constexpr double behind_share = 10.0;
@@ -31,7 +37,7 @@ Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
 }  // namespace
 
 ProbeSurface::ProbeSurface(const ElementCaster& caster)
-    : caster_(caster), reach_(reach_share * scenery_bounds(caster.mesh()).diagonal()) {}
+    : caster_(caster), reach_(reach_in(scenery_bounds(caster.mesh()).diagonal())) {}
 
 std::optional<ProbeSurface::Found> ProbeSurface::find(const Probe& probe) const {
   Frame frame{.normal = probe.normal};

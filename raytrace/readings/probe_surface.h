@@ -11,7 +11,8 @@
 
 namespace lightwell {
 
-/// Search for the surface that a probe lies on: within 1e-4 of the scene's diagonal.
+/// Search for the surface that a probe lies on, within a reach of 1e-4 of the scene's diagonal, but
+/// at most 2 cm or 2e-6 of the diagonal.
 class ProbeSurface {
  public:
   struct Found {

@@ -53,6 +53,18 @@ TEST(ProbeSurface, NamesProbesJustBehindSurfaces) {
   EXPECT_EQ(probes_behind_surfaces(furnace().caster, probes), (std::vector<int>{2, 3, 7}));
 }
 
+// A facet 10 km away, whose share of the diagonal is a metre, takes no desk for the floor below.
+TEST(ProbeSurface, ReachesNoFurtherForAFarFacet) {
+  const Paint paint{.reflectance = rho, .exitance = M, .one_sided = true};
+  TracedScene lit(SceneBuilder()
+                      .box(paint, {0, 0, 0}, {2, 2, 2}, true)
+                      .polygon(paint, {{10000, 0, 0}, {10000, 1, 0}, {10000, 0, 1}})
+                      .build());
+  lit.set_indirect([](const auto&) { return B; });
+  EXPECT_THROW(interpolated(lit, {{{1.0, 1.0, 0.7}, up}}), InputError);
+  EXPECT_NO_THROW(interpolated(lit, {{{1.0, 1.0, 0.01}, up}}));
+}
+
 struct NamedProbe {
   const char* name;
   Probe probe;
