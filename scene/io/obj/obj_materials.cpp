@@ -385,7 +385,9 @@ class MapReader {
     const auto folder = file_.path().parent_path();
     const auto path = find_foreign_file(folder, name);
     if (!path) {
-      remarks_.add("pictures that are missing were left out", (folder / name).string());
+      std::string missing = (folder / name).string();
+      std::ranges::replace(missing, '\\', '/');
+      remarks_.add("pictures that are missing were left out", missing);
       return std::nullopt;
     }
     try {
