@@ -366,19 +366,27 @@ TEST(ErrorEstimate, BatchesJoin) {
   EXPECT_GT(spread, 0.0);
 }
 
+// A room of two lamps that is solved with few rays.
+struct RoomOfFewRays {
+  Scene scene = test::two_lamps({.reflectance = 0.5f});
+  SolveOptions options{.gather = {.rays = 64}};
+  SolvedScene solved = solve_scene(scene, options);
+  ElementCaster caster{solved.mesh};
+  DirectLight direct_light{scene, solved.mesh};
+
+  LitScene lit() const { return {scene, caster, direct_light}; }
+  ErrorEstimate estimate(const EstimateTask& task) const {
+    return estimate_errors(lit(), options, solved.solution, task).front();
+  }
+};
+
 // Light that is found once serves all batches, with the bits of light that is found anew.
 TEST(ErrorEstimate, ReadsTheLightThatItIsGiven) {
-  const Scene scene = test::two_lamps({.reflectance = 0.5f});
-  SolveOptions options;
-  options.gather.rays = 64;
-  const SolvedScene solved = solve_scene(scene, options);
-  const ElementCaster caster(solved.mesh);
-  const DirectLight direct_light(scene, solved.mesh);
-  const LitScene lit{scene, caster, direct_light};
+  const RoomOfFewRays room;
   const auto square_with = [&](const BandArray* radiosity) {
-    return estimate_errors(lit, options, solved.solution, {.radiosity = radiosity}).front().square;
+    return room.estimate({.radiosity = radiosity}).square;
   };
-  const BandArray own = gatherable_radiosity(lit, solved.solution);
+  const BandArray own = gatherable_radiosity(room.lit(), room.solved.solution);
   const BandArray twice = 2.0f * own;
   EXPECT_EQ(square_with(&own), square_with(nullptr));
   EXPECT_NE(square_with(&twice), square_with(nullptr));
@@ -386,21 +394,11 @@ TEST(ErrorEstimate, ReadsTheLightThatItIsGiven) {
 
 // Further batches decide whether a target is met. Without one they would cost and decide nothing.
 TEST(ErrorEstimate, IsMadeOfOneBatchWithoutATarget) {
-  const Scene scene = test::two_lamps({.reflectance = 0.5f});
-  SolveOptions options;
-  options.gather.rays = 64;
-  const SolvedScene solved = solve_scene(scene, options);
-  const ElementCaster caster(solved.mesh);
-  const DirectLight direct_light(scene, solved.mesh);
-  const auto batch = [&](int number) {
-    return estimate_errors({scene, caster, direct_light}, options, solved.solution,
-                           {.batch = number})
-        .front();
-  };
-  const ErrorEstimate one = batch(0);
+  const RoomOfFewRays room;
+  const ErrorEstimate one = room.estimate({.batch = 0});
   ErrorEstimate four = one;
-  for (int number = 1; number < 4; ++number) four = joined(four, batch(number));
-  const double error = solved.solution.error_estimate;
+  for (int batch = 1; batch < 4; ++batch) four = joined(four, room.estimate({.batch = batch}));
+  const double error = room.solved.solution.error_estimate;
   EXPECT_LT(std::abs(error - one.error()), std::abs(error - four.error()));
 }
 
