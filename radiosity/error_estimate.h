@@ -21,7 +21,7 @@ struct ErrorEstimate {
   double least() const;  ///< lower end: sqrt(square - deviation), at least 0
 };
 
-/// What estimate_errors() is to estimate, and what is known beforehand.
+/// Sample points and parts of an estimate by estimate_errors(), and light that is known beforehand.
 struct EstimateTask {
   /// Batches, from 0, have other sample points and rays.
   int batch = 0;

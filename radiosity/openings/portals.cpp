@@ -5,6 +5,7 @@
 #include <limits>
 #include <numbers>
 #include <ranges>
+#include <span>
 
 #include "radiosity/journal/journal_phase.h"
 #include "scene/parallel.h"
@@ -19,6 +20,7 @@ using Eigen::Vector3d;
 // View through one side of an opening.
 struct Sight {
   double brightness = 0.0;  // sum over paths
+  double reference = 0.0;   // sum over paths of what errors are relative to
   int paths = 0;            // that ended on this side
   double distance = 0.0;    // metres, sum over paths that ended on a surface
   Eigen::AlignedBox3d region{};
@@ -32,8 +34,10 @@ struct Sight {
 
 class Sights {
  public:
-  Sights(const ElementCaster& caster, const std::vector<float>& brightness)
-      : caster_(caster), brightness_(brightness) {}
+  // `reference` of each element is read as `brightness` is; empty: not wanted.
+  Sights(const ElementCaster& caster, const std::vector<float>& brightness,
+         std::span<const float> reference = {})
+      : caster_(caster), brightness_(brightness), reference_(reference) {}
 
   static constexpr int most_paths = 128;
 
@@ -113,7 +117,9 @@ class Sights {
         const double across = (at - opening.center).dot(opening.across);
         sight.spread = std::max(sight.spread, std::abs(across) / opening.across.squaredNorm());
         if (hit.element >= 0) {
-          sight.brightness += brightness_[static_cast<std::size_t>(hit.element)];
+          const auto element = static_cast<std::size_t>(hit.element);
+          sight.brightness += brightness_[element];
+          if (!reference_.empty()) sight.reference += reference_[element];
         }
         return;
       }
@@ -127,6 +133,7 @@ class Sights {
 
   const ElementCaster& caster_;
   const std::vector<float>& brightness_;
+  std::span<const float> reference_;
 };
 
 // True if both sides are wider than the opening. Behind the mouth of a crevice, such as that
@@ -367,19 +374,19 @@ std::vector<Opening> notable_openings(const ElementCaster& caster,
                                       std::vector<Opening> openings) {
   constexpr int paths = 16;
   constexpr double notable = 1e-3;
-  const Sights light(caster, brightness), errors(caster, reference);
+  const Sights sights(caster, brightness, reference);
   const auto is_notable = [&](int i) {
     const Opening& opening = openings[static_cast<std::size_t>(i)];
-    std::array<Sight, 2> seen, relative_to;
+    std::array<Sight, 2> seen;
     for (const int side : {0, 1}) {
-      light.look(opening, static_cast<std::uint64_t>(i), side, 0, paths, seen[side]);
-      errors.look(opening, static_cast<std::uint64_t>(i), side, 0, paths, relative_to[side]);
+      sights.look(opening, static_cast<std::uint64_t>(i), side, 0, paths, seen[side]);
     }
     const int dim = seen[0].mean() < seen[1].mean() ? 0 : 1;
     const Vector3d size = seen[dim].region.sizes();
     if (seen[dim].region.isEmpty()) return true;
     const double surface = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
-    return seen[1 - dim].mean() * opening.area() >= notable * surface * relative_to[dim].mean();
+    return seen[1 - dim].mean() * opening.area() >=
+           notable * surface * seen[dim].reference / seen[dim].paths;
   };
   std::vector<char> is_kept(openings.size(), 1);
   parallel_for(static_cast<int>(openings.size()), 4, [&](int begin, int end) {

@@ -99,13 +99,16 @@ void mark_lit_by_cracks(const Scene& scene, const ElementCaster& caster, const L
   constexpr double crack = 1.0 / 200.0, shallow = 1.0 / 3.0;
   const PatchMesh& mesh = caster.mesh();
   const std::vector<ClusterSums> sums = sums_of_clusters(mesh, arrivals, parts.of_patch);
-  const std::vector<char> has_light = parts_with_light(scene, caster, paths, sums, parts);
   const auto room = std::ranges::find_if(sums, &ClusterSums::is_enclosed);
   std::vector<char> is_cavity;
+  for (const ClusterSums& of : sums) {
+    const bool is_room = of.is_enclosed() && of.mean_length() >= shallow * room->mean_length();
+    is_cavity.push_back(is_room ? 0 : 1);
+  }
+  if (std::ranges::count(is_cavity, 1) == 0) return;
+  const std::vector<char> has_light = parts_with_light(scene, caster, paths, sums, parts);
   for (std::size_t p = 0; p < sums.size(); ++p) {
-    const bool is_room =
-        sums[p].is_enclosed() && sums[p].mean_length() >= shallow * room->mean_length();
-    is_cavity.push_back(has_light[p] == 0 && !is_room ? 1 : 0);
+    if (has_light[p] != 0) is_cavity[p] = 0;
   }
   const std::vector<double> passed =
       passages(mesh, arrivals, scene.sky.has_value(), parts, is_cavity);

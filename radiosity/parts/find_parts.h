@@ -28,6 +28,14 @@ namespace lightwell {
 ///
 ///    Patches that see nothing, such as those under a block that stands on them, join the largest.
 ///
+/// 4. ScenePart::is_lit_by_cracks is set for a part that exchanges less than 1/200 of its area, or
+///    of all other area if that is less, with parts that are none of these cavities, and that
+///     * has no light of its own: no surface that emits, no eighth of what arrives of a lamp, and,
+///       unless most of its rays end within, no sky or sun;
+///     * is no room: most of its rays leave it, or the mean length of those that end within is
+///     below
+///       1/3 of that in the largest part that is no outside.
+///
 /// The sides of a two-sided surface are patches of their own, so the outside of a house is a part.
 /// Parts are in falling order of area. The largest part is the first. The result depends on neither
 /// units nor threads. Throws Interrupted when progress says stop.
