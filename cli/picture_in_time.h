@@ -21,13 +21,12 @@ struct PictureInTime {
 /// - If the time is limited, the whole picture is first rendered by four samples for each pixel,
 ///   with light from the solution. Better rows replace these from the top down until the time is
 ///   up.
-/// - A picture whose rows so far tell that it will take much longer is given up: for the draft,
-/// with
-///   the records of indirect light that are found by then, pixels that are split once and fewer
-///   first samples of gloss, then for light from the solution alone. Records that take more than
-///   half of the time are given up too.
-/// - Where the time ends by surprise, four samples for each pixel fill in the rows that are
-/// missing.
+/// - A picture whose rows so far tell that it will take much longer is given up for the draft:
+///   with the records of indirect light that are found by then, pixels that are split once, and
+///   fewer first samples of gloss. A draft that is too slow is given up for light from the solution
+///   alone. Records that take more than half of the time are given up too.
+/// - Without a limit of time, four samples for each pixel fill in the rows that an interrupt leaves
+///   missing.
 ///
 /// Throws as SceneRenderer::render does.
 PictureInTime render_in_time(SceneRenderer& renderer, const Camera& camera,

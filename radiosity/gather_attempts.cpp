@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -17,7 +16,7 @@
 #include "radiosity/form_factors/transport.h"
 #include "radiosity/gap_errors.h"
 #include "radiosity/gather/gatherable_radiosity.h"
-#include "radiosity/openings/portals.h"
+#include "radiosity/notable_portals.h"
 #include "radiosity/patch_light.h"
 #include "radiosity/reconstruct.h"
 #include "radiosity/rows/memory_budget.h"
@@ -83,34 +82,8 @@ SolveOptions effective_options(const SolveOptions& options, double target,
   return effective;
 }
 
-// Irradiance that errors on each element are relative to, W/m^2, the sum of bands; infinite where
-// errors are not judged. `of_parts` is that of each part, the mean of bands.
-std::vector<float> references_of_elements(const SolvedScene& patches,
-                                          const std::vector<double>& of_parts) {
-  const SceneParts& parts = patches.solution.parts;
-  const auto bands = static_cast<double>(patches.mesh.reflectance.cols());
-  std::vector<float> references;
-  for (int e = 0; e < patches.mesh.element_count(); ++e) {
-    const int patch = patches.mesh.patch[e];
-    const double E = bands * of_parts[static_cast<std::size_t>(parts.judged_with(patch))];
-    references.push_back(parts.is_judged(patch) ? static_cast<float>(E)
-                                                : std::numeric_limits<float>::infinity());
-  }
-  return references;
-}
-
-// The options with the openings that gathers aim rays at. `irradiances` is what errors in each part
-// are relative to, W/m^2.
-SolveOptions with_portals(const GatherSources& sources, const SolvedScene& patches,
-                          const std::vector<double>& irradiances, SolveOptions options) {
-  const ElementCaster caster(patches.mesh);
-  const std::vector<float> brightness =
-      brightness_of_patches(patches.mesh, sources.all, patches.solution.patch_radiosity);
-  options.gather.portals =
-      find_portals(caster, brightness,
-                   notable_openings(caster, brightness,
-                                    references_of_elements(patches, irradiances), sources.openings),
-                   options.run);
+SolveOptions with_portals(std::shared_ptr<const Portals> portals, SolveOptions options) {
+  options.gather.portals = std::move(portals);
   return options;
 }
 
@@ -127,7 +100,7 @@ class GatherAttempts {
         irradiances_(reference_irradiances(solved.mesh, solved.solution.patch_radiosity,
                                            solved.solution.parts)),
         options_(with_portals(
-            sources, solved, irradiances_,
+            find_notable_portals(sources, solved, irradiances_, options.run),
             effective_options(options, target_, solved, sources.by_channel.column_count()))),
         may_save_rays_(options.gather.rays == 0 && !(target_ > 0.0)),
         pilot_gathers_(std::in_place, scene, std::move(solved.mesh), sources.by_channel,

@@ -158,8 +158,8 @@ TEST(PilotGathers, GoesOnWhereItEnded) {
   EXPECT_LT(200 * gone, coarse.number.size());  // one in 1444 here
 }
 
-// For want of time before any pilot gather. The visible share of a lamp by 8 shadow rays has a
-// standard error of sqrt(1/4 / 8) at most, so light at vertices is no farther off. The light of a
+// Light without a pilot gather, for want of time. The visible share of a lamp by 8 shadow rays has
+// a standard error of sqrt(1/4 / 8) at most, so light at vertices is no farther off. The light of a
 // lamp close above a block changes within a patch by more, which one point of each patch misses.
 TEST(PilotGathers, InHasteHaveDirectLightAtVerticesIfThereIsTime) {
   Room room(0.03);
