@@ -20,6 +20,9 @@ namespace {
 constexpr std::int64_t kibibyte = 1 << 10, mebibyte = 1 << 20;
 // With less room, rows would be moved to and fro page by page.
 constexpr std::int64_t least_room = 16 * mebibyte;
+// Runs of one command differ by a few megabytes, by the pages of shared libraries that the system
+// maps in. A budget that was asked for must do in the next run too.
+constexpr std::int64_t spread_of_runs = 8 * mebibyte;
 constexpr std::int64_t largest_chunk = 4 * mebibyte, largest_block = 64 * mebibyte;
 
 std::int64_t in_megabytes(std::int64_t bytes) {
@@ -81,10 +84,9 @@ void MemoryBudget::plan(std::int64_t other) {
     throw InputError(fmt::format(
         "a memory budget of {} MB is too small: the scene, its mesh and its tree take {} MB ({} MB "
         "while they were made), work {} MB more, and a slice of rows {} MB. Allow {} MB or more, "
-        "or "
-        "make patches larger",
+        "or make patches larger",
         limit_ / mebibyte, in_megabytes(memory.now), in_megabytes(memory.most), in_megabytes(other),
-        in_megabytes(least_room), in_megabytes(std::max(needed, memory.most))));
+        in_megabytes(least_room), in_megabytes(std::max(needed, memory.most) + spread_of_runs)));
   }
   share_out(memory.now, other);
 }
