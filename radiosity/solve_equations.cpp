@@ -30,7 +30,8 @@ std::shared_ptr<const Portals> portals_of_rows(const EquationTask& task,
       options.method != FormFactorMethod::ray_cast) {
     return nullptr;
   }
-  const std::vector<Opening> openings = narrow_openings(lit.caster, task.openings, solver.run);
+  const std::vector<Opening> openings =
+      narrow_openings(lit.caster, task.openings, narrow_for_rows, solver.run);
   if (openings.empty()) return nullptr;
   constexpr int few_rays = 32, few_of_emitters = 1024;
   constexpr double tolerance = 1e-3;

@@ -32,6 +32,11 @@ struct Sight {
   double mean() const { return paths > 0 ? brightness / paths : 0.0; }
 };
 
+// True if an opening is less wide than `share` of the mean distance to what it shows.
+bool is_narrower(const Opening& opening, const Sight& sight, double share) {
+  return 2.0 * opening.across.norm() * sight.paths < share * sight.distance;
+}
+
 class Sights {
  public:
   // `reference` of each element is read as `brightness` is; empty: not wanted.
@@ -174,6 +179,8 @@ Portals::Portals(const ElementCaster& caster, const std::vector<float>& brightne
     portal.along = shape.along / shape.along.squaredNorm();
     portal.across = shape.across / shape.across.squaredNorm();
     portal.area = shape.area();
+    portal.is_narrow = is_narrower(shape, seen[i][0], narrow_for_rows) &&
+                       is_narrower(shape, seen[i][1], narrow_for_rows);
     for (const int side : {0, 1}) {
       portal.brightness[side] = seen[i][side].mean();
       portal.is_dim[side] = seen[i][side].mean() < seen[i][1 - side].mean();
@@ -321,6 +328,7 @@ bool Portals::is_near(const Vector3d& at, double size) const {
   boxes_.find_overlaps({at - all_ways, at + all_ways}, around);
   return std::ranges::any_of(around, [&](int number) {
     const Portal& portal = portals_[static_cast<std::size_t>(number)];
+    if (!portal.is_narrow) return false;
     const Vector3d to = at - portal.shape.center;
     const double height = to.dot(portal.shape.normal);
     if (!portal.is_dim[height > 0.0 ? 0 : 1] || std::abs(height) > reach) return false;
@@ -332,9 +340,8 @@ bool Portals::is_near(const Vector3d& at, double size) const {
 }
 
 std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings,
-                                     const RunControl& run) {
+                                     double share, const RunControl& run) {
   constexpr int paths = 16;
-  constexpr double narrow = 0.1;
   const std::vector<float> dark(static_cast<std::size_t>(caster.mesh().element_count()), 0.0f);
   const Sights sights(caster, dark);
   std::vector<char> is_narrow(openings.size(), 0);
@@ -343,6 +350,7 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
                            [&](Fingerprint& print) {
                              print.add_geometry(caster.mesh());
                              print.add(count);
+                             print.add(share);
                            });
   const auto judge = [&](int begin, int end) {
     for (int i = begin; i < end; ++i) {
@@ -353,8 +361,7 @@ std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Op
       bool narrow_on_both = true;
       for (const int side : {0, 1}) {
         sights.look(opening, static_cast<std::uint64_t>(i), side, 0, paths, sight[side]);
-        narrow_on_both = narrow_on_both && 2.0 * opening.across.norm() * sight[side].paths <
-                                               narrow * sight[side].distance;
+        narrow_on_both = narrow_on_both && is_narrower(opening, sight[side], share);
       }
       answer = narrow_on_both && joins_parts(sight) ? 1 : 0;
       phase.keep(i, answer);
@@ -400,7 +407,7 @@ std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,
                                             const std::vector<float>& brightness,
                                             const std::vector<Opening>& openings,
                                             const RunControl& run) {
-  const std::vector<Opening> narrow = narrow_openings(caster, openings, run);
+  const std::vector<Opening> narrow = narrow_openings(caster, openings, narrow_for_gathers, run);
   if (narrow.empty()) return nullptr;
   auto portals = std::make_shared<const Portals>(caster, brightness, narrow);
   return portals->is_empty() ? nullptr : portals;

@@ -80,8 +80,8 @@ class Portals {
 
   /// Distance from a portal, in sizes of an element, below which light varies too fast for it.
   static constexpr double near_sizes = 2.0;
-  /// True if a point on the dim side of a portal is nearer to the portal than near_sizes times
-  /// `size`, metres, and not in the portal's plane.
+  /// True if a point on the dim side of a narrow portal is nearer to the portal than near_sizes
+  /// times `size`, metres, and not in the portal's plane.
   bool is_near(const Eigen::Vector3d& at, double size) const;
 
   /// Number of aimed rays beside `rays` cosine-distributed ones.
@@ -95,6 +95,7 @@ class Portals {
     double area = 0.0;                            // m^2
     std::array<double, 2> brightness{};           // W/m^2, seen before the front and behind
     std::array<char, 2> is_dim{};                 // the side is the dim one
+    bool is_narrow = false;                       // by narrow_for_rows
     std::array<Eigen::AlignedBox3d, 2> region{};  // what the portal sees on each side
   };
   static double distance_to(const Portal& portal, const Eigen::Vector3d& from,
@@ -108,11 +109,19 @@ class Portals {
   BoxTree boxes_{std::vector<BoxTree::Box>{}};  // of the rectangles
 };
 
-/// The openings that are narrow: less wide than a tenth of the mean distance to what is seen
-/// through either side. Rays over a hemisphere meet wider ones often enough for form factors. The
-/// processes of `run` share the openings; no journal keeps the result.
+/// Width of openings over the mean distance to what is seen through either side, below which rays
+/// are aimed at them.
+/// - Rows of form factors are means over patches, and rays over the hemisphere meet wider openings
+///   often enough.
+/// - A gather has light of one point. From the far wall of a dim room a door ajar by 30 cm is half
+///   a hundredth of the hemisphere and may send a quarter of the light: one ray of 256 meets it, on
+///   average, and the light of such gathers has 15 % noise.
+inline constexpr double narrow_for_rows = 0.1, narrow_for_gathers = 0.5;
+
+/// The openings that are less wide than `share` of the mean distance to what is seen through either
+/// side. The processes of `run` share the openings; no journal keeps the result.
 std::vector<Opening> narrow_openings(const ElementCaster& caster, std::vector<Opening> openings,
-                                     const RunControl& run = {});
+                                     double share, const RunControl& run = {});
 
 /// The openings but for those that let in less light than could matter on their dim side, where the
 /// irradiance that comes through, B A / A_seen, is less than a thousandth of what errors are
@@ -125,8 +134,8 @@ std::vector<Opening> notable_openings(const ElementCaster& caster,
                                       const std::vector<float>& reference,
                                       std::vector<Opening> openings);
 
-/// The narrow ones of `openings` that are portals; null if there are none. `brightness` as in
-/// Portals.
+/// The ones of `openings` that are narrow for gathers and are portals; null if there are none.
+/// `brightness` as in Portals.
 std::shared_ptr<const Portals> find_portals(const ElementCaster& caster,
                                             const std::vector<float>& brightness,
                                             const std::vector<Opening>& openings,

@@ -72,7 +72,7 @@ TEST(Portals, CountWhereTheirLightMatters) {
     const Lit lit(0.01, turn);
     const std::vector<float> brightness = brightness_of_vertices(lit.mesh, lit.radiosity);
     const std::vector<Opening> openings =
-        narrow_openings(lit.caster, find_openings(lit.rooms.scene));
+        narrow_openings(lit.caster, find_openings(lit.rooms.scene), narrow_for_rows);
     ASSERT_FALSE(openings.empty());
     const auto count = [&](float reference) {
       const std::vector<float> of_elements(brightness.size(), reference);
@@ -93,7 +93,7 @@ TEST(Portals, CountWhereTheirLightMatters) {
 
 // In a black room behind a slit, E = B F with the form factor F from the point to the slit.
 TEST(Portals, GiveWhatTheFormFactorOfTheSlitSays) {
-  for (const double width : {1e-3, 0.01, 0.1}) {
+  for (const double width : {1e-3, 0.01, 0.1, 0.3}) {
     for (const Quaterniond& turn : {Quaterniond::Identity(), askew}) {
       const Lit lit(width, turn, 0.0f);
       const auto portals = lit.portals();
@@ -135,7 +135,7 @@ TEST(Portals, AreNoneInTheCornellBox) {
       find_portals(scene, caster,
                    brightness_of_patches(solved.mesh, light, solved.solution.patch_radiosity)),
       nullptr);
-  EXPECT_TRUE(narrow_openings(caster, find_openings(scene)).empty());
+  EXPECT_TRUE(narrow_openings(caster, find_openings(scene), narrow_for_rows).empty());
 }
 
 // Points in the bright room do not aim at the slit.
@@ -169,6 +169,16 @@ TEST(Portals, AreNearWithinReach) {
     EXPECT_EQ(portals->draw(all, from, u[0], u[1], u[2]).direction, direction);
     EXPECT_EQ(portals->density(near, from, direction, 100.0),
               portals->density(all, from, direction, 100.0));
+  }
+}
+
+// Elements show how light varies near an opening that is not much narrower than the room is long.
+TEST(Portals, AreNotNearWhereTheyAreWide) {
+  const Vector3d before(4.2, 2.75, 1.0);
+  for (const auto& [width, is_near] : {std::pair(0.05, true), {0.35, false}}) {
+    const auto portals = Lit(width).portals();
+    ASSERT_NE(portals, nullptr);
+    EXPECT_EQ(portals->is_near(before, 0.5), is_near) << width;
   }
 }
 
