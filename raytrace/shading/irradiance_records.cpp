@@ -161,9 +161,38 @@ bool is_alone(const IrradianceRecords& known, const std::vector<IrradianceRecord
 
 }  // namespace
 
+namespace {
+
+constexpr int records_together = 16;  // that a thread takes at a time
+
+// Variances of records by the relative variances of all around, within four times the radius: two
+// halves of a gather tell the noise badly, and relative noise is alike among neighbours.
+void pool_variances(std::vector<IrradianceRecord>& records) {
+  constexpr double widening = 4.0;
+  const std::vector<IrradianceRecord> wide = widened(records, widening);
+  const BoxTree tree = tree_of(wide);
+  parallel_for(static_cast<int>(records.size()), records_together, [&](int begin, int end) {
+    for (int i = begin; i < end; ++i) {
+      IrradianceRecord& record = records[static_cast<std::size_t>(i)];
+      double weights = 0.0, variance = 0.0;
+      for_each_around(tree, wide, record.position, record.normal, [&](int j, double weight) {
+        const IrradianceRecord& other = wide[static_cast<std::size_t>(j)];
+        const double E = other.irradiance.mean();
+        if (!(E > 0.0)) return;
+        weights += weight;
+        variance += weight * other.variance / (E * E);
+      });
+      if (weights > 0.0) {
+        record.variance = variance / weights * std::pow(double{record.irradiance.mean()}, 2);
+      }
+    }
+  });
+}
+
+}  // namespace
+
 void even_out(std::vector<IrradianceRecord>& records) {
   constexpr double deviations = 3.0;
-  constexpr int grain = 16;
   // The value of each record so far, its standard error, and whether wider fits agree.
   struct State {
     Spectrum irradiance{};
@@ -172,16 +201,16 @@ void even_out(std::vector<IrradianceRecord>& records) {
   };
   std::vector<State> states;
   for (const IrradianceRecord& record : records) states.push_back({record.irradiance});
+  pool_variances(records);
   for (const double widening : {1.0, 2.0, 4.0}) {
     const IrradianceRecords known(records, widening);
-    parallel_for(static_cast<int>(records.size()), grain, [&](int begin, int end) {
+    parallel_for(static_cast<int>(records.size()), records_together, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const IrradianceRecord& record = records[static_cast<std::size_t>(i)];
         State& state = states[static_cast<std::size_t>(i)];
         if (!state.is_even) continue;
         const auto fit = known.fit(record.position, record.normal);
         if (!fit) continue;
-        // Two halves of a gather tell its noise badly, and neighbours are alike.
         if (widening == 1.0) state.error = std::sqrt(std::max(record.variance, fit->variance));
         const auto change =
             static_cast<double>(std::abs(fit->irradiance.mean() - state.irradiance.mean()));

@@ -84,9 +84,11 @@ class IrradianceRecords {
 
 /// Evens out the noise of records: each gets the value of the widest fit, up to four times its
 /// radius, that agrees with the narrower one, and the narrowest one with the record itself, within
-/// three standard errors (after Lepski 1991). Light that changes near by keeps its shape, and even
-/// walls lose their mottle. A record that differs from its neighbours while they agree with each
-/// other counts as noise: what a single record tells is narrower than records can show.
+/// three standard errors (after Lepski 1991). The variance of each record, relative to its light,
+/// is first set to the mean of those around, up to four times the radius. Light that changes near
+/// by keeps its shape, and even walls lose their mottle. A record that differs from its neighbours
+/// while they agree with each other counts as noise: what a single record tells is narrower than
+/// records can show.
 void even_out(std::vector<IrradianceRecord>& records);
 
 }  // namespace lightwell

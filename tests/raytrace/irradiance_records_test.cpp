@@ -104,6 +104,37 @@ TEST(EvenOut, CalmsNoiseAndKeepsAnEdge) {
   EXPECT_LT(worst, (3.0 + std::sqrt(3.0)) * noise);
 }
 
+// Light of 1 with noise of 10 %, which each record tells by the difference between two halves of a
+// gather: its square has a deviation of sqrt(2) times itself. A record has four others within its
+// radius. The widest fit, a cone of the radius R = 4.8 over a grid of steps of one, weighs like
+// (2 / 3) pi R^2 = 48 records. One record of some 300 differs by more than three standard errors
+// by chance and keeps a fit of five records or more, so that the mean square of the noise left is
+// at most 1 / 48 + 1 / 300 of that of the records, which is itself known to sqrt(2 / 961) = 5 %.
+TEST(EvenOut, KnowsTheNoiseByAllAround) {
+  constexpr double noise = 0.1;
+  constexpr int half = 20, margin = 5;
+  std::vector<IrradianceRecord> records = grid(half, 1.2, [](int, int) { return 1.0; });
+  for (std::size_t i = 0; i < records.size(); ++i) {
+    const auto of_half = [&](std::uint64_t number) {
+      const double spread = std::sqrt(2.0) * noise * std::sqrt(12.0);
+      return 1.0 + spread * (random_uniform(random_key(i, number)) - 0.5);
+    };
+    const double first = of_half(0), second = of_half(1);
+    records[i].irradiance.setConstant(static_cast<float>(0.5 * (first + second)));
+    records[i].variance = 0.25 * (first - second) * (first - second);
+  }
+  even_out(records);
+  double squares = 0.0;
+  int count = 0;
+  for (const IrradianceRecord& each : records) {
+    if (each.position.cwiseAbs().maxCoeff() > half - margin) continue;
+    squares += std::pow(static_cast<double>(each.irradiance[0]) - 1.0, 2);
+    ++count;
+  }
+  std::printf("noise left %.4f\n", std::sqrt(squares / count));
+  EXPECT_LT(squares / count, 1.05 * (1.0 / 48.0 + 1.0 / 300.0) * noise * noise);
+}
+
 // A record of radius 44 m, 20 m from one of 0.2 m.
 TEST(IrradianceRecords, ReachNoFartherThanNeighboursAllow) {
   constexpr double growth = 0.1;
