@@ -37,8 +37,13 @@ Scenery near_scenery(const Scene& scene);
 /// The length of the box of near_scenery(), m: what distances are shares of that stand for the
 /// details of a scene.
 double scenery_length(const Scene& scene);
-/// The same, or the distance of the box from the origin if that is more, but no more than the
-/// length of the scene: what distances are shares of that stand for the rounding of coordinates.
+/// Widest seams that stand for the rounding of vertices, over scenery_length(). Half a unit of the
+/// fourth decimal is 5e-6 of 10 m. A room of 4 m x 5 m x 3 m, of which every edge is open that far,
+/// gets 48 m x 50 um of 94 m2 of the light next door, twice that with reflections: 5e-5.
+inline constexpr double seam_share = 5e-6;
+/// scenery_length(), or the distance of the box from the origin if that is more, but no more than
+/// the length of the scene: what distances are shares of that stand for the rounding of
+/// coordinates.
 double coordinate_length(const Scene& scene);
 /// Flags of `boxes` (m, none empty): 1 for a box that is near as facets of near_scenery() are.
 std::vector<char> are_near(const std::vector<Eigen::AlignedBox3d>& boxes);

@@ -20,11 +20,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Shares of scenery_length(). Seams of models are as wide as their vertices are rounded: half a
-// unit of the fourth decimal is 5e-6 of 10 m. A room of 4 m x 5 m x 3 m, of which every edge is
-// open that far, gets 48 m x 50 um of 94 m2 of the light next door, twice that with reflections:
-// 5e-5, half of the share by which parts are judged at least (PartMeans).
-constexpr double widest_opening = 0.1, narrowest_opening = 5e-6, shortest_edge = 0.002;
+// Shares of scenery_length(). The light through a seam is half of the share by which parts are
+// judged at least (PartMeans).
+constexpr double widest_opening = 0.1, narrowest_opening = seam_share, shortest_edge = 0.002;
 constexpr std::size_t most_edges = 4096, most_openings = 4096;
 constexpr int directions = 16;  // of balls about an edge
 // Least cosine between the direction of a ball and that of the chord between the two points that

@@ -59,6 +59,10 @@ struct SkyByCosine {
 /// the visible share, plus the known irradiance times that share. An unobstructed point has no
 /// noise.
 ///
+/// Seams of seam_share let no light through. The walls of a house that are open at an edge by the
+/// rounding of their vertices would show single bright vertices: one ray of thousands gets out
+/// there, and carries the light of all.
+///
 /// Each ray lies in a step of its own along the curve of the cells. Pairs of neighbouring steps
 /// tell the noise: the mean of (a - b)^2 is the variance of a + b plus the squared difference of
 /// their means (collapsed strata, Cochran 1977).
@@ -121,6 +125,7 @@ class SkyLight {
 
   std::uint64_t number_ = 0;  // of this sky among all
   int bands_ = 0;
+  double seam_ = 0.0;  // metres, the widest seam that stands for the rounding of vertices
   ClearPanes panes_;
   SkyCells cells_;
   SkySites sites_;
