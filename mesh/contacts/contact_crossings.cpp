@@ -47,8 +47,8 @@ std::vector<ContactGraph::Crossing> ContactGraph::crossings_of(
   const Segment& si = segments_[segment];
   const Vector3d p = welded_[si.a], u = welded_[si.b] - p;
   std::vector<Crossing> crossings;
-  for (const int j : others) {
-    if (j <= segment) continue;
+  for (auto next = std::ranges::upper_bound(others, segment); next != others.end(); ++next) {
+    const int j = *next;
     const Segment& sj = segments_[j];
     if (si.a == sj.a || si.a == sj.b || si.b == sj.a || si.b == sj.b) continue;
     const Vector3d q = welded_[sj.a], v = welded_[sj.b] - q;
@@ -110,8 +110,8 @@ std::vector<std::vector<ContactGraph::Crossing>> ContactGraph::all_crossings(
   parallel_for(count, 64, [&](int begin, int end) {
     std::vector<int> near;
     for (int i = begin; i < end && !effort.is_exceeded(); ++i) {
-      tree.find_overlaps(boxes[i], near);
-      effort.count(near.size());
+      tree.find_overlaps_from(i + 1, boxes[i], near);
+      effort.count(1 + 2 * near.size());  // each is near itself, and two are near each other
       crossings[i] = crossings_of(i, near);
       effort.found(crossings[i].size());
     }

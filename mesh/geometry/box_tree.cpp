@@ -9,31 +9,33 @@ namespace lightwell {
 BoxTree::BoxTree(std::vector<Box> boxes) : boxes_(std::move(boxes)), order_(boxes_.size()) {
   std::iota(order_.begin(), order_.end(), 0);
   nodes_.reserve(boxes_.size());
-  if (!boxes_.empty()) build(0, static_cast<int>(boxes_.size()));
+  std::vector<Key> keys(boxes_.size());
+  if (!boxes_.empty()) build(0, static_cast<int>(boxes_.size()), keys);
 }
 
-int BoxTree::build(int begin, int end) {
+int BoxTree::build(int begin, int end, std::vector<Key>& keys) {
   constexpr int leaf_size = 4;
   const int index = static_cast<int>(nodes_.size());
   nodes_.push_back({.begin = begin, .end = end});
   Box box, centers;
+  int highest = 0;
   for (int i = begin; i < end; ++i) {
     box.extend(boxes_[order_[i]]);
     centers.extend(boxes_[order_[i]].center());
+    highest = std::max(highest, order_[i]);
   }
   nodes_[index].box = box;
+  nodes_[index].highest = highest;
   if (end - begin <= leaf_size) return index;
 
   int axis = 0;
   centers.sizes().maxCoeff(&axis);
   const int middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                   [&](int a, int b) {
-                     const double ca = boxes_[a].center()[axis], cb = boxes_[b].center()[axis];
-                     return ca != cb ? ca < cb : a < b;
-                   });
-  build(begin, middle);
-  const int right = build(middle, end);
+  for (int i = begin; i < end; ++i) keys[i] = {boxes_[order_[i]].center()[axis], order_[i]};
+  std::nth_element(keys.begin() + begin, keys.begin() + middle, keys.begin() + end);
+  for (int i = begin; i < end; ++i) order_[i] = keys[i].second;
+  build(begin, middle, keys);
+  const int right = build(middle, end, keys);
   nodes_[index].right = right;
   return index;
 }
@@ -65,14 +67,13 @@ bool BoxTree::collect(const Meets& meets, std::int64_t& visits, std::vector<int>
   return true;
 }
 
-template <class Meets>
-void BoxTree::find(const Meets& meets, std::vector<int>& found) const {
-  std::int64_t visits = std::numeric_limits<std::int64_t>::max();
-  collect(meets, visits, found);
-  std::sort(found.begin(), found.end());
+void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
+  find_overlaps_from(0, query, found);
 }
 
-void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
+void BoxTree::find_overlaps_from(int first, const Box& query, std::vector<int>& found) const {
+  found.clear();
+  if (nodes_.empty()) return;
   // Box::intersects() compares all axes before it answers, which takes most of the time here.
   const Eigen::Vector3d low = query.min(), high = query.max();
   const auto meets = [&](const Box& box) {
@@ -81,7 +82,25 @@ void BoxTree::find_overlaps(const Box& query, std::vector<int>& found) const {
     }
     return true;
   };
-  find(meets, found);
+  std::array<int, deepest> stack;
+  int depth = 0;
+  const auto open = [&](int index) {
+    if (nodes_[index].highest >= first && meets(nodes_[index].box)) stack[depth++] = index;
+  };
+  open(0);
+  while (depth > 0) {
+    const int index = stack[--depth];
+    const Node& node = nodes_[index];
+    if (node.right != 0) {
+      open(node.right);
+      open(index + 1);
+      continue;
+    }
+    for (int i = node.begin; i < node.end; ++i) {
+      if (order_[i] >= first && meets(boxes_[order_[i]])) found.push_back(order_[i]);
+    }
+  }
+  std::sort(found.begin(), found.end());
 }
 
 void BoxTree::find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
@@ -91,7 +110,9 @@ void BoxTree::find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>
     const double reach = 0.5 * box.sizes().dot(plane.normal().cwiseAbs());
     return plane.absDistance(box.center()) <= reach;
   };
-  find(meets, found);
+  std::int64_t visits = std::numeric_limits<std::int64_t>::max();
+  collect(meets, visits, found);
+  std::sort(found.begin(), found.end());
 }
 
 bool BoxTree::find_before(std::span<const Eigen::Hyperplane<double, 3>> planes, double least,

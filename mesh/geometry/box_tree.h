@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace lightwell {
@@ -17,6 +18,9 @@ class BoxTree {
 
   /// Fills `found` with the indices of the boxes that meet `query` (touching counts), ascending.
   void find_overlaps(const Box& query, std::vector<int>& found) const;
+  /// The same, of the boxes of index `first` and above. A search for all pairs that meet finds each
+  /// pair once if the search for a box begins behind that box.
+  void find_overlaps_from(int first, const Box& query, std::vector<int>& found) const;
   /// Fills `found` with the indices of the boxes that meet both `query` and `plane` (unit normal),
   /// ascending.
   void find_on_plane(const Box& query, const Eigen::Hyperplane<double, 3>& plane,
@@ -44,15 +48,15 @@ class BoxTree {
   struct Node {
     Box box{};
     int begin = 0, end = 0;  ///< a range of order_
-    int right = 0;  ///< index of the right child, 0 in a leaf; the left child follows its parent
+    int right = 0;    ///< index of the right child, 0 in a leaf; the left child follows its parent
+    int highest = 0;  ///< index of a box
   };
-  int build(int begin, int end);
+  using Key = std::pair<double, int>;  ///< a centre along an axis, and the index of its box
+  int build(int begin, int end, std::vector<Key>& keys);
   // Fills `found` with the boxes for which meets(box) holds, in no particular order; `visits` and
   // the result are those of find_along().
   template <class Meets>
   bool collect(const Meets& meets, std::int64_t& visits, std::vector<int>& found) const;
-  template <class Meets>
-  void find(const Meets& meets, std::vector<int>& found) const;
 
   std::vector<Box> boxes_;
   std::vector<int> order_;

@@ -36,6 +36,11 @@ TEST(BoxTree, FindsWhatLookingAtEveryBoxFinds) {
         if (boxes[i].intersects(query)) expected.push_back(i);
       }
       ASSERT_EQ(found, expected);
+      const int first = boxes.empty() ? 0 : 37 * q % static_cast<int>(boxes.size());
+      tree.find_overlaps_from(first, query, found);
+      std::vector<int> following = expected;
+      std::erase_if(following, [&](int i) { return i < first; });
+      ASSERT_EQ(found, following);
       const Eigen::Hyperplane<double, 3> plane(Vector3d(1 + q, 2, 50 - q).normalized(),
                                                query.center());
       tree.find_on_plane(query, plane, found);
