@@ -72,8 +72,8 @@ class ContactGraph {
   /// Adds the longest contacts of each facet with its largest neighbours.
   void add_longest_contacts(const Search& search, const ContactEffort& effort,
                             const Progress& progress);
-  void thin_out_contacts(const WeldedPoints& corners);
-  void remove_contacts(const WeldedPoints& corners);
+  void thin_out_contacts(int corners);
+  void remove_contacts(int corners);
   std::vector<FlatLine> contact_lines(int index) const;
   void add_gap_lines();
   void sort_contacts();

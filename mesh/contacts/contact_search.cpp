@@ -70,6 +70,15 @@ class ContactGraph::Search {
     tree_.find_overlaps(boxes_[static_cast<std::size_t>(i)], near);
   }
 
+  /// Numbers of the others in find_near() that follow facet i. Returns how many find_near() would
+  /// have on an average over all facets: two facets are near each other, and each is near itself.
+  std::size_t find_following(int i, std::vector<int>& near) const {
+    tree_.find_overlaps_from(i + 1, boxes_[static_cast<std::size_t>(i)], near);
+    const auto count = static_cast<int>(planes_.size());
+    const auto facets = std::ranges::lower_bound(near, count) - near.begin();
+    return 1 + near.size() + static_cast<std::size_t>(facets);
+  }
+
   /// Keeps the `most` largest of `near` and returns true if there are more.
   bool keep_largest(std::size_t most, std::vector<int>& near) const {
     if (near.size() <= most) return false;
@@ -147,7 +156,7 @@ class ContactGraph::Search {
 };
 
 void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
-  const WeldedPoints corners = welded_;
+  const int corners = welded_.size();
   const Search search(scene, *this);
   ContactEffort effort(static_cast<int>(planes_.size()));
   if (!add_all_contacts(search, effort, progress)) {
@@ -159,9 +168,9 @@ void ContactGraph::add_contacts(const Scene& scene, const Progress& progress) {
   thin_out_contacts(corners);
 }
 
-// Leaves the boundaries alone, whose points are `corners`.
-void ContactGraph::remove_contacts(const WeldedPoints& corners) {
-  welded_ = corners;
+// Leaves the boundaries alone, whose points are the first `corners`.
+void ContactGraph::remove_contacts(int corners) {
+  welded_.keep_first(corners);
   const int boundaries = *std::max_element(edge_segment_.begin(), edge_segment_.end()) + 1;
   segments_.resize(static_cast<std::size_t>(boundaries));
   std::erase_if(segment_of_ends_, [&](const auto& entry) { return entry.second >= boundaries; });
@@ -179,10 +188,9 @@ bool ContactGraph::add_all_contacts(const Search& search, ContactEffort& effort,
   const int count = static_cast<int>(planes_.size());
   const auto find = [&](int i, std::vector<int>& near, std::vector<Search::Contact>& found) {
     if (effort.is_exceeded()) return;
-    search.find_near(i, near);
-    effort.count(near.size());
+    effort.count(search.find_following(i, near));
     for (const int j : near) {
-      if (j > i) search.add(i, j, found);
+      search.add(i, j, found);
       if (effort.is_exceeded()) break;
     }
     effort.found(found.size());
@@ -218,7 +226,7 @@ void ContactGraph::add_longest_contacts(const Search& search, const ContactEffor
 
 // Facets keep their longest contact lines where these cross in too many places. A pile of n sheets
 // that all cross has n^3 crossings, each of which makes elements, whatever their size should be.
-void ContactGraph::thin_out_contacts(const WeldedPoints& corners) {
+void ContactGraph::thin_out_contacts(int corners) {
   const int count = static_cast<int>(planes_.size());
   std::vector<double> elements;
   for (const FacetPlane& plane : planes_) {

@@ -62,4 +62,19 @@ int WeldedPoints::add(const Eigen::Vector3d& point, double radius) {
   return id;
 }
 
+void WeldedPoints::keep_first(int count) {
+  for (int i = size() - 1; i >= count; --i) {
+    // The last point heads the list of its cell.
+    const auto cell = first_in_cell_.find(cell_key(weld_cell(points_.back(), 2.0 * tolerance_)));
+    if (next_in_cell_.back() < 0) {
+      first_in_cell_.erase(cell);
+    } else {
+      cell->second = next_in_cell_.back();
+    }
+    points_.pop_back();
+    radius_.pop_back();
+    next_in_cell_.pop_back();
+  }
+}
+
 }  // namespace lightwell

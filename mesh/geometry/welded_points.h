@@ -23,6 +23,9 @@ class WeldedPoints {
   /// one. Radii are in metres and cut to the tolerance. Equal points always join.
   int add(const Eigen::Vector3d& point, double radius);
 
+  /// Forgets all points but the first `count`, as if the others had never been added.
+  void keep_first(int count);
+
   const Eigen::Vector3d& operator[](int i) const { return points_[i]; }
   int size() const { return static_cast<int>(points_.size()); }
   double tolerance() const { return tolerance_; }

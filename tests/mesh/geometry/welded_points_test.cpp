@@ -30,5 +30,22 @@ TEST(WeldedPoints, TakesTheNearestAndKeepsPointsOfSmallRadiusApart) {
   EXPECT_EQ(points.add({0.7e-3, 0, 0}, 0.0), c) << "equal points are one, whatever they reach";
 }
 
+// Later points share cells with earlier ones, and have some of their own.
+TEST(WeldedPoints, ForgetsPointsAsIfTheyHadNeverBeenAdded) {
+  const auto place = [](int i) { return Eigen::Vector3d(0.9e-3 * (i % 7), 1.1e-3 * (i % 5), 0.0); };
+  WeldedPoints points(1e-3), expected(1e-3);
+  for (int i = 0; i < 9; ++i) {
+    points.add(place(i), 1e-4);
+    expected.add(place(i), 1e-4);
+  }
+  for (int i = 9; i < 35; ++i) points.add(place(i), 1e-4);
+  ASSERT_GT(points.size(), expected.size());
+  points.keep_first(expected.size());
+  EXPECT_EQ(points.all(), expected.all());
+  for (int i = 34; i >= 0; --i) {
+    EXPECT_EQ(points.add(place(i), 1e-4), expected.add(place(i), 1e-4)) << i;
+  }
+}
+
 }  // namespace
 }  // namespace lightwell::welded_points_test
