@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
+#include <optional>
 #include <utility>
 
 #include "mesh/chosen_sizes.h"
@@ -90,6 +92,17 @@ class CountedFacets {
   int count_ = 0, first_ = 0;
 };
 
+// Numbers of facets without a mesh, of those that cross themselves, and of those whose mesh lacks
+// lines. Fewer are better, the first counting most.
+using Faults = std::array<int, 3>;
+
+// What the meshes of all tolerances share.
+struct FacetSettings {
+  const PatchSizes& sizes;
+  const MeshOptions& options;
+  const Progress& progress;
+};
+
 // The polygon facets of a scene cut to size, with points welded to one tolerance.
 struct FacetMeshes {
   std::vector<FacetPlane> planes{};
@@ -100,13 +113,64 @@ struct FacetMeshes {
   CountedFacets crowded{};          ///< facets that too many others touch or cross
   std::vector<std::string> notes{};
 
-  // Fewer of these are better, the first counting most.
-  std::array<int, 3> faults() const { return {empty.count(), crossing.count(), flawed.count()}; }
-  bool is_sound() const { return faults() == std::array<int, 3>{}; }
+  Faults faults() const { return {empty.count(), crossing.count(), flawed.count()}; }
+  bool is_sound() const { return faults() == Faults{}; }
 };
 
-FacetMeshes mesh_facets(const Scene& scene, double tolerance, const PatchSizes& sizes,
-                        const MeshOptions& options, const Progress& progress) {
+// The faults of one facet's mesh, in the order of FacetMeshes::faults().
+Faults faults_of(const FacetMesh& mesh) {
+  const bool is_empty = mesh.corners.empty(), crosses = !is_empty && mesh.crosses_itself;
+  const bool is_flawed = !is_empty && !crosses && mesh.is_flawed;
+  return {is_empty ? 1 : 0, crosses ? 1 : 0, is_flawed ? 1 : 0};
+}
+
+// Numbers of all facets: those that have faults in `before`, which are the likeliest to have faults
+// again, and then the others.
+std::vector<int> faulty_first(const std::vector<FacetMesh>& before, int count) {
+  std::vector<int> order(static_cast<std::size_t>(count));
+  std::iota(order.begin(), order.end(), 0);
+  if (before.size() == order.size()) {
+    std::stable_partition(order.begin(), order.end(), [&](int i) {
+      return faults_of(before[static_cast<std::size_t>(i)]) != Faults{};
+    });
+  }
+  return order;
+}
+
+// Meshes all facets. Returns false, with facets missing, as soon as there are as many faults as in
+// `best`; an empty `best` is that of no mesh.
+bool mesh_all(const ContactGraph& graph, const PatchSizes& sizes, const FacetMeshes& best,
+              const Progress& progress, FacetMeshes& result) {
+  const int count = static_cast<int>(result.planes.size());
+  result.meshes.resize(result.planes.size());
+  const std::vector<int> order = faulty_first(best.meshes, count);
+  Faults faults{};
+  constexpr int batch = 1024;  // facets between two checks of the stop request
+  for (int begin = 0; begin < count; begin += batch) {
+    report(progress, "mesh", 0.4 + 0.5 * begin / count);
+    const int size = std::min(batch, count - begin);
+    parallel_for(size, 1, [&](int from, int to) {
+      for (int k = begin + from; k < begin + to; ++k) {
+        const auto i = static_cast<std::size_t>(order[static_cast<std::size_t>(k)]);
+        const FacetPlane& plane = result.planes[i];
+        result.meshes[i] = mesh_facet(plane, graph.outline(static_cast<int>(i)), graph.points(),
+                                      sizes.of_facet(plane.facet, plane.box));
+      }
+    });
+    for (int k = begin; k < begin + size; ++k) {
+      const auto i = static_cast<std::size_t>(order[static_cast<std::size_t>(k)]);
+      const Faults more = faults_of(result.meshes[i]);
+      for (std::size_t f = 0; f < faults.size(); ++f) faults[f] += more[f];
+    }
+    if (!best.meshes.empty() && faults >= best.faults()) return false;
+  }
+  return true;
+}
+
+// Meshes the facets with one tolerance; nothing if that has as many faults as `best` has.
+std::optional<FacetMeshes> mesh_facets(const Scene& scene, double tolerance,
+                                       const FacetSettings& settings, const FacetMeshes& best) {
+  const auto& [sizes, options, progress] = settings;
   FacetMeshes result;
   WeldedPoints points(tolerance);
   result.planes = facet_planes(scene, points);
@@ -115,31 +179,16 @@ FacetMeshes mesh_facets(const Scene& scene, double tolerance, const PatchSizes& 
   const double most_added = options.discontinuity_growth * predicted_elements(scene, sizes);
   const ContactGraph graph(scene, result.planes, std::move(points), sizes, critical.lines,
                            most_added, progress);
-  const int count = static_cast<int>(result.planes.size());
-  result.meshes.resize(count);
-  constexpr int batch = 1024;  // facets between two checks of the stop request
-  for (int begin = 0; begin < count; begin += batch) {
-    report(progress, "mesh", 0.4 + 0.5 * begin / count);
-    parallel_for(std::min(batch, count - begin), 1, [&](int from, int to) {
-      for (int i = begin + from; i < begin + to; ++i) {
-        const FacetPlane& plane = result.planes[i];
-        result.meshes[i] = mesh_facet(plane, graph.outline(i), graph.points(),
-                                      sizes.of_facet(plane.facet, plane.box));
-      }
-    });
-  }
+  if (!mesh_all(graph, sizes, best, progress, result)) return std::nullopt;
   int without_creases = 0;
-  for (int i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < result.planes.size(); ++i) {
     const FacetMesh& mesh = result.meshes[i];
     const int facet = result.planes[i].facet;
-    if (graph.lacks_contacts(i)) result.crowded.add(facet);
-    if (mesh.corners.empty()) {
-      result.empty.add(facet);
-    } else if (mesh.crosses_itself) {
-      result.crossing.add(facet);
-    } else if (mesh.is_flawed) {
-      result.flawed.add(facet);
-    }
+    if (graph.lacks_contacts(static_cast<int>(i))) result.crowded.add(facet);
+    const auto [is_empty, crosses, is_flawed] = faults_of(mesh);
+    if (is_empty) result.empty.add(facet);
+    if (crosses) result.crossing.add(facet);
+    if (is_flawed) result.flawed.add(facet);
     without_creases += mesh.lacks_creases ? 1 : 0;
   }
   if (options.discontinuity) {
@@ -154,12 +203,12 @@ FacetMeshes mesh_facets(const Scene& scene, const PatchSizes& sizes, const MeshO
                         const Progress& progress) {
   // Coordinates of what is near are as exact as without surroundings.
   const double diagonal = coordinate_length(scene);
+  const FacetSettings settings{.sizes = sizes, .options = options, .progress = progress};
   FacetMeshes best;
   for (const double share : weld_shares) {
-    FacetMeshes next = mesh_facets(scene, share * diagonal, sizes, options, progress);
-    const bool is_first = share == weld_shares.front();
-    if (!is_first && next.faults() >= best.faults()) break;
-    best = std::move(next);
+    std::optional<FacetMeshes> next = mesh_facets(scene, share * diagonal, settings, best);
+    if (!next) break;
+    best = std::move(*next);
     if (best.is_sound()) break;
   }
   best.empty.note(scene, "polygon has no area to mesh and was left out",
