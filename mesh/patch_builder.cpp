@@ -6,7 +6,6 @@
 #include <numbers>
 #include <numeric>
 #include <tuple>
-#include <unordered_map>
 #include <utility>
 
 #include "mesh/facets/reflex_corners.h"
@@ -150,7 +149,7 @@ std::vector<FacetPatchContact> PatchBuilder::part_contacts(const std::vector<int
                                                            const std::vector<Side>& sides) const {
   std::vector<FacetPatchContact> contacts;
   // A facet of many patches: the two vertices of an edge identify the patch that has the edge.
-  std::unordered_map<std::uint64_t, int> part_at;
+  std::vector<std::pair<std::uint64_t, int>> part_at;
   const auto key = [](int from, int to) {
     return (static_cast<std::uint64_t>(from) << 32) | static_cast<std::uint64_t>(to);
   };
@@ -160,17 +159,21 @@ std::vector<FacetPatchContact> PatchBuilder::part_contacts(const std::vector<int
       for (int e = mesh.first_element[i]; e < mesh.first_element[i + 1]; ++e) {
         const int n = mesh.corners[e][3] < 0 ? 3 : 4, first = pieces_[p].first_vertex;
         for (int c = 0; c < n; ++c) {
-          part_at[key(first + mesh.corners[e][c], first + mesh.corners[e][(c + 1) % n])] =
-              first_part[p] + i;
+          part_at.emplace_back(
+              key(first + mesh.corners[e][c], first + mesh.corners[e][(c + 1) % n]),
+              first_part[p] + i);
         }
       }
     }
   }
+  std::sort(part_at.begin(), part_at.end());
   const auto part_of = [&](const Side& side) {
     if (pieces_[side.piece].mesh.patch_count() == 1) return first_part[side.piece];
-    const auto found =
-        part_at.find(side.forward ? key(side.v_low, side.v_high) : key(side.v_high, side.v_low));
-    return found == part_at.end() ? -1 : found->second;
+    const std::uint64_t edge =
+        side.forward ? key(side.v_low, side.v_high) : key(side.v_high, side.v_low);
+    const auto behind =
+        std::ranges::upper_bound(part_at, edge, {}, &std::pair<std::uint64_t, int>::first);
+    return behind == part_at.begin() || (behind - 1)->first != edge ? -1 : (behind - 1)->second;
   };
   for_each_joint(sides, pieces_, [&](const Side& a, const Side& b) {
     const int one = part_of(a), other = part_of(b);
