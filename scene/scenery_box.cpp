@@ -67,8 +67,10 @@ Parted parted(std::span<const Eigen::AlignedBox3d> boxes, const Reach& reach) {
   Parted result;
   result.order.resize(boxes.size());
   std::iota(result.order.begin(), result.order.end(), std::size_t{0});
-  std::ranges::stable_sort(result.order, {},
-                           [&](std::size_t i) { return boxes[i].diagonal().squaredNorm(); });
+  std::vector<double> length2;
+  length2.reserve(boxes.size());
+  for (const Eigen::AlignedBox3d& box : boxes) length2.push_back(box.diagonal().squaredNorm());
+  std::ranges::stable_sort(result.order, {}, [&](std::size_t i) { return length2[i]; });
   Surroundings surroundings(boxes, result.order, reach);
   for (; result.near_count < boxes.size(); ++result.near_count) {
     if (result.near_count >= fewest && surroundings.begin_at(result.near_count, result.box)) break;

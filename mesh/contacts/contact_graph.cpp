@@ -32,6 +32,7 @@ ContactGraph::ContactGraph(const Scene& scene, const std::vector<FacetPlane>& pl
       contact_segments_(planes.size()),
       lacks_contacts_(planes.size(), 0),
       crease_segments_(planes.size()) {
+  segment_of_ends_.reserve(planes.size() + planes.size() / 2);  // two triangles share an edge
   add_boundaries();
   add_contacts(scene, progress);
   cuts_.resize(segments_.size());
@@ -125,9 +126,12 @@ void ContactGraph::add_creases(const std::vector<CriticalLine>& critical, double
 
 void ContactGraph::make_atoms() {
   std::unordered_map<std::uint64_t, int> atom_of_ends;
+  atom_of_ends.reserve(segments_.size());
+  atoms_.reserve(segments_.size());
   atoms_of_segment_.resize(segments_.size());
   for (std::size_t i = 0; i < segments_.size(); ++i) {
     const std::vector<int> points = chain(static_cast<int>(i));
+    atoms_of_segment_[i].reserve(points.size() - 1);
     for (std::size_t k = 0; k + 1 < points.size(); ++k) {
       const int a = std::min(points[k], points[k + 1]), b = std::max(points[k], points[k + 1]);
       const auto [entry, is_new] =

@@ -81,11 +81,12 @@ double widest_covered(const FacetPlane& facet, const GapLimits& limits) {
 std::vector<ContactSegment> gap_lines(const FacetPlane& on, const FacetPlane& over,
                                       const GapLimits& of_all) {
   constexpr double facing = 0.5;  // cosine of 60 degrees
+  const double cosine = std::abs(on.normal.dot(over.normal));
+  if (cosine < std::min(facing, parallel_cosine)) return {};
   GapLimits limits = of_all;
   limits.widest = widest_covered(over, of_all);
   // A facet that covers no gap hides a parallel one alone.
-  const double least_cosine = limits.widest > limits.touching ? facing : parallel_cosine;
-  if (std::abs(on.normal.dot(over.normal)) < least_cosine) return {};
+  if (cosine < (limits.widest > limits.touching ? facing : parallel_cosine)) return {};
   const double side = on.height(over.box.center()) < 0.0 ? -1.0 : 1.0;
   std::vector<ContactSegment> segments;
   over.for_each_edge([&](int i, int j) {
