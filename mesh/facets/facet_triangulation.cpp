@@ -5,6 +5,7 @@
 #include <map>
 #include <unordered_map>
 
+#include "mesh/facets/crossing_lines.h"
 #include "mesh/facets/graded_cells.h"
 #include "mesh/facets/graded_points.h"
 #include "mesh/facets/inner_points.h"
@@ -92,6 +93,16 @@ std::vector<char> inside_by_parity(const PlanarTriangulation& t,
   return inside;
 }
 
+// Distance below which rounding alone sets points of the facet apart, m. A point is lifted from the
+// plane by two products, and found on two lines by two more: each is rounded by 2^-53 of the
+// coordinates at most, and so are the sums.
+double place_rounding(const FacetPlane& plane) {
+  constexpr double roundings = 8.0;
+  const double farthest =
+      plane.box.min().cwiseAbs().cwiseMax(plane.box.max().cwiseAbs()).maxCoeff();
+  return roundings * std::ldexp(farthest, -53);
+}
+
 // Marks the triangles whose centres lie inside the polygon, for polygons that cross themselves, and
 // for the rare case that lines had to be cut because rounding makes them cross.
 std::vector<char> inside_by_place(const FacetPlane& plane, const PlanarTriangulation& t) {
@@ -99,6 +110,15 @@ std::vector<char> inside_by_place(const FacetPlane& plane, const PlanarTriangula
   for (const auto& [a, b, c] : t.triangles) {
     const Vector2d center = (t.points[a] + t.points[b] + t.points[c]) / 3.0;
     inside.push_back(plane.winds_round(center) ? 1 : 0);
+  }
+  // Rounding decides on which side of the boundary a flat triangle's centre is. The triangle
+  // belongs to what lies across its longest edge.
+  const double rounding = place_rounding(plane);
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    const int apex = flat_corner(t, static_cast<int>(i), rounding);
+    if (apex < 0 || t.constrained[i][apex]) continue;
+    const int across = t.neighbor[i][apex];
+    inside[i] = across < 0 ? 0 : inside[across];
   }
   return inside;
 }
@@ -119,7 +139,7 @@ void drop_flat(const PlanarTriangulation& t, std::vector<char>& inside) {
 // at every place. Where the rounding turns a triangle over, the unrounded coordinates are
 // triangulated.
 PlanarTriangulation triangulate_places(const std::vector<Vector2d>& xy, const LocalLines& lines,
-                                       double element_size) {
+                                       double element_size, double rounding) {
   const double unit = element_size * std::ldexp(1.0, -30);
   std::vector<Vector2d> rounded;
   for (const Vector2d& q : xy) {
@@ -127,21 +147,23 @@ PlanarTriangulation triangulate_places(const std::vector<Vector2d>& xy, const Lo
     rounded.emplace_back(std::round(cells.x()), std::round(cells.y()));
   }
   PlanarTriangulation t = triangulate(rounded, lines.all);
-  if (!t.is_as_given) return triangulate(xy, lines.all);
+  if (!t.is_as_given) return triangulate_crossing(xy, lines.all, rounding);
   t.points = xy;
   const std::vector<char> inside = inside_by_parity(t, lines.boundary);
   for (std::size_t i = 0; i < inside.size(); ++i) {
     const auto& [a, b, c] = t.triangles[i];
     const Vector2d u = xy[b] - xy[a], v = xy[c] - xy[a];
-    if (inside[i] && !(u.x() * v.y() > u.y() * v.x())) return triangulate(xy, lines.all);
+    if (inside[i] && !(u.x() * v.y() > u.y() * v.x())) {
+      return triangulate_crossing(xy, lines.all, rounding);
+    }
   }
   return t;
 }
 
 // Adds graded points in rounds; each round lets triangles become about twice as large as those of
 // the last.
-void grade(const LocalLines& lines, double element_size, PlanarTriangulation& triangulation,
-           std::vector<char>& inside) {
+void grade(const LocalLines& lines, double element_size, double rounding,
+           PlanarTriangulation& triangulation, std::vector<char>& inside) {
   constexpr int most_rounds = 8;
   std::size_t left = lines.point.size();  // limit on added points; the elements at most double
   for (int round = 0; round < most_rounds; ++round) {
@@ -150,7 +172,7 @@ void grade(const LocalLines& lines, double element_size, PlanarTriangulation& tr
     left -= added.size();
     std::vector<Vector2d> xy = triangulation.points;
     xy.insert(xy.end(), added.begin(), added.end());
-    PlanarTriangulation next = triangulate_places(xy, lines, element_size);
+    PlanarTriangulation next = triangulate_places(xy, lines, element_size, rounding);
     if (!next.is_as_given) return;
     triangulation = std::move(next);
     inside = inside_by_parity(triangulation, lines.boundary);
@@ -173,12 +195,13 @@ FacetTriangulation triangulate_facet(const FacetPlane& plane, const FacetOutline
           : inner_points(cell_grid(lines.box, size.cut), lines.xy, lines.boundary, hard, creases);
   xy.insert(xy.end(), inner.begin(), inner.end());
   PlanarTriangulation& t = facet.triangulation;
-  t = triangulate_places(xy, lines, element_size);
+  const double rounding = place_rounding(plane);
+  t = triangulate_places(xy, lines, element_size, rounding);
   const bool by_parity = t.is_as_given && !outline.crosses_itself;
   facet.inside = by_parity ? inside_by_parity(t, lines.boundary) : inside_by_place(plane, t);
   if (outline.crosses_itself) drop_flat(t, facet.inside);
   // Creases are meant to be divided finely.
-  if (by_parity && lines.creases.empty()) grade(lines, element_size, t, facet.inside);
+  if (by_parity && lines.creases.empty()) grade(lines, element_size, rounding, t, facet.inside);
   return facet;
 }
 
