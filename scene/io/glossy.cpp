@@ -48,15 +48,20 @@ void lay_coat(Material& material, double index, double alpha, const Spectrum& sp
               bool saturating) {
   set_coat(material, index, alpha, specular);
   const CoatOverBase coat(material, saturating);
+  lay_coat(material, index, alpha, specular,
+           [&](const Spectrum& base) { return coat.reflectance(base); });
+}
+
+void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
+              const std::function<Spectrum(const Spectrum&)>& coated) {
+  set_coat(material, index, alpha, specular);
   if (material.passes_straight()) material.regular_transmittance *= 1.0f - mean_mirrored(material);
-  if (!material.is_translucent()) {
-    return replace_base(material, [&](const Spectrum& base) { return coat.reflectance(base); });
-  }
+  if (!material.is_translucent()) return replace_base(material, coated);
   // Light on both sides is the sum of light that is alike on both, of which rho + tau returns, and
   // of light that is opposite, of which rho - tau returns.
   const Spectrum tau = material.transmittance;
   const auto half = [&](const Spectrum& base, float sign) -> Spectrum {
-    return 0.5f * (coat.reflectance(base + tau) + sign * coat.reflectance(base - tau));
+    return 0.5f * (coated(base + tau) + sign * coated(base - tau));
   };
   material.transmittance = half(material.reflectance, -1.0f);
   replace_base(material, [&](const Spectrum& base) { return half(base, 1.0f); });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 
 #include "scene/bands.h"
@@ -32,6 +33,10 @@ void set_coat(Material& material, double index, double alpha, const Spectrum& sp
 /// CoatOverBase. A sheet that passes light has the coat on both sides.
 void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
               bool saturating = true);
+/// The same with another law of what light for even light base and coat send back together, of the
+/// base's reflectance.
+void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
+              const std::function<Spectrum(const Spectrum&)>& coated);
 
 /// Lays a coat as lay_coat(), but light does not go to and fro below it: rho = (1 - s F_o) base, s
 /// the largest of `specular`, as in glTF's materials (fresnel_mix in appendix B of glTF 2.0,

@@ -16,7 +16,7 @@
 namespace lightwell {
 namespace {
 
-constexpr double bk7 = 1.5046, polypropylene = 1.49, air = 1.000277;  // Mitsuba's defaults
+constexpr double bk7 = 1.5046, air = 1.000277;  // Mitsuba's defaults
 
 Spectrum black() {
   return Spectrum::Zero(3);
@@ -251,17 +251,6 @@ Material MitsubaMaterials::dielectric(const MitsubaNode& bsdf, Pixels pixels) {
     vary_gloss(bsdf, glass);
   }
   return glass;
-}
-
-Material MitsubaMaterials::plastic(const MitsubaNode& bsdf, Pixels pixels) {
-  Material material = diffuse(bsdf, "diffuse_reflectance", pixels);
-  const Spectrum specular = colors_.share_or(bsdf, "specular_reflectance", 1.0f, pixels);
-  const double alpha = bsdf.type == "roughplastic" ? roughness(bsdf) : 0.0;
-  const double index = std::max(index_ratio(bsdf, polypropylene), double{lowest_coat_index});
-  // Without `nonlinear`, Mitsuba's base reflects as if it were white below the coat.
-  lay_coat(material, index, alpha, specular, bsdf.boolean_or("nonlinear", false));
-  vary_gloss(bsdf, material);
-  return material;
 }
 
 // A smooth or rough coating over another BSDF. Light passes the coating's absorption twice.

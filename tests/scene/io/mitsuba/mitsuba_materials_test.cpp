@@ -1,6 +1,8 @@
 // Materials of Mitsuba's BSDFs.
 #include <gtest/gtest.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "scene/coat.h"
@@ -71,8 +73,35 @@ TEST_F(MitsubaMaterials, PlasticsAreCoatsOverABase) {
   ASSERT_TRUE(rough.coat);
   EXPECT_FLOAT_EQ(rough.specular_roughness, 0.3f);
   EXPECT_FLOAT_EQ(rough.specular[0], 0.5f);
-  EXPECT_FLOAT_EQ(rough.reflectance[0],
-                  CoatOverBase(rough, false).reflectance(Spectrum::Constant(3, 0.5f))[0]);
+}
+
+// Base and coat together for even light, less the light mirrored by the coat, from 30 000 samples
+// of Mitsuba 3.6's BSDF at angles of even light. Its standard error is at most 0.0008. Mitsuba sums
+// F_i over 64 cosines including 0 and 1, which makes F_i less by up to 1/64 of itself and 1 / (1 -
+// F_i) by up to F_i / (1 - F_i) / 64. F_i is below 0.596, that of a smooth coat: 0.0231 at most.
+TEST_F(MitsubaMaterials, RoughPlasticsLoseWhatFacetsScatterTwice) {
+  struct Known {
+    const char* facets;
+    double alpha, base;
+    bool nonlinear;
+    double reflected;
+  };
+  for (const Known& known :
+       {Known{"ggx", 0.1, 1, false, 0.8273}, Known{"ggx", 0.1, 0.6, true, 0.3322},
+        Known{"ggx", 0.2, 1, false, 0.7221}, Known{"ggx", 0.2, 0.6, true, 0.3141},
+        Known{"ggx", 0.4, 1, false, 0.5415}, Known{"ggx", 0.4, 0.6, true, 0.2677},
+        Known{"beckmann", 0.1, 1, false, 0.8803}, Known{"beckmann", 0.1, 0.6, true, 0.3408},
+        Known{"beckmann", 0.2, 1, false, 0.8486}, Known{"beckmann", 0.2, 0.6, true, 0.3372},
+        Known{"beckmann", 0.4, 1, false, 0.7370}, Known{"beckmann", 0.4, 0.6, true, 0.3205}}) {
+    const Material rough = material(fmt::format(
+        R"(<bsdf type="roughplastic"><float name="alpha" value="{}"/>
+        <string name="distribution" value="{}"/><float name="int_ior" value="1.5"/>
+        <float name="ext_ior" value="1"/><boolean name="nonlinear" value="{}"/>
+        <rgb name="diffuse_reflectance" value="{}"/></bsdf>)",
+        known.alpha, known.facets, known.nonlinear, known.base));
+    EXPECT_NEAR(rough.reflectance[0], known.reflected, 3.0 * 0.0008 + 0.0231 * known.reflected)
+        << known.facets << ' ' << known.alpha;
+  }
 }
 
 // The light passes the coating's body of sigma 0.5 and thickness 0.2 twice.
