@@ -254,7 +254,7 @@ class SkyLight::Estimate {
     }
     std::vector<std::uint8_t> blocked(ray.size());
     caster_.occluded(ray, blocked);
-    stop_in_seams(ray, blocked);
+    stop_in_seams(caster_, ray, sky_.seam_, blocked);
     std::vector<double> passed_share;
     passed_share.reserve(ray.size());
     const Spectrum whole = Spectrum::Ones(sky_.bands_);
@@ -293,16 +293,6 @@ class SkyLight::Estimate {
     for (std::size_t i = 0; i + 1 < samples.size(); i += 2) {
       const double difference = term(i) - term(i + 1);
       tally.squared_noise += difference * difference;
-    }
-  }
-
-  // Stops rays in seams. Through more than a few rays, light comes by an opening.
-  void stop_in_seams(const std::vector<Ray>& rays, std::vector<std::uint8_t>& blocked) const {
-    constexpr std::size_t rays_for_one = 16;
-    const auto passing = static_cast<std::size_t>(std::ranges::count(blocked, 0));
-    if (passing * rays_for_one > rays.size()) return;
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-      if (blocked[i] == 0 && passes_seam(caster_, rays[i], sky_.seam_)) blocked[i] = 1;
     }
   }
 
