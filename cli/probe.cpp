@@ -29,10 +29,9 @@ struct ProbeArguments {
 void say_bounds(const ProbeBounds& bounds, double accuracy, Console& console, Report& report) {
   const auto unknown = bounds.lux_within.isNaN().count();
   if (unknown > 0) {
-    console.say(fmt::format(
-        "note: lux_within is left empty at {} of {} points: no ray found light there, or light "
-        "comes through mirrors and glass, whose error has no estimate.",
-        unknown, bounds.lux_within.size()));
+    console.say(
+        fmt::format("note: lux_within is left empty at {} of {} points: no light was found there.",
+                    unknown, bounds.lux_within.size()));
   }
   report.add("points_without_bound", unknown);
   if (!(accuracy > 0.0)) return;

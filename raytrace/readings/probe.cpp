@@ -40,11 +40,20 @@ GatherOptions probe_options(const LitScene& lit, const BandArray& radiosity,
 // Bound of the error that a gather takes over from the solution, as a multiple of read_errors().
 constexpr double of_read_error = 1.0;
 
-/// Caustics at probes, which the mesh holds.
-struct Caustics {
+/// Light at probes that their gathers do not find: caustics, which the mesh holds, or that of lamps
+/// by way of mirrors and glass in free space.
+struct OtherLight {
   BandArray irradiance{};       ///< probes x bands, W/m^2
-  Eigen::ArrayXd lux_within{};  ///< bound of their error, lx
+  Eigen::ArrayXd lux_within{};  ///< bound of its error, lx, with odds of about 19 to 1
 };
+
+// Bounds of the error of gathered and other light together. A gather that found no light has no
+// bound (NaN), and adds none where there is other light.
+Eigen::ArrayXd with_other_light(const Eigen::ArrayXd& gathered, const OtherLight& other) {
+  const Eigen::Array<bool, Eigen::Dynamic, 1> is_lit = (other.irradiance > 0.0f).rowwise().any();
+  const Eigen::ArrayXd known = (gathered.isNaN() && is_lit).select(0.0, gathered);
+  return (known.square() + other.lux_within.square()).sqrt();
+}
 
 // Caustics have no estimate of their error. Where they vary little over an element, as lamps in a
 // pane or a mirror do, their error is taken to be less than they are. The bound of a focus, whose
@@ -61,7 +70,7 @@ double caustic_bound(const PatchMesh& mesh, const RadiositySolution& solution,
 
 // Light of the gather at the probes, without caustics; the error of `caustics` adds to the bounds.
 BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const GatherPoints& points,
-                       const GatherOptions& options, const Caustics& caustics,
+                       const GatherOptions& options, const OtherLight& caustics,
                        const RadiositySolution& solution, ProbeBounds* bounds) {
   const GatherOptions at_probes = probe_options(lit, radiosity, options);
   if (!bounds) {
@@ -72,7 +81,7 @@ BandArray probe_gather(const LitScene& lit, const BandArray& radiosity, const Ga
       .accuracy = bounds->accuracy,
       .besides = of_read_error * read_errors(lit, solution, radiosity, points, at_probes.rays)};
   SureIrradiance sure = sure_gather(lit, radiosity, points, at_probes, goal);
-  bounds->lux_within = (sure.lux_within.square() + caustics.lux_within.square()).sqrt();
+  bounds->lux_within = with_other_light(sure.lux_within, caustics);
   bounds->read_within = (goal.besides.square() + caustics.lux_within.square()).sqrt();
   bounds->missed = sure.missed;
   return std::move(sure.irradiance);
@@ -90,11 +99,6 @@ SolveOptions options_for_probes() {
 
 namespace {
 
-struct MirroredLight {
-  BandArray irradiance{};       // points x bands, W/m^2
-  Eigen::ArrayXd lux_within{};  // lx, with odds of about 19 to 1
-};
-
 // Points and their light.
 struct LitPoints {
   const std::vector<GatherPoint>& points;
@@ -103,8 +107,8 @@ struct LitPoints {
 
 // Light of lamps by way of mirrors and glass at the points that lie on no surface: the mesh holds
 // such light for surfaces. `accuracy` is that of ProbeBounds.
-MirroredLight mirrored_in_air(const LitScene& lit, const RadiositySolution& solution,
-                              const LitPoints& at, const GatherOptions& options, double accuracy) {
+OtherLight mirrored_in_air(const LitScene& lit, const RadiositySolution& solution,
+                           const LitPoints& at, const GatherOptions& options, double accuracy) {
   const std::vector<GatherPoint>& points = at.points;
   SpecularLightOptions effort{
       .most_rays = 32 * options.rays, .replica = options.replica, .progress = options.run.progress};
@@ -118,8 +122,8 @@ MirroredLight mirrored_in_air(const LitScene& lit, const RadiositySolution& solu
     if (!in_air.back().key) in_air.back().key = i;
   }
   const auto count = static_cast<Eigen::Index>(points.size());
-  MirroredLight result{.irradiance = BandArray::Zero(count, lit.scene.bands.count()),
-                       .lux_within = Eigen::ArrayXd::Zero(count)};
+  OtherLight result{.irradiance = BandArray::Zero(count, lit.scene.bands.count()),
+                    .lux_within = Eigen::ArrayXd::Zero(count)};
   if (in_air.empty()) return result;
   if (accuracy > 0.0) {
     // A quarter of the bound, which is two standard errors.
@@ -149,8 +153,8 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   // Rays from the probe do not find light of emitters through mirrors and glass; the mesh holds
   // this light.
   const auto count = static_cast<Eigen::Index>(probes.size());
-  Caustics caustics{.irradiance = BandArray::Zero(count, scene.bands.count()),
-                    .lux_within = Eigen::ArrayXd::Zero(count)};
+  OtherLight caustics{.irradiance = BandArray::Zero(count, scene.bands.count()),
+                      .lux_within = Eigen::ArrayXd::Zero(count)};
   std::vector<GatherPoint> points;
   points.reserve(probes.size());
   for (const Probe& probe : probes) {
@@ -167,12 +171,10 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
   const BandArray B = gatherable_radiosity(lit, solution);
   BandArray E = probe_gather(lit, B, points, options, caustics, solution, bounds);
   E += caustics.irradiance;
-  const MirroredLight mirrored =
+  const OtherLight mirrored =
       mirrored_in_air(lit, solution, {points, E}, options, bounds ? bounds->accuracy : 0.0);
   E += mirrored.irradiance;
-  if (bounds) {
-    bounds->lux_within = (bounds->lux_within.square() + mirrored.lux_within.square()).sqrt();
-  }
+  if (bounds) bounds->lux_within = with_other_light(bounds->lux_within, mirrored);
   return E;
 }
 

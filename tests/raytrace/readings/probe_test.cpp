@@ -7,6 +7,7 @@
 #include <numbers>
 #include <string>
 
+#include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/emitters/emitter.h"
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
@@ -151,6 +152,33 @@ TEST(ProbeIrradiance, UnderASmallLampIsTheClosedForm) {
   EXPECT_NEAR(E(0, 0), 7.0 * F, 1e-5 * 7.0 * F);
   EXPECT_NEAR(E(1, 0), 7.0 * F, 1e-3 * 7.0 * F);  // on the floor, 1e-4 m above it or not
   EXPECT_EQ(E(2, 0), 0.0f);
+}
+
+// A square lamp above a wide mirror; surfaces reflect no light diffusely, so a gather that faces
+// the mirror finds none.
+TEST(ProbeIrradiance, OfMirroredLightAloneHasABound) {
+  constexpr float exitance = 10.0f, specular = 0.8f;
+  const Eigen::Vector3d at(0.3, 0.2, 1.0);
+  const TracedScene lit(
+      SceneBuilder()
+          .square({.specular = specular, .one_sided = true}, {0, 0, 0}, up, 20.0)
+          .square({.exitance = exitance, .one_sided = true}, {0, 0.5, 2}, -up, 0.5)
+          .build());
+  ProbeBounds bounds;
+  const std::vector<Probe> probes = {{at, -up}, {{0, 0.5, 3}, up}};
+  const BandArray E = probe_irradiance(lit.scene, lit.caster, lit.direct_light, lit.solution,
+                                       probes, {.rays = 256}, &bounds);
+  const Loop image = {{-0.5, 0, -2}, {0.5, 0, -2}, {0.5, 1, -2}, {-0.5, 1, -2}};
+  const double expected = specular * exitance * std::abs(point_to_polygon(at, -up, image));
+  const double lux_of_one = luminous(lit.scene.bands, Spectrum::Ones(E.cols()));
+  EXPECT_GT(bounds.lux_within[0], 0.0);
+  // The bound is two standard errors, and the test allows four.
+  EXPECT_NEAR(lux_of_one * E(0, 0), lux_of_one * expected, 2.0 * bounds.lux_within[0]);
+  // A bound that is all of the light says nothing.
+  EXPECT_LT(bounds.lux_within[0], 0.1 * lux_of_one * expected);
+  // Nothing is known behind the lamp, where there is no light.
+  EXPECT_EQ(E(1, 0), 0.0f);
+  EXPECT_TRUE(std::isnan(bounds.lux_within[1]));
 }
 
 TEST(ProbeIrradiance, OnTheFoldOfABentFloorIsShadedByNeitherHalf) {
