@@ -35,7 +35,7 @@ BandArray probed(const Scene& scene, const SolvedScene& solved) {
 // A scene solved and relit, and the same scene solved with the relit emission.
 struct Both {
   explicit Both(float desk) {
-    test::TwoLamps is{.with_mirror = true};
+    test::TwoLamps is{.with_mirror = true, .with_block = false};
     scene = test::two_lamps(is);
     SolveOptions options = test::exact_and_even();
     options.channels = channels_per_luminaire(scene);

@@ -158,7 +158,7 @@ INSTANTIATE_TEST_SUITE_P(Rooms, ChannelsOf,
                                          Room{"glass", with_glass, true}));
 
 TEST(Relight, EqualsASolveWithThatEmission) {
-  test::TwoLamps is{.with_mirror = true};
+  test::TwoLamps is{.with_mirror = true, .with_block = false};
   SolvedScene relit = solve_by_channel(test::two_lamps(is));
   const Spectrum warm = (Spectrum(3) << 1.4f, 0.9f, 0.3f).finished();
   relight(relit, std::vector<Spectrum>{even(0.3f), warm});
