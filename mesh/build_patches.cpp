@@ -96,7 +96,7 @@ class CountedFacets {
 // lines. Fewer are better, the first counting most.
 using Faults = std::array<int, 3>;
 
-// What the meshes of all tolerances share.
+// Settings that the meshes of all tolerances share.
 struct FacetSettings {
   const PatchSizes& sizes;
   const MeshOptions& options;

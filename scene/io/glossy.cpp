@@ -44,17 +44,12 @@ void set_coat(Material& material, double index, double alpha, const Spectrum& sp
   material.specular_roughness = roughness_of(alpha);
 }
 
-void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
-              bool saturating) {
-  set_coat(material, index, alpha, specular);
-  const CoatOverBase coat(material, saturating);
-  lay_coat(material, index, alpha, specular,
-           [&](const Spectrum& base) { return coat.reflectance(base); });
-}
+namespace {
 
-void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
-              const std::function<Spectrum(const Spectrum&)>& coated) {
-  set_coat(material, index, alpha, specular);
+using CoatedReflectance = std::function<Spectrum(const Spectrum&)>;
+
+// Replaces the base of a material that has its coat by what `coated` makes of it.
+void replace_coated_base(Material& material, const CoatedReflectance& coated) {
   if (material.passes_straight()) material.regular_transmittance *= 1.0f - mean_mirrored(material);
   if (!material.is_translucent()) return replace_base(material, coated);
   // Light on both sides is the sum of light that is alike on both, of which rho + tau returns, and
@@ -65,6 +60,21 @@ void lay_coat(Material& material, double index, double alpha, const Spectrum& sp
   };
   material.transmittance = half(material.reflectance, -1.0f);
   replace_base(material, [&](const Spectrum& base) { return half(base, 1.0f); });
+}
+
+}  // namespace
+
+void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
+              bool saturating) {
+  set_coat(material, index, alpha, specular);
+  const CoatOverBase coat(material, saturating);
+  replace_coated_base(material, [&](const Spectrum& base) { return coat.reflectance(base); });
+}
+
+void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
+              const CoatedReflectance& coated) {
+  set_coat(material, index, alpha, specular);
+  replace_coated_base(material, coated);
 }
 
 void lay_simple_coat(Material& material, double index, double alpha, const Spectrum& specular) {

@@ -174,7 +174,8 @@ TEST(ProbeIrradiance, OfMirroredLightAloneHasABound) {
   EXPECT_GT(bounds.lux_within[0], 0.0);
   // The bound is two standard errors, and the test allows four.
   EXPECT_NEAR(lux_of_one * E(0, 0), lux_of_one * expected, 2.0 * bounds.lux_within[0]);
-  // A bound that is all of the light says nothing.
+  // Of 4096 + 32 * 256 cosine-distributed rays, the form factor 0.034 of the lamp's image would
+  // meet it: two standard errors of 2 sqrt(0.966 / (0.034 * 12288)) = 9.6 %.
   EXPECT_LT(bounds.lux_within[0], 0.1 * lux_of_one * expected);
   // Nothing is known behind the lamp, where there is no light.
   EXPECT_EQ(E(1, 0), 0.0f);
