@@ -84,10 +84,10 @@ bool GapLight::is_gap(const Eigen::Vector3d& normal, const Ray& ray, const Eleme
   // Surfaces that face each other are at most twice as far apart along one normal as along the
   // other. Most rays end here, before the other normal is needed.
   const double height = hit.t * std::abs(ray.direction.dot(normal));
-  if (!(height < 2.0 * widest_gap * size) || !may_be_followed(hit)) return false;
+  if (!(height < 2.0 * widest_ * size) || !may_be_followed(hit)) return false;
   const Eigen::Vector3d other = normal_towards(ray, hit);
   const double width = hit.t * std::abs(ray.direction.dot(other));
-  return other.dot(normal) < facing && width < widest_gap * size && width > narrowest_gap * size;
+  return other.dot(normal) < facing && width < widest_ * size && width > narrowest_gap * size;
 }
 
 // True if the surface reflects diffusely, mirrors by a coat at most, passes no light and does not
@@ -122,7 +122,7 @@ bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const Elem
   const double size = std::sqrt(lit_.mesh().element_area[hit.element]);
   const Ray across{.origin = ray.origin + hit.t * ray.direction,
                    .direction = normal_towards(ray, hit),
-                   .t_max = widest_gap * size,
+                   .t_max = widest_ * size,
                    .origin_group = hit.facet};
   ElementHit opposite;
   caster.closest_hits({&across, 1}, {&opposite, 1});

@@ -37,14 +37,20 @@ struct GapAims {
 /// outside.
 class GapLight {
  public:
-  /// `radiosity` is that of gather_irradiance(). Keeps references to the scene and the paths.
-  GapLight(const LitScene& lit, ReadRadiosity radiosity, const LightPaths& paths)
-      : lit_(lit), radiosity_(radiosity), paths_(paths), sizes_(gap_sizes(lit.mesh())) {}
+  /// `radiosity` is that of gather_irradiance(); `widest` is the greatest width of a gap as a share
+  /// of gap_sizes(). Keeps references to the scene and the paths.
+  GapLight(const LitScene& lit, ReadRadiosity radiosity, const LightPaths& paths,
+           double widest = widest_gap)
+      : lit_(lit),
+        radiosity_(radiosity),
+        paths_(paths),
+        sizes_(gap_sizes(lit.mesh())),
+        widest_(widest) {}
 
   /// True if a ray from a point of unit normal `normal` ends in a gap: on a surface that faces the
   /// point, reflects and does not emit, and whose distance from the point along its own normal is
-  /// less than 0.15 of the size at the element that was hit (see gap_sizes), and more than 1e-4 of
-  /// that size.
+  /// less than `widest` of the size at the element that was hit (see gap_sizes), and more than 1e-4
+  /// of that size.
   bool is_gap(const Eigen::Vector3d& normal, const Ray& ray, const ElementHit& hit) const;
 
   /// True if a ray ends in a gap that it entered from outside, such as the passage between a door
@@ -133,6 +139,7 @@ class GapLight {
   ReadRadiosity radiosity_;
   const LightPaths& paths_;
   std::vector<float> sizes_;  // gap_sizes()
+  double widest_;             // share of them
 };
 
 }  // namespace lightwell

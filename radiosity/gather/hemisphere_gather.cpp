@@ -40,7 +40,8 @@ HemisphereGather::HemisphereGather(const LitScene& lit, ReadRadiosity radiosity,
       options_(options),
       bands_(lit.scene.bands.count()),
       bright_(std::move(bright)),
-      gaps_(lit, radiosity, paths_) {
+      gaps_(lit, radiosity, paths_,
+            options.aims_out_of_gaps ? widest_gap_at_readings : widest_gap) {
   if (const FreeSource* dome = lit.direct_light.dome()) {
     dome_ = dome->light;
     if (lit.direct_light.column_count() == radiosity.columns())

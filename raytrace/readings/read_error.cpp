@@ -32,7 +32,7 @@ class ReadErrors {
       : mesh_(lit.mesh()),
         caster_(lit.caster),
         paths_(lit.scene, lit.caster, most_bounces),
-        gaps_(lit, {lit.mesh(), radiosity}, paths_),
+        gaps_(lit, {lit.mesh(), radiosity}, paths_, widest_gap_at_readings),
         error_(error),
         missed_(missed),
         rays_of_set_(rays),
