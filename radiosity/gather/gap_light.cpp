@@ -87,7 +87,19 @@ bool GapLight::is_gap(const Eigen::Vector3d& normal, const Ray& ray, const Eleme
   if (!(height < 2.0 * widest_ * size) || !may_be_followed(hit)) return false;
   const Eigen::Vector3d other = normal_towards(ray, hit);
   const double width = hit.t * std::abs(ray.direction.dot(other));
-  return other.dot(normal) < facing && width < widest_ * size && width > narrowest_gap * size;
+  return other.dot(normal) < facing && width < widest(ray, hit) * size &&
+         width > narrowest_gap * size;
+}
+
+// The greatest width of a gap between the facet that a ray begins on and the one that it meets, as
+// a share of the size. The absorptances of the two have a mean, since light meets both in turn.
+double GapLight::widest(const Ray& ray, const ElementHit& hit) const {
+  const auto absorbed = [&](int facet) {
+    return static_cast<double>(absorptances_[static_cast<std::size_t>(facet)]);
+  };
+  const double at_end = absorbed(hit.facet);
+  const double at_begin = ray.origin_group < 0 ? at_end : absorbed(ray.origin_group);
+  return widest_ * widest_between(0.5 * (at_begin + at_end));
 }
 
 // True if the surface reflects diffusely, mirrors by a coat at most, passes no light and does not
@@ -126,7 +138,8 @@ bool GapLight::is_narrow(const ElementCaster& caster, const Ray& ray, const Elem
                    .origin_group = hit.facet};
   ElementHit opposite;
   caster.closest_hits({&across, 1}, {&opposite, 1});
-  return opposite.element >= 0 && opposite.t > narrowest_gap * size &&
+  return opposite.element >= 0 && opposite.t < widest(across, opposite) * size &&
+         opposite.t > narrowest_gap * size &&
          normal_towards(across, opposite).dot(across.direction) < facing;
 }
 

@@ -45,12 +45,13 @@ class GapLight {
         radiosity_(radiosity),
         paths_(paths),
         sizes_(gap_sizes(lit.mesh())),
+        absorptances_(facet_absorptances(lit.mesh())),
         widest_(widest) {}
 
   /// True if a ray from a point of unit normal `normal` ends in a gap: on a surface that faces the
   /// point, reflects and does not emit, and whose distance from the point along its own normal is
-  /// less than `widest` of the size at the element that was hit (see gap_sizes), and more than 1e-4
-  /// of that size.
+  /// less than `widest` of the size at the element that was hit (see gap_sizes), less between two
+  /// white surfaces (see widest_between), and more than 1e-4 of that size.
   bool is_gap(const Eigen::Vector3d& normal, const Ray& ray, const ElementHit& hit) const;
 
   /// True if a ray ends in a gap that it entered from outside, such as the passage between a door
@@ -133,13 +134,14 @@ class GapLight {
   bool is_closed_end(const ElementCaster& caster, const Eigen::Vector3d& across, double width,
                      const Ray& ray, const ElementHit& hit) const;
   bool may_be_followed(const ElementHit& hit) const;
+  double widest(const Ray& ray, const ElementHit& hit) const;
   Eigen::Vector3d normal_towards(const Ray& ray, const ElementHit& hit) const;
 
   LitScene lit_;
   ReadRadiosity radiosity_;
   const LightPaths& paths_;
-  std::vector<float> sizes_;  // gap_sizes()
-  double widest_;             // share of them
+  std::vector<float> sizes_, absorptances_;  // gap_sizes(), facet_absorptances()
+  double widest_;                            // share of the sizes
 };
 
 }  // namespace lightwell

@@ -15,6 +15,12 @@ namespace lightwell {
 /// half again the light. Vertices with as many gaps would take twice the time in an office.
 inline constexpr double widest_gap = 0.15, widest_gap_at_readings = 0.5;
 
+/// Greatest width of a gap between surfaces that absorb the share `absorbed` of light, as a share
+/// of the width between others. At each of steps of about the gap's width this share is lost, so
+/// that light falls off within the width over the root of the share, by diffusion: between white
+/// surfaces light is even, and elements show it. Surfaces that reflect 80 % or less count alike.
+double widest_between(double absorbed);
+
 /// Greatest cosine between the normals of surfaces that face each other.
 inline constexpr double facing = -0.5;
 
@@ -23,5 +29,8 @@ inline constexpr double facing = -0.5;
 /// a vertex at each corner of a facet, so such a patch shows light that varies from facet to facet.
 /// (A patch of one facet has two elements along its edge by default, so twice their size.)
 std::vector<float> gap_sizes(const PatchMesh& mesh);
+
+/// Per facet, the largest share of light that a side of the facet absorbs or passes in any band.
+std::vector<float> facet_absorptances(const PatchMesh& mesh);
 
 }  // namespace lightwell

@@ -36,6 +36,32 @@ TEST(GapLight, BetweenLongPlatesIsThatOfTheIntegralEquation) {
   }
 }
 
+// Between plates that reflect 99 % light is nearly even: of the light in their middle the share
+// `covered` comes from the other plate, so that there are covered / (1 - covered) reflections in
+// the mean, or fewer, and 1 % is lost at each. Rays read the light of the open there, which the
+// plates' vertices have, and lose 1 % of that share. Between plates that reflect half, paths go on.
+TEST(GapLight, BetweenWhitePlatesIsThatOfTheMesh) {
+  constexpr double gap = 0.09, x = 0.5 * width, rho = 0.99;
+  const double covered = x / std::hypot(x, gap);
+  EXPECT_NEAR(between_long_plates(x, gap, rho), double{B0},
+              (1.0 - rho) * covered / (1.0 - covered) * B0);
+  const Plates white(gap, static_cast<float>(rho)), grey(gap);
+  constexpr int rays = 512, replicas = 32;
+  std::vector<double> in_white, in_grey;
+  for (int i = 0; i < replicas; ++i) {
+    in_white.push_back(white.gathered(x, rays, static_cast<std::uint64_t>(i)));
+    in_grey.push_back(grey.gathered(x, rays, static_cast<std::uint64_t>(i)));
+  }
+  const test::SampleMean E = test::mean_of(in_white), less = test::mean_of(in_grey);
+  EXPECT_NEAR(E.value, (1.0 - (1.0 - rho) * covered) * B0, 4.0 * E.standard_error)
+      << "four standard errors";
+  EXPECT_NEAR(less.value, between_long_plates(x, gap), 4.0 * less.standard_error + 0.01 * B0)
+      << "four standard errors; 1 % for the plates' finite length";
+  // Neither could be taken for the other.
+  EXPECT_LT(4.0 * (E.standard_error + less.standard_error) + 0.01 * B0, 0.1 * B0);
+  EXPECT_LT(between_long_plates(x, gap), 0.8 * B0);
+}
+
 // Deep in a gap one cosine-distributed ray in thousands gets out.
 TEST(GapLight, DeepInAGapIsKnownByAFewHundredRays) {
   for (const double gap : {0.001, 0.004}) {

@@ -18,7 +18,7 @@ inline constexpr int desk_facet = 6;  // facet, after the six walls
 // Two plates that face each other across `gap`, in the middle of a wide room whose walls emit B0.
 // The light of the plates' vertices is that of plates in the open, as coarse meshes have it.
 struct Plates {
-  explicit Plates(double gap) : Plates(room(gap)) {}
+  explicit Plates(double gap, float rho = plate_rho) : Plates(room(gap, rho)) {}
   /// Plates in another room.
   explicit Plates(Scene of)
       : scene(std::move(of)),
@@ -28,10 +28,10 @@ struct Plates {
         radiosity(gatherable_radiosity(
             mesh, light, BandArray::Constant(mesh.vertex_count(), scene.bands.count(), B0))) {}
 
-  static Scene room(double gap) {
+  static Scene room(double gap, float rho = plate_rho) {
     Scene scene;
     const int wall = add_material(scene, diffuse(scene.bands, 0.0f, B0));
-    const int plate = add_material(scene, diffuse(scene.bands, plate_rho));
+    const int plate = add_material(scene, diffuse(scene.bands, rho));
     add_box(scene, {-10, -10, -10}, {10, 10, 10}, {wall, wall, wall, wall, wall, wall}, true);
     const double w = plate_width, l = 0.5 * plate_length;
     add_polygon(scene, "desk", plate, {{0, -l, 0}, {w, -l, 0}, {w, l, 0}, {0, l, 0}});
@@ -57,7 +57,7 @@ struct Plates {
 //     E(x) = B0 (1 - F(x)) + rho int K(x, y) E(y) dy,   K = g^2 / (2 ((x - y)^2 + g^2)^(3/2)),
 // with F = int K dy in closed form. The unknowns stand in the midpoints of equal cells; K is
 // integrated over each cell in closed form.
-inline double between_long_plates(double x, double gap) {
+inline double between_long_plates(double x, double gap, double rho = double{plate_rho}) {
   constexpr int n = 800;
   const double h = plate_width / n;
   const auto reached = [&](double from, double to) {  // int K up to `to`
@@ -70,13 +70,13 @@ inline double between_long_plates(double x, double gap) {
     const double xi = (i + 0.5) * h;
     b[i] = B0 * (1.0 - covered(xi));
     for (int j = 0; j < n; ++j) {
-      A(i, j) -= static_cast<double>(plate_rho) * (reached(xi, (j + 1) * h) - reached(xi, j * h));
+      A(i, j) -= rho * (reached(xi, (j + 1) * h) - reached(xi, j * h));
     }
   }
   const Eigen::VectorXd E = A.partialPivLu().solve(b);
   double sum = B0 * (1.0 - covered(x));
   for (int j = 0; j < n; ++j) {
-    sum += static_cast<double>(plate_rho) * E[j] * (reached(x, (j + 1) * h) - reached(x, j * h));
+    sum += rho * E[j] * (reached(x, (j + 1) * h) - reached(x, j * h));
   }
   return sum;
 }
