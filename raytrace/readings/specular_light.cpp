@@ -48,10 +48,11 @@ struct RaySum {
   }
 };
 
-// True if the light of a ray depends on chance beside the ray's direction.
-bool has_rough_surfaces(const Scene& scene) {
-  return std::ranges::any_of(scene.materials,
-                             [](const Material& m) { return m.gloss_roughness() > 0.0f; });
+// True if rays of one direction differ: chance turns them at gloss, and ends most between coats.
+bool depends_on_chance(const Scene& scene) {
+  return std::ranges::any_of(scene.materials, [](const Material& m) {
+    return m.gloss_roughness() > 0.0f || m.mirrors_by_coat();
+  });
 }
 
 class PointLight {
@@ -64,7 +65,7 @@ class PointLight {
         options_(options),
         key_(key),
         bands_(lit.scene.bands.count()),
-        is_rough_(has_rough_surfaces(lit.scene)),
+        by_chance_(depends_on_chance(lit.scene)),
         paths_(tree, at) {
     frame_.col(2) = at.normal;
     Eigen::Vector3d a, b;
@@ -83,7 +84,7 @@ class PointLight {
     split_around_emitters();
     const double known = (static_cast<double>(lamps.mean()) + other_light) * std::numbers::inv_pi;
     double variance = refine(known);
-    if (is_rough_) variance = sample_anew(known);
+    if (by_chance_) variance = sample_anew(known);
     Spectrum sum = Spectrum::Zero(bands_);
     for (const Stratum& s : strata_) {
       if (s.children < 0) sum += s.mean * static_cast<float>(area(s));
@@ -216,7 +217,7 @@ class PointLight {
   // Splits the strata that differ most, in rounds, until the estimated error or the number of rays
   // is reached. `known` is light that strata do not have to find. Returns the variance of the sum.
   double refine(double known) {
-    const int most = rays_ + (is_rough_ ? options_.most_rays / 2 : options_.most_rays);
+    const int most = rays_ + (by_chance_ ? options_.most_rays / 2 : options_.most_rays);
     while (true) {
       const std::vector<double> deviation = deviations();
       const double variance = squared_sum(deviation), worst = std::ranges::max(deviation);
@@ -242,9 +243,7 @@ class PointLight {
     return deviation;
   }
   static double squared_sum(const std::vector<double>& deviation) {
-    double sum = 0.0;
-    for (const double d : deviation) sum += d * d;
-    return sum;
+    return std::inner_product(deviation.begin(), deviation.end(), deviation.begin(), 0.0);
   }
   bool is_sure(double variance, double known) const {
     double mean = known;
@@ -255,10 +254,10 @@ class PointLight {
   }
 
   // Gives the final strata the means of new rays. Light that chance finds, as off one rough surface
-  // by way of another, is too low before: strata whose rays found much were split, and their parts
-  // have other rays, while strata whose rays missed it stay as they are. The new rays of a stratum
-  // are as many as the first ones decide; half of all are spread evenly. Returns the variance of
-  // the sum.
+  // or coat by way of another, is too low before: strata whose rays found much were split, and
+  // their parts have other rays, while strata whose rays missed it stay as they are. The new rays
+  // of a stratum are as many as the first ones decide; half of all are spread evenly. Returns the
+  // variance of the sum.
   double sample_anew(double known) {
     const std::vector<double> first = deviations();
     const double all = std::max(std::accumulate(first.begin(), first.end(), 0.0), 1e-300);
@@ -401,7 +400,7 @@ class PointLight {
   const SpecularLightOptions& options_;
   std::uint64_t key_;
   int bands_, rays_ = 0;
-  bool is_rough_;
+  bool by_chance_;
   SpecularPaths paths_;
   bool has_specular_ = false;
   Eigen::Matrix3d frame_;
@@ -418,9 +417,8 @@ SpecularIrradiance specular_irradiance(const LitScene& lit, const RadiositySolut
   const int bands = lit.scene.bands.count();
   SpecularIrradiance result{.irradiance = BandArray::Zero(count, bands),
                             .variance = Eigen::ArrayXf::Zero(count)};
-  const auto& materials = lit.scene.materials;
-  const auto is_specular = [](const Material& material) { return material.is_specular(); };
-  if (std::ranges::none_of(materials, is_specular) || lit.direct_light.light_count() == 0) {
+  if (std::ranges::none_of(lit.scene.materials, &Material::is_specular) ||
+      lit.direct_light.light_count() == 0) {
     return result;
   }
   // The mean over many directions needs few branches of each.

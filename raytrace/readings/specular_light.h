@@ -33,9 +33,9 @@ struct SpecularIrradiance {
 ///
 /// - Emitters: E = int L cos over the hemisphere by stratified rays, whose trees (see
 ///   RayTree::trace_lamps) end on emitters. Strata are split where their rays differ most, so the
-///   outlines of mirrored emitters get most rays. In scenes with rough surfaces, what a ray finds
-///   also depends on chance, and new rays in the final strata give the result: a stratum is not
-///   chosen by the rays that it is the mean of.
+///   outlines of mirrored emitters get most rays. In scenes with rough surfaces or coats, what a
+///   ray finds also depends on chance, and new rays in the final strata give the result: a stratum
+///   is not chosen by the rays that it is the mean of.
 /// - Lamps without surface and the sun: Newton's method finds the direction in which a chain of
 ///   smooth surfaces leads to the lamp (manifold exploration, Jakob & Marschner 2012), with
 ///   E = I T cos / |det A|. A is the derivative of the path's offset at the lamp by its direction

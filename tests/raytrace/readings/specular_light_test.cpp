@@ -265,6 +265,42 @@ TEST(SpecularLight, OffOneRoughMirrorByWayOfAnotherIsThatOfEvenRays) {
   EXPECT_NEAR(a_point.value, expected.value, 4.0 * error);
 }
 
+// A lamp shines up, between a floor and a ceiling of lacquer. A point that looks down gets F^2 of
+// the light of the lamp's image by both coats, and of the images farther below F^4, a share of F^2
+// = 1.6e-3. The image is summed over squares of 1.3 degrees, within which F changes by less than
+// 1e-3 of itself. The mean of repeats differs by less than four of its standard errors in 15 999 of
+// 16 000 cases.
+TEST(SpecularLight, OffOneCoatByWayOfAnotherIsThatOfTheImage) {
+  constexpr double height = 2.5, n = 1.5, M = 10.0;
+  const Paint lacquer{.one_sided = true, .coat = static_cast<float>(n)};
+  const TracedScene lit(
+      SceneBuilder()
+          .square(lacquer, Vector3d::Zero(), up, 10.0)
+          .square(lacquer, {0.0, 0.0, height}, -up, 10.0)
+          .square({.exitance = static_cast<float>(M), .one_sided = true}, {1.5, 0.0, 1.2}, up, 0.5)
+          .build());
+  const Vector3d at(0.0, 0.0, 1.0);
+  constexpr double below = 1.2 - 2.0 * height, side = 0.1;
+  double expected = 0.0;
+  for (double x = 1.0; x < 1.95; x += side) {
+    for (double y = -0.5; y < 0.45; y += side) {
+      const Loop image = {
+          {x, y, below}, {x + side, y, below}, {x + side, y + side, below}, {x, y + side, below}};
+      const Vector3d to = Vector3d(x + 0.5 * side, y + 0.5 * side, below) - at;
+      const double F = fresnel_reflectance(-to.normalized().z(), n);
+      expected += F * F * M * std::abs(point_to_polygon(at, -up, image));
+    }
+  }
+  constexpr int repeats = 32;
+  std::vector<double> found;
+  for (int i = 0; i < repeats; ++i) {
+    found.push_back(irradiance(lit, at, -up, {.replica = static_cast<std::uint64_t>(i)}));
+  }
+  const test::SampleMean mean = test::mean_of(found);
+  EXPECT_LT(mean.standard_error, 0.015 * expected) << "the test sees losses of 6 %";
+  EXPECT_NEAR(mean.value, expected, 4.0 * mean.standard_error + (2e-3 + 1.6e-3) * expected);
+}
+
 // Other light a hundred times as strong as that of the mirror: a hundredth of the accuracy is
 // enough.
 TEST(SpecularLight, IsAsExactAsAllLightOfAPointNeeds) {
