@@ -11,10 +11,17 @@ PicturedReflectance::PicturedReflectance(const PatchMesh& mesh) : mesh_(mesh) {
   if (mesh.textures && !mesh.textures->is_empty()) at_vertices_ = vertex_reflectance(mesh);
 }
 
-bool PicturedReflectance::varies(int element) const {
+bool PicturedReflectance::is_pictured(int element) const {
   if (at_vertices_.size() == 0 || !mesh_.textures->is_textured(mesh_.facet[element])) return false;
-  const int patch = mesh_.patch[element];
-  return !(mesh_.emission.row(patch) > 0.0f).any() && mesh_.patch_behind(patch) < 0;
+  return !(mesh_.emission.row(mesh_.patch[element]) > 0.0f).any();
+}
+
+bool PicturedReflectance::varies(int element) const {
+  return is_pictured(element) && mesh_.patch_behind(mesh_.patch[element]) < 0;
+}
+
+bool PicturedReflectance::varies_on_sheet(int element) const {
+  return is_pictured(element) && mesh_.patch_behind(mesh_.patch[element]) >= 0;
 }
 
 Spectrum PicturedReflectance::factor(const Ray& ray, const ElementHit& hit,

@@ -14,14 +14,17 @@ class PicturedReflectance {
 
   /// True if the light of an element is rho E alone, with a rho that varies over its surface.
   bool varies(int element) const;
-  /// Factor, per band, of the radiosity interpolated at a hit on an element that varies, for a ray
-  /// that stands for `solid_angle`, sr: the mean rho over what the ray covers there, over the rho
-  /// in the interpolated radiosity. A ray that covers a quarter of a patch or more has the mean
+  /// True if the light of an element is rho E and what its sheet passes, with a rho that varies.
+  bool varies_on_sheet(int element) const;
+  /// Factor, per band, of the light rho E interpolated at a hit on an element that varies, for a
+  /// ray that stands for `solid_angle`, sr: the mean rho over what the ray covers there, over the
+  /// rho in the interpolated light. A ray that covers a quarter of a patch or more has the mean
   /// over the patch. So has every ray that ends on a pattern, since paths pass or mirror the rest
   /// of the light by the patch's mean.
   Spectrum factor(const Ray& ray, const ElementHit& hit, double solid_angle) const;
 
  private:
+  bool is_pictured(int element) const;
   Spectrum reflectance(const Ray& ray, const ElementHit& hit, double solid_angle) const;
 
   const PatchMesh& mesh_;

@@ -140,35 +140,64 @@ TEST(Textures, HolesLetLightThroughAndEnergyBalances) {
   }
 }
 
-// A point 0.1 m above a floor of one patch, whose picture is dark on one half and bright on the
-// other, beside the line between the two. With an irradiance of 1 the floor sends rho to the point,
-// so E = dark F_dark + bright F_bright. About 4 sqrt(4096) of the 4096 strata cross the line, each
-// with a standard deviation of (bright - dark) / 2 at most, and as many the floor's edge, where
-// rays are worth less by their cosine; the tolerance is four standard deviations.
-TEST(Textures, LightNearAPictureIsThatOfThePicture) {
-  constexpr float dark = 0.1f, bright = 0.8f;
-  constexpr double h = 0.1;
+// The light that a floor of one patch, whose picture is dark on one half and bright on the other,
+// sends to a point 0.1 m above it, beside the line between the two, in 4096 rays. The irradiance is
+// 1 on the floor and `behind` on its back, of which the floor passes `tau`.
+constexpr float dark = 0.1f, bright = 0.8f;
+constexpr double h = 0.1;
+const Eigen::Vector3d near_line(1.0 + h, 1.0, h), down(0, 0, -1);
+
+double light_of_picture(float tau, float behind) {
   Scene scene;
-  const int grey = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
-  test::add_polygon(scene, "floor", grey, {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
+  Material grey = test::diffuse(scene.bands, 0.5f);
+  if (tau > 0.0f) grey.transmittance = constant_spectrum(scene.bands, tau);
+  grey.one_sided = !(tau > 0.0f);
+  const int material = test::add_material(scene, grey);
+  test::add_polygon(scene, "floor", material, {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
   put_picture(scene, 0, picture_of(2, 1, {dark, bright}));
   const PatchMesh mesh = build_patches(scene, {.max_patch_size = 4.0});
-  ASSERT_EQ(mesh.patch_count(), 1);
+  EXPECT_EQ(mesh.patch_count(), tau > 0.0f ? 2 : 1);
   const ElementCaster caster(mesh);
   const DirectLight light(scene, mesh);
-  const BandArray ones = BandArray::Ones(mesh.vertex_count(), scene.bands.count());
-  const Eigen::Vector3d at(1.0 + h, 1.0, h), down(0, 0, -1);
-  const std::vector<GatherPoint> points = {{.position = at, .normal = down}};
-  const double E =
-      gather_irradiance({scene, caster, light}, gatherable_radiosity(mesh, light, ones), points,
-                        {.rays = 4096})
-          .indirect(0, 0);
-  const auto form_factor = [&](double from, double to) {
-    return point_to_polygon(at, down, Loop{{from, 0, 0}, {to, 0, 0}, {to, 2, 0}, {from, 2, 0}});
-  };
-  const double expected = dark * form_factor(0, 1) + bright * form_factor(1, 2);
-  constexpr double deviation = 0.5 * static_cast<double>(bright - dark);
-  EXPECT_NEAR(E, expected, 4.0 * deviation * std::sqrt(2.0 * 4.0 * 64.0) / 4096.0);
+  BandArray irradiance = BandArray::Ones(mesh.vertex_count(), scene.bands.count());
+  const std::vector<int> patch = vertex_patches(mesh);
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    if (mesh.is_back[patch[v]] != 0) irradiance.row(v).setConstant(behind);
+  }
+  const std::vector<GatherPoint> points = {{.position = near_line, .normal = down}};
+  return gather_irradiance({scene, caster, light}, gatherable_radiosity(mesh, light, irradiance),
+                           points, {.rays = 4096})
+      .indirect(0, 0);
+}
+
+double form_factor_of_strip(double from, double to) {
+  return point_to_polygon(near_line, down,
+                          Loop{{from, 0, 0}, {to, 0, 0}, {to, 2, 0}, {from, 2, 0}});
+}
+
+// E = dark F_dark + bright F_bright. About 4 sqrt(4096) of the 4096 strata cross the line, each
+// with a standard deviation of (bright - dark) / 2 at most, and as many the floor's edge, where
+// rays are worth less by their cosine; the tolerance is four standard deviations.
+constexpr double deviation = 0.5 * static_cast<double>(bright - dark);
+const double of_strata = 4.0 * std::sqrt(2.0 * 4.0 * 64.0) / 4096.0;
+
+TEST(Textures, LightNearAPictureIsThatOfThePicture) {
+  const double expected = dark * form_factor_of_strip(0, 1) + bright * form_factor_of_strip(1, 2);
+  EXPECT_NEAR(light_of_picture(0.0f, 0.0f), expected, deviation * of_strata);
+}
+
+// The sheet passes tau E_behind at every place alike. At the edge of the floor, which strata cross,
+// light changes by that, too.
+TEST(Textures, LightNearAPictureOnASheetIsThatOfThePicture) {
+  constexpr float tau = 0.15f;
+  for (const float behind : {0.0f, 1.0f, 5.0f}) {
+    const double expected = dark * form_factor_of_strip(0, 1) +
+                            bright * form_factor_of_strip(1, 2) +
+                            double{tau * behind} * form_factor_of_strip(0, 2);
+    EXPECT_NEAR(light_of_picture(tau, behind), expected,
+                (deviation + 0.5 * double{tau * behind}) * of_strata)
+        << behind;
+  }
 }
 
 // A lamp so small and far that its shadows are sharp, over a plate with holes in two columns of
