@@ -209,6 +209,43 @@ TEST(Portals, HaveDirectionsOfTheStatedDensity) {
   EXPECT_NEAR(sum / aims.count(), F, 4.0 * 0.3 / std::sqrt(4096.0) * F);
 }
 
+// Of many portals, those along a ray are sought in a tree. The slit is cut into 100 pieces that
+// fill it, so each direction passes one, and the mean of cos / (pi q) is the form factor of the
+// slit.
+TEST(Portals, HaveTheStatedDensityWhereTheyAreMany) {
+  const Lit lit(0.05);
+  constexpr int pieces = 100;
+  std::vector<Opening> openings;
+  for (int i = 0; i < pieces; ++i) {
+    openings.push_back({.center = {4.0, 2.875, 2.0 * (i + 0.5) / pieces},
+                        .along = 1.0 / pieces * Vector3d::UnitZ(),
+                        .across = 0.025 * Vector3d::UnitY(),
+                        .normal = -Vector3d::UnitX()});
+  }
+  const Portals portals(lit.caster, brightness_of_vertices(lit.mesh, lit.radiosity), openings);
+  ASSERT_EQ(portals.size(), pieces);
+  const Vector3d from(5.5, 1.2, 0.7), normal = Vector3d(-1, 1, 0).normalized();
+  const Portals::View view = portals.view(from, normal, 64);
+  const SobolPoints aims(4096);
+  double sum = 0.0, squares = 0.0;
+  for (int i = 0; i < aims.count(); ++i) {
+    const Eigen::Array4d u = aims.point(i, 7).cast<double>();
+    const Vector3d direction = portals.draw(view, from, u[0], u[1], u[2]).direction;
+    const double q = portals.density(view, from, direction, 100.0);
+    ASSERT_GT(q, 0.0);
+    const double F = direction.dot(normal) / (M_PI * q);
+    sum += F;
+    squares += F * F;
+    // A ray that ends before the slit passes none.
+    EXPECT_EQ(portals.density(view, from, direction, 1.4), 0.0);
+  }
+  const double mean = sum / aims.count(),
+               deviation = std::sqrt(squares / aims.count() - mean * mean);
+  // Four standard errors of independent draws.
+  EXPECT_NEAR(mean, point_to_polygon(from, normal, lit.rooms.slit()),
+              4.0 * deviation / std::sqrt(4096.0));
+}
+
 // The gap below a door has two openings, one behind the other. A ray aimed at the one behind that
 // ends in the gap counts for nothing, although it passes the one before.
 TEST(Portals, CountRaysThatPassTheirOwn) {
