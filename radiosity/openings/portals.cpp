@@ -24,6 +24,7 @@ struct Sight {
   double reference = 0.0;   // sum over paths of what errors are relative to
   int paths = 0;            // that ended on this side
   double distance = 0.0;    // metres, sum over paths that ended on a surface
+  double squares = 0.0;     // m^2, sum over paths of their squared distances
   Eigen::AlignedBox3d region{};
 
   // Largest distance of an end of a path from the middle of the opening, measured across the
@@ -120,6 +121,7 @@ class Sights {
         ++sight.paths;
         sight.region.extend(at);
         sight.distance += (at - opening.center).norm();
+        sight.squares += (at - opening.center).squaredNorm();
         const double across = (at - opening.center).dot(opening.across);
         sight.spread = std::max(sight.spread, std::abs(across) / opening.across.squaredNorm());
         if (hit.element >= 0) {
@@ -407,8 +409,14 @@ std::vector<Opening> notable_openings(const ElementCaster& caster,
     }
     const int dim = seen[0].mean() < seen[1].mean() ? 0 : 1;
     const Vector3d size = seen[dim].region.sizes();
+    // None of many paths got through, so less than a fortieth of the light does (rule of three).
+    if (seen[dim].paths == 0) return false;
     if (seen[dim].region.isEmpty()) return true;
-    const double surface = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x());
+    // The box of few ends is too small, and that of one is a point. Light that goes as far as the
+    // ends spreads over half of a sphere.
+    const double box = 2.0 * (size.x() * size.y() + size.y() * size.z() + size.z() * size.x()),
+                 half_sphere = 2.0 * std::numbers::pi * seen[dim].squares / seen[dim].paths,
+                 surface = std::max(box, half_sphere);
     return seen[1 - dim].mean() * opening.area() >=
            notable * surface * seen[dim].reference / seen[dim].paths;
   };

@@ -91,6 +91,33 @@ TEST(Portals, CountWhereTheirLightMatters) {
   }
 }
 
+// A tenth of a metre of wall, 1 mm in front of it, around a crack of 1 mm or none at all. The walls
+// send nearly all paths back. Those that get through end five widths of the opening, 0.5 m, from
+// where they begin or farther, and 0.42 m from the opening's middle. Their light, B A of 0.01 W,
+// spreads over 2 pi (0.42 m)^2 = 1.1 m2 or more, to less than 9.1e-3 W/m2: less than a thousandth
+// of 10 W/m2, even if one path alone tells where it goes.
+TEST(Portals, CountNotWhereHardlyAnyLightGetsThrough) {
+  for (const double crack : {0.0, 1e-3}) {
+    const Lit lit(1e-3);
+    const std::vector<float> brightness = brightness_of_vertices(lit.mesh, lit.radiosity);
+    std::vector<Opening> openings;
+    for (int i = 0; i < 32; ++i) {
+      openings.push_back({.center = {3.999, crack > 0.0 ? 2.8995 : 1.0, 0.3 + 0.04 * i},
+                          .along = 0.05 * Vector3d::UnitZ(),
+                          .across = 0.05 * Vector3d::UnitY(),
+                          .normal = -Vector3d::UnitX()});
+    }
+    const auto count = [&](float reference) {
+      const std::vector<float> of_elements(brightness.size(), reference);
+      return notable_openings(lit.caster, brightness, of_elements, openings).size();
+    };
+    EXPECT_EQ(count(10.0f), 0u);
+    // Nothing gets through a wall, however small the light is that matters.
+    const std::size_t in_darkness = count(0.0f);
+    EXPECT_TRUE(crack > 0.0 ? in_darkness > 0 : in_darkness == 0) << in_darkness;
+  }
+}
+
 // In a black room behind a slit, E = B F with the form factor F from the point to the slit.
 TEST(Portals, GiveWhatTheFormFactorOfTheSlitSays) {
   for (const double width : {1e-3, 0.01, 0.1, 0.3}) {
