@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "radiosity/many_lights/node_weight.h"
 #include "scene/projected_picture.h"
 
 namespace lightwell {
@@ -317,14 +318,7 @@ LightTree::Draw LightTree::draw(int node, const SurfacePoint& at, double u) cons
   const LightNode& cluster = this->node(node);
   const Vector3d to_cluster = cluster.middle - at.position;
   const Steps steps = steps_to(cluster, to_cluster, to_cluster.norm());
-  const Vector3d up = at.normal.cwiseAbs();
-  const auto weight = [&](const LightNode& n) {
-    const Vector3d to = n.middle - at.position;
-    const double height = to.dot(at.normal) + n.half.dot(up);
-    if (!(height > 0.0)) return 0.0;
-    const double away = std::max(to.norm(), n.radius);
-    return greatest(n, steps) * height / (away * away * away);
-  };
+  const auto weight = [&](const LightNode& n) { return may_give(n, greatest(n, steps), at); };
   return draw_by(node, u, weight);
 }
 

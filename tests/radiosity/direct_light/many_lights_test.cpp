@@ -62,6 +62,47 @@ TEST(ManyLights, ClustersGiveTheLightOfAllInTheMean) {
   EXPECT_LT(said, 8.0 * found);
 }
 
+// One of 300 panels and 300 lamps stands for all, behind screens. Draws by what each may give leave
+// less noise than draws with equal chances, whose variance is N sum E_i^2 - E^2.
+TEST(ManyLights, OneStandsForAllInTheMean) {
+  const ManyLampHall hall(300, 300);
+  const ElementCaster caster(hall.mesh);
+  const DirectLight light(hall.scene, hall.mesh);
+  constexpr int keys = 2048;
+  double variances = 0.0, of_equal_chances = 0.0;
+  for (int k = 0; k < 24; ++k) {
+    const SurfacePoint at = point_in_hall(k);
+    double all = 0.0, squares = 0.0;
+    for (int i = 0; i < light.light_count(); ++i) {
+      const std::vector<LightSample> one{{.light = i}};
+      const double E =
+          light
+              .irradiance(caster,
+                          {.at = at, .shadows = {.min_rays = 256, .max_rays = 256}, .asked = &one})
+              .mean();
+      all += E;
+      squares += E * E;
+    }
+    Eigen::ArrayXd E(keys);
+    for (int i = 0; i < keys; ++i) {
+      E[i] = light
+                 .irradiance(caster, {.at = at,
+                                      .key = static_cast<std::uint64_t>(i),
+                                      .shadows = {.min_rays = 1, .max_rays = 1},
+                                      .one_stands_for_all = true})
+                 .mean();
+    }
+    const double variance = (E - E.mean()).square().sum() / (keys - 1);
+    // Four standard errors of the draws, and four of 256 shadow rays, half of which pass at most.
+    EXPECT_NEAR(E.mean(), all, 4.0 * (std::sqrt(variance / keys) + 0.5 * std::sqrt(squares / 256)))
+        << k;
+    variances += variance;
+    of_equal_chances += light.light_count() * squares - all * all;
+  }
+  EXPECT_GT(variances, 0.0);
+  EXPECT_LT(variances, of_equal_chances);
+}
+
 TEST(ManyLights, FewLightsHaveNoClusters) {
   const ManyLampHall hall(20, 20);
   const ElementCaster caster(hall.mesh);
