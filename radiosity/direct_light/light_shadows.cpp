@@ -1,9 +1,11 @@
 #include "radiosity/direct_light/light_shadows.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "radiosity/emitters/emitter_shadows.h"
+#include "scene/sampling.h"
 
 namespace lightwell {
 namespace {
@@ -16,23 +18,62 @@ int pieces_worth(int rays) {
   return rays < rays_with_none ? -1 : std::min(rays / rays_of_a_piece, most);
 }
 
+// Rays of a light that are stratified among themselves.
+struct RaySet {
+  int cast = 0, most = 0;
+  std::uint64_t key = 0;
+};
+using RaySets = std::array<RaySet, 2>;
+
+// Two independent halves, each of which casts more than its first rays if the first of the *other*
+// half disagree. Rays that decided on more of themselves would be right where they disagree, and
+// 0 or 1 where a part of the emitter escapes them: too little light in an umbra's fringe, and too
+// much in that of full light. One set where no decision is left.
+RaySets ray_sets(const LightShadow& shadow, const ShadowMedium& medium) {
+  if (shadow.share) return {};
+  // A body dims each ray by its own length, so that all rays differ.
+  const bool needs_all = shadow.by_expected_weight || medium.absorbs();
+  const int first = needs_all ? shadow.most : shadow.least;
+  constexpr int fewest_that_decide = 4;  // two of each half
+  if (first == shadow.most || first < fewest_that_decide) {
+    return {{{.cast = first, .most = first, .key = shadow.key}, {}}};
+  }
+  return {{{.cast = (first + 1) / 2, .most = (shadow.most + 1) / 2, .key = shadow.key},
+           {.cast = first / 2, .most = shadow.most / 2, .key = random_key(shadow.key, 1)}}};
+}
+
+void add(const ShadowTally& part, double scale, ShadowTally& sum) {
+  sum.all += scale * part.all;
+  sum.seen += scale * part.seen;
+  sum.squares += scale * scale * part.squares;
+  sum.pictured += scale * part.pictured;
+  sum.pictured_seen += scale * part.pictured_seen;
+  sum.blocked = sum.blocked || part.blocked;
+  if (!(part.dimmed > 0.0)) return;
+  sum.dimmed += scale * part.dimmed;
+  if (sum.through.size() == 0) sum.through = Spectrum::Zero(part.through.size());
+  sum.through += static_cast<float>(scale) * part.through;
+}
+
 }  // namespace
 
 Spectrum pictured_light(const Emitter& emitter, const EmissionTree::View& view, double F) {
   return emitter.picture_scale.head<3>() * (view.light / F).cast<float>();
 }
 
-// Rays of all lights are cast together. A known share becomes the tally as it is.
+// Rays of all lights are cast together. A known share becomes the tally as it is. Halves weigh
+// alike, however many rays each has cast.
 std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
                                       const ElementCaster& caster, const SobolPoints& sobol,
                                       const SurfacePoint& at, const ShadowMedium& medium) {
-  std::vector<ShadowTally> tallies(shadows.size());
-  ShadowBatch batch(caster, tallies, medium);
-  const auto add = [&](std::size_t i, int begin, int end) {
+  std::vector<ShadowTally> tallies(shadows.size()), parts(2 * shadows.size());
+  std::vector<RaySets> sets(shadows.size());
+  ShadowBatch batch(caster, parts, medium);
+  const auto cast = [&](std::size_t i, std::size_t half, int begin, int end) {
+    const LightShadow& shadow = shadows[i];
     for (int s = begin; s < end; ++s) {
-      const Eigen::Array4f u = sobol.point(s, shadows[i].key);
-      const LightShadow& shadow = shadows[i];
-      batch.add(static_cast<int>(i),
+      const Eigen::Array4f u = sobol.point(s, sets[i][half].key);
+      batch.add(static_cast<int>(2 * i + half),
                 shadow.emitter
                     ? emitter_shadow_sample(*shadow.emitter, shadow.sampler, at, u[0], u[1],
                                             shadow.has_picture() ? &shadow.view : nullptr)
@@ -40,28 +81,36 @@ std::vector<ShadowTally> cast_shadows(std::span<const LightShadow> shadows,
     }
   };
   for (std::size_t i = 0; i < shadows.size(); ++i) {
-    if (shadows[i].share) {
-      tallies[i].all = 1.0;
-      tallies[i].seen = *shadows[i].share;
-    } else {
-      add(i, 0, shadows[i].least);
+    sets[i] = ray_sets(shadows[i], medium);
+    for (const std::size_t half : {0, 1}) cast(i, half, 0, sets[i][half].cast);
+  }
+  batch.flush();
+  for (std::size_t i = 0; i < shadows.size(); ++i) {
+    const std::array<bool, 2> goes_on = {parts[2 * i + 1].is_mixed(), parts[2 * i].is_mixed()};
+    for (const std::size_t half : {0, 1}) {
+      RaySet& set = sets[i][half];
+      if (!goes_on[half]) continue;
+      cast(i, half, set.cast, set.most);
+      set.cast = set.most;
     }
   }
   batch.flush();
   for (std::size_t i = 0; i < shadows.size(); ++i) {
     const LightShadow& shadow = shadows[i];
-    // A body dims each ray by its own length, so that all rays differ.
-    const bool needs_all = tallies[i].is_mixed() || shadow.by_expected_weight || medium.absorbs();
-    if (shadow.share || !needs_all) continue;
-    add(i, shadow.least, shadow.most);
-  }
-  batch.flush();
-  for (std::size_t i = 0; i < shadows.size(); ++i) {
-    const LightShadow& shadow = shadows[i];
-    if (shadow.share || !shadow.by_expected_weight || !shadow.emitter || shadow.has_picture())
+    ShadowTally& tally = tallies[i];
+    if (shadow.share) {
+      tally.all = 1.0;
+      tally.seen = *shadow.share;
       continue;
-    tallies[i].all = shadow.most * expected_emitter_weight(*shadow.emitter, shadow.sampler,
-                                                           at.position, shadow.F);
+    }
+    for (const std::size_t half : {0, 1}) {
+      const RaySet& set = sets[i][half];
+      if (set.cast > 0) add(parts[2 * i + half], 1.0 * set.most / set.cast, tally);
+    }
+    if (shadow.by_expected_weight && shadow.emitter && !shadow.has_picture()) {
+      tally.all = shadow.most *
+                  expected_emitter_weight(*shadow.emitter, shadow.sampler, at.position, shadow.F);
+    }
   }
   return tallies;
 }

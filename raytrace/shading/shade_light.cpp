@@ -217,8 +217,7 @@ RayTree::Arriving RayTree::arriving(const ElementHit& hit, const ShadingPoint& a
   }
   const float share = state.effort * branch.weight.maxCoeff();
   ShadowOptions shadows = shadows_for(options_.shadows, share, state.number ? fewest_of_many : 8);
-  // Many samples of a pixel average their shadows. A second stage of rays, cast only where the
-  // first disagree, would leave a part of thin shadows out of that mean.
+  // Many samples of a pixel average their shadows, in place of a second stage of rays.
   if (state.number) shadows.max_rays = shadows.min_rays;
   // Samples draw other members of clusters of lights. Clusters four times as large have twice the
   // noise, which the mean of four samples halves.
