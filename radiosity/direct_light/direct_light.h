@@ -34,8 +34,10 @@ constexpr int most_shadow_rays = 256;  ///< that pictures and solves choose
 constexpr int most_probe_shadow_rays = 1 << 14;
 
 /// Shadow rays from a point to an emitter that gives all of the point's direct light: `min_rays`
-/// stratified rays first; if some are blocked and some not, `max_rays`. Emitters that give less
-/// light get fewer. No rays are cast where ExactShadows finds the visible share in less time.
+/// rays first, in two independent halves; `max_rays` if in both halves some are blocked and some
+/// not, half of the further rays if in one. The mean over keys is the visible share. Emitters that
+/// give less light get fewer. No rays are cast where ExactShadows finds the visible share in less
+/// time.
 struct ShadowOptions {
   int min_rays = 16;
   int max_rays = 64;  ///< 1 to most_probe_shadow_rays
