@@ -74,7 +74,10 @@ void lay_coat(Material& material, double index, double alpha, const Spectrum& sp
 void lay_coat(Material& material, double index, double alpha, const Spectrum& specular,
               const CoatedReflectance& coated) {
   set_coat(material, index, alpha, specular);
-  replace_coated_base(material, coated);
+  // Errors of a law's integrals would let base and coat send back more than arrives.
+  const Spectrum most = 1.0f - mean_mirrored(material);
+  replace_coated_base(material,
+                      [&](const Spectrum& base) -> Spectrum { return coated(base).min(most); });
 }
 
 void lay_simple_coat(Material& material, double index, double alpha, const Spectrum& specular) {
