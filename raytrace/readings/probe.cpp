@@ -165,7 +165,7 @@ BandArray probe_irradiance(const Scene& scene, const ElementCaster& caster,
           interpolate(caster.mesh(), solution.caustic_irradiance, found->hit).transpose();
       caustics.lux_within[row] = caustic_bound(caster.mesh(), solution, found->hit);
     }
-    points.push_back(probe_point(probe, found));
+    points.push_back(surface.point(probe, found));
   }
   const LitScene lit{scene, caster, direct_light};
   const BandArray B = gatherable_radiosity(lit, solution);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "mesh/patches/mesh_bounds.h"
@@ -22,6 +23,9 @@ double reach_in(double diagonal) {
 // reach.
 constexpr double behind_share = 10.0;
 
+// Distance, over the reach, at which a probe stands clear of the surfaces beside it.
+constexpr double hair_of_reach = 0.1;
+
 // Unit normal at a hit, on the side of the probe or the opposite one. The back of a one-sided
 // surface has no element, so the normal is that of its front.
 Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
@@ -34,6 +38,11 @@ Eigen::Vector3d hit_normal(const PatchMesh& mesh, const ElementHit& hit,
   return Eigen::Vector3d::Zero();
 }
 
+// Eight steps around the normal that `a` and `b` are at right angles to.
+std::array<Eigen::Vector3d, 8> steps_around(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return {a, b, -a, -b, a + b, a - b, b - a, -a - b};
+}
+
 }  // namespace
 
 ProbeSurface::ProbeSurface(const ElementCaster& caster)
@@ -42,26 +51,89 @@ ProbeSurface::ProbeSurface(const ElementCaster& caster)
 std::optional<ProbeSurface::Found> ProbeSurface::find(const Probe& probe) const {
   Frame frame{.normal = probe.normal};
   tangent_frame(probe.normal, frame.a, frame.b);
-  const double hair = 0.1 * reach_;
+  const double hair = hair_of_reach * reach_;
   auto straight = below(probe.position, probe.normal);
   if (straight && is_inside(*straight, probe.position, frame, hair)) return straight;
   std::optional<Found> behind;
-  const Eigen::Vector3d &a = frame.a, &b = frame.b;
-  for (const Eigen::Vector3d& step :
-       {a, b, Eigen::Vector3d(-a), Eigen::Vector3d(-b), Eigen::Vector3d(a + b),
-        Eigen::Vector3d(a - b), Eigen::Vector3d(b - a), Eigen::Vector3d(-a - b)}) {
+  for (const Eigen::Vector3d& step : steps_around(frame.a, frame.b)) {
     const Eigen::Vector3d moved = probe.position + hair * step;
     auto point_on_surface = below(moved, probe.normal);
     if (!point_on_surface || !is_inside(*point_on_surface, moved, frame, 0.5 * hair)) continue;
     if (!is_behind(moved, -hair * step, frame)) return point_on_surface;
     if (!behind) behind = point_on_surface;
   }
+  // Of a body that stands a little above the floor only the inside is within reach.
+  const Eigen::Vector3d beside = beside_surfaces(probe);
+  if (beside != probe.position) return below(beside, probe.normal);
   return behind ? behind : straight;
+}
+
+GatherPoint ProbeSurface::point(const Probe& probe, const std::optional<Found>& found) const {
+  if (!found) return {.position = beside_surfaces(probe), .normal = probe.normal};
+  return {.position = found->position, .normal = probe.normal, .facet = found->hit.facet};
+}
+
+// Returns the position of a probe in the air, moved off the surfaces that stand within a hair of
+// the probe. Rounding puts a probe at such a surface on either side of the surface: rays would
+// start within a closed body, or in the plane that hides all lamps.
+Eigen::Vector3d ProbeSurface::beside_surfaces(const Probe& probe) const {
+  const double hair = hair_of_reach * reach_;
+  Eigen::Vector3d at = probe.position, a, b;
+  tangent_frame(probe.normal, a, b);
+  // Behind a corner the probe comes off one wall after the other.
+  constexpr int walls = 2;
+  for (int wall = 0; wall < walls; ++wall) {
+    for (const Eigen::Vector3d& way : steps_around(a, b)) at = off_surface(at, hair * way);
+  }
+  return at;
+}
+
+// Returns the position, moved off the first surface that stands between `at` - `way` and `at` +
+// `way`.
+Eigen::Vector3d ProbeSurface::off_surface(const Eigen::Vector3d& at,
+                                          const Eigen::Vector3d& way) const {
+  const Ray ray{.origin = at - way, .direction = way, .t_max = 2.0};
+  ElementHit hit;
+  caster_.closest_hits({&ray, 1}, {&hit, 1});
+  if (hit.facet < 0) return at;
+  const Eigen::Vector3d met = ray.origin + hit.t * way;
+  Eigen::Vector3d normal = hit_normal(caster_.mesh(), hit, met);
+  if ((normal.dot(way) > 0.0) != hit.from_back) normal = -normal;
+  double before = (at - met).dot(normal);
+  // The opposite ray meets the back of this surface, and tells whether the back is black.
+  if (before < 0.0 && !hit.from_back) return at;
+  if (before < 0.0 && hit.element >= 0 && faces_front(met, -normal, hit.facet)) {
+    normal = -normal;
+    before = -before;
+  }
+  if (before >= 0.5 * hair_of_reach * reach_) return at;
+  return at + (room_before(met, normal, hit.facet) - before) * normal;
+}
+
+// Returns whether the back of a facet looks at the front of a surface, as a sheet between two rooms
+// does. The back of a closed body's facet looks at backs, and that of a room's wall at nothing.
+bool ProbeSurface::faces_front(const Eigen::Vector3d& at, const Eigen::Vector3d& way,
+                               int facet) const {
+  const Ray ray{.origin = at, .direction = way, .origin_group = facet};
+  ElementHit hit;
+  caster_.closest_hits({&ray, 1}, {&hit, 1});
+  return hit.facet >= 0 && !hit.from_back;
+}
+
+// Returns the distance before a point of a facet that a probe is moved to: a hair, or half of a
+// narrower gap.
+double ProbeSurface::room_before(const Eigen::Vector3d& at, const Eigen::Vector3d& normal,
+                                 int facet) const {
+  const double hair = hair_of_reach * reach_;
+  const Ray ray{.origin = at, .direction = normal, .t_max = 2.0 * hair, .origin_group = facet};
+  ElementHit hit;
+  caster_.closest_hits({&ray, 1}, {&hit, 1});
+  return hit.facet >= 0 && !hit.from_back ? 0.5 * hit.t : hair;
 }
 
 bool ProbeSurface::is_behind_surface(const Probe& probe) const {
   const Ray ray{
-      .origin = probe.position, .direction = probe.normal, .t_max = behind_share * reach_};
+      .origin = beside_surfaces(probe), .direction = probe.normal, .t_max = behind_share * reach_};
   ElementHit hit;
   caster_.closest_hits({&ray, 1}, {&hit, 1});
   return hit.facet >= 0 && hit.from_back;
@@ -131,15 +203,6 @@ bool ProbeSurface::is_behind(const Eigen::Vector3d& position, const Eigen::Vecto
   return hit.facet >= 0 && hit.from_back;
 }
 
-GatherPoint probe_point(const Probe& probe, const std::optional<ProbeSurface::Found>& found) {
-  GatherPoint point{.position = probe.position, .normal = probe.normal};
-  if (found) {
-    point.position = found->position;
-    point.facet = found->hit.facet;
-  }
-  return point;
-}
-
 std::vector<int> probes_behind_surfaces(const ElementCaster& caster,
                                         std::span<const Probe> probes) {
   const ProbeSurface surface(caster);
@@ -156,7 +219,7 @@ std::vector<GatherPoint> probe_points(const ElementCaster& caster, std::span<con
   const ProbeSurface surface(caster);
   std::vector<GatherPoint> points;
   points.reserve(probes.size());
-  for (const Probe& probe : probes) points.push_back(probe_point(probe, surface.find(probe)));
+  for (const Probe& probe : probes) points.push_back(surface.point(probe, surface.find(probe)));
   return points;
 }
 

@@ -9,6 +9,7 @@
 
 #include "radiosity/closed_forms/polygon_form_factor.h"
 #include "radiosity/emitters/emitter.h"
+#include "raytrace/readings/probe_surface.h"
 #include "scene/errors.h"
 #include "scene/io/read_scene.h"
 #include "tests/raytrace/lit_scene.h"
@@ -41,6 +42,65 @@ const TracedScene& furnace() {
     return scene;
   }();
   return *lit;
+}
+
+// The hair by which probes in the air may lie within a body is 1e-5 of the diagonal, 35 um, and
+// sqrt(2) times as much towards a corner.
+TEST(ProbeIrradiance, DeeperWithinABlockIsDark) {
+  for (const double depth : {5e-5, 1e-4, 1e-3, 0.1}) {
+    const BandArray E = gathered(furnace(), {{{0.7, 1.0 - depth, 0.3}, up}});
+    EXPECT_EQ(E(0, 0), 0.0f) << depth;
+  }
+}
+
+// The floor lies out of reach (1e-4 of the diagonal, 0.35 mm) and the bottom of a block does not.
+// As in FurnaceProbe only roundings to float remain.
+TEST(ProbeIrradiance, AtABlockALittleAboveTheFloorIsNotWithinTheBlock) {
+  const Paint paint{.reflectance = rho, .exitance = M, .one_sided = true};
+  TracedScene lit(SceneBuilder()
+                      .box(paint, {0, 0, 0}, {2, 2, 2}, true)
+                      .box(paint, {0.5, 0.5, 1e-4}, {1, 1, 1}, false)
+                      .build());
+  lit.set_indirect([](const auto&) { return B; });
+  EXPECT_NEAR(gathered(lit, {{{0.7, 0.99999, 4e-4}, up}})(0, 0), B, 1e-4 * B);
+}
+
+/// Where a probe that looks up gathers light, along x from (0, 1, 1).
+double x_of_point(const TracedScene& lit, double x) {
+  const std::vector<Probe> probes = {{{x, 1, 1}, up}};
+  return probe_points(lit.caster, probes).front().position.x();
+}
+
+// Diagonals are below 4.2 m and a hair thus below 42 um. Positions are rounded to 2^-24 of some
+// metres, which is less than 1 um.
+TEST(ProbeSurface, KeepsTheSideOfASheetBetweenRoomsButNotThatWithinASheetOfABody) {
+  const Paint paint{.reflectance = rho, .exitance = M};
+  const TracedScene rooms(SceneBuilder()
+                              .box(paint, {-1, 0, 0}, {1, 2, 2}, true)
+                              .polygon(paint, {{0, 0, 0}, {0, 2, 0}, {0, 2, 2}, {0, 0, 2}})
+                              .build());
+  const TracedScene body(SceneBuilder()
+                             .box(paint, {-2, 0, 0}, {1, 2, 2}, true)
+                             .box(paint, {-1, 0.5, 0.5}, {0, 1.5, 1.5}, false)
+                             .build());
+  EXPECT_GT(x_of_point(rooms, 5e-6), 1e-5);
+  EXPECT_LT(x_of_point(rooms, -5e-6), -1e-5);
+  EXPECT_GT(x_of_point(body, 5e-6), 1e-5);
+  EXPECT_GT(x_of_point(body, -5e-6), 1e-5);
+  EXPECT_EQ(x_of_point(body, -1e-3), -1e-3);
+  EXPECT_EQ(x_of_point(body, 1e-4), 1e-4);
+}
+
+TEST(ProbeSurface, KeepsToTheMiddleOfAGapThinnerThanItsHair) {
+  const Paint paint{.reflectance = rho, .exitance = M, .one_sided = true};
+  const double gap = 2e-5;
+  const TracedScene lit(SceneBuilder()
+                            .box(paint, {-1, 0, 0}, {0, 2, 2}, false)
+                            .box(paint, {gap, 0, 0}, {1, 2, 2}, false)
+                            .build());
+  for (const double x : {-5e-6, 1e-6, 1.9e-5, 2.5e-5}) {
+    EXPECT_NEAR(x_of_point(lit, x), 0.5 * gap, 1e-6) << x;
+  }
 }
 
 // The reach of a surface is 1e-4 of the diagonal, 2 sqrt(3) m, and probes are named up to ten times
@@ -90,7 +150,13 @@ INSTANTIATE_TEST_SUITE_P(
                       NamedProbe{"corner", {{0, 0, 0}, {0, 0, 1}}},
                       NamedProbe{"floor_at_block", {{0.5, 0.7, 0}, {0, 0, 1}}},
                       NamedProbe{"block_edge", {{0.5, 0.7, 1}, {0, 0, 1}}},
-                      NamedProbe{"block_side_at_edge", {{0.5, 0.7, 1}, {-1, 0, 0}}}),
+                      NamedProbe{"block_side_at_edge", {{0.5, 0.7, 1}, {-1, 0, 0}}},
+                      NamedProbe{"air_at_block_side", {{0.7, 1.0, 0.3}, {0, 0, 1}}},
+                      NamedProbe{"air_a_little_within_block", {{0.7, 0.99999, 0.3}, {0, 0, 1}}},
+                      NamedProbe{"air_within_block_edge", {{0.99999, 0.99999, 0.3}, {0, 0, 1}}},
+                      NamedProbe{"air_at_wall", {{2, 1.3, 0.3}, {0, 0, 1}}},
+                      NamedProbe{"air_a_little_behind_wall", {{2.00001, 1.3, 0.3}, {0, 0, 1}}},
+                      NamedProbe{"air_behind_corner", {{2.00001, 2.00001, 0.3}, {0, 0, 1}}}),
     [](const auto& place) { return place.param.name; });
 
 TEST(InterpolateIrradiance, IsExactForALinearField) {
