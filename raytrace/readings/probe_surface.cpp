@@ -62,7 +62,7 @@ std::optional<ProbeSurface::Found> ProbeSurface::find(const Probe& probe) const 
     if (!is_behind(moved, -hair * step, frame)) return point_on_surface;
     if (!behind) behind = point_on_surface;
   }
-  // Of a body that stands a little above the floor only the inside is within reach.
+  // Only the inside of a body that stands a little above the floor is within reach.
   const Eigen::Vector3d beside = beside_surfaces(probe);
   if (beside != probe.position) return below(beside, probe.normal);
   return behind ? behind : straight;

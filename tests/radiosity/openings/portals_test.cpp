@@ -236,9 +236,9 @@ TEST(Portals, HaveDirectionsOfTheStatedDensity) {
   EXPECT_NEAR(sum / aims.count(), F, 4.0 * 0.3 / std::sqrt(4096.0) * F);
 }
 
-// Of many portals, those along a ray are sought in a tree. The slit is cut into 100 pieces that
-// fill it, so each direction passes one, and the mean of cos / (pi q) is the form factor of the
-// slit.
+// Portals along a ray are sought in a tree where there are many. The slit is cut into 100 pieces
+// that fill it, so each direction passes one, and the mean of cos / (pi q) is the form factor of
+// the slit.
 TEST(Portals, HaveTheStatedDensityWhereTheyAreMany) {
   const Lit lit(0.05);
   constexpr int pieces = 100;

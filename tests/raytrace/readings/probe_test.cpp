@@ -54,7 +54,7 @@ TEST(ProbeIrradiance, DeeperWithinABlockIsDark) {
 }
 
 // The floor lies out of reach (1e-4 of the diagonal, 0.35 mm) and the bottom of a block does not.
-// As in FurnaceProbe only roundings to float remain.
+// Only roundings to float remain, as in FurnaceProbe.
 TEST(ProbeIrradiance, AtABlockALittleAboveTheFloorIsNotWithinTheBlock) {
   const Paint paint{.reflectance = rho, .exitance = M, .one_sided = true};
   TracedScene lit(SceneBuilder()
@@ -65,7 +65,7 @@ TEST(ProbeIrradiance, AtABlockALittleAboveTheFloorIsNotWithinTheBlock) {
   EXPECT_NEAR(gathered(lit, {{{0.7, 0.99999, 4e-4}, up}})(0, 0), B, 1e-4 * B);
 }
 
-/// Where a probe that looks up gathers light, along x from (0, 1, 1).
+/// The place at which a probe that looks up gathers light, along x from (0, 1, 1).
 double x_of_point(const TracedScene& lit, double x) {
   const std::vector<Probe> probes = {{{x, 1, 1}, up}};
   return probe_points(lit.caster, probes).front().position.x();
