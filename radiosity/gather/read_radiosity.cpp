@@ -33,7 +33,8 @@ BandArray reflected_by_sheets(const PatchMesh& mesh, const PicturedReflectance& 
   const BandArray reflectance = vertex_reflectance(mesh);
   const Eigen::Index bands = mesh.reflectance.cols();
   BandArray reflected = BandArray::Zero(radiosity.rows(), radiosity.cols());
-  // The difference is divided by rho - tau, and with the difference its noise: twenty times at most.
+  // The difference is divided by rho - tau, and with the difference its noise: twenty times at
+  // most.
   constexpr float least = 0.05f;
   for (int v = 0; v < mesh.vertex_count(); ++v) {
     const int other = behind.empty() ? -1 : behind[v];
