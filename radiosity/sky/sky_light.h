@@ -22,8 +22,9 @@ namespace lightwell {
 struct SkyEffort {
   int first = 32;
   int most = 128;  ///< 1 to most_sky_rays
-  /// Noise to reach, if set: the first rays estimate the noise, and as many follow as bring it
-  /// there, half of `first` to 16 `most`. Otherwise `most` rays follow.
+  /// Noise to reach, if set: the first rays estimate the noise, and as many follow as have that
+  /// noise by themselves, half of `first` to `goal.most_times` times `most`. Otherwise `most` rays
+  /// follow, and all rays count.
   NoiseGoal goal{};
 };
 constexpr int most_sky_rays = 1 << 16;
