@@ -22,6 +22,8 @@ constexpr int records_together = 16;
 constexpr double least_coverage = 0.25;
 // Step of the widest grid, in steps of the narrowest one.
 constexpr int widest_step = 16;
+// Step that stands for the last round, which fills what the narrowest grid leaves.
+constexpr int filling = 0;
 
 // Relative RMS error of the solution's light, by its own estimate: over what the picture shows, or,
 // for light of patches, whose elements have no estimates, over the worst part.
@@ -96,19 +98,16 @@ class PictureRecords {
   // Returns no records if their relative noise is more than `most_noise`, and those of wider grids
   // if there is not enough time for all.
   std::vector<IrradianceRecord> find(double most_noise) {
+    bool is_finished = true;
     for (int step = widest_step; step >= 1; step /= 2) {
       std::vector<Candidate> candidates = uncovered(step);
       clamp(candidates);
-      const std::size_t before = records_.size();
-      const bool is_finished = finishes_in_time(
-          run_, [&](const RunControl& in_time) { add(thinned(candidates), step, in_time); });
-      if (!is_finished) {
-        records_.resize(before);
-        break;
-      }
+      is_finished = add_in_time(candidates, step);
+      if (!is_finished) break;
       if (step == widest_step && noise() > most_noise) return {};
       narrow();
     }
+    if (is_finished) fill();
     even_out(records_);
     return std::move(records_);
   }
@@ -119,6 +118,23 @@ class PictureRecords {
     SeenPlace place{};
     IrradianceRecord record{};
   };
+
+  // Gathers for places that were covered until their records were narrowed, by themselves or by
+  // what the narrowest grid saw. The solution's light would show there as a dark or bright crumb.
+  void fill() {
+    std::vector<Candidate> candidates = uncovered(1);
+    limit(candidates);
+    add_in_time(candidates, filling);
+  }
+
+  // Adds the candidates that are needed; none and false if there is not enough time.
+  bool add_in_time(const std::vector<Candidate>& candidates, int step) {
+    const std::size_t before = records_.size();
+    const bool is_finished = finishes_in_time(
+        run_, [&](const RunControl& in_time) { add(thinned(candidates), step, in_time); });
+    if (!is_finished) records_.resize(before);
+    return is_finished;
+  }
 
   // Places of a grid that no record covers well.
   std::vector<Candidate> uncovered(int step) const {
@@ -145,17 +161,7 @@ class PictureRecords {
   // records count by the radius that they had at first: light changes there, and not what a place
   // sees.
   void clamp(std::vector<Candidate>& candidates) {
-    // Twice the share, since the 32 rays of a place tell the distance to some 10 % alone.
-    constexpr double growth = 2.0 * share_of_distance;
-    std::vector<IrradianceRecord> all = at_first_;
-    for (const Candidate& candidate : candidates) all.push_back(candidate.record);
-    const RecordNeighbours neighbours(std::move(all), growth);
-    parallel_for(static_cast<int>(candidates.size()), records_together, [&](int begin, int end) {
-      for (int i = begin; i < end; ++i) {
-        auto& [place, record] = candidates[static_cast<std::size_t>(i)];
-        record.radius = std::max(least_radius(place), neighbours.allowed_radius(record));
-      }
-    });
+    const RecordNeighbours neighbours = limit(candidates);
     parallel_for(static_cast<int>(records_.size()), records_together, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const auto k = static_cast<std::size_t>(i);
@@ -164,6 +170,22 @@ class PictureRecords {
         record.radius = std::min(record.radius, std::max(least_radii_[k], allowed));
       }
     });
+  }
+
+  // Lowers the radii of candidates alone. Returns the limits that hold for all records.
+  RecordNeighbours limit(std::vector<Candidate>& candidates) const {
+    // Twice the share, since the 32 rays of a place tell the distance to some 10 % alone.
+    constexpr double growth = 2.0 * share_of_distance;
+    std::vector<IrradianceRecord> all = at_first_;
+    for (const Candidate& candidate : candidates) all.push_back(candidate.record);
+    RecordNeighbours neighbours(std::move(all), growth);
+    parallel_for(static_cast<int>(candidates.size()), records_together, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        auto& [place, record] = candidates[static_cast<std::size_t>(i)];
+        record.radius = std::max(least_radius(place), neighbours.allowed_radius(record));
+      }
+    });
+    return neighbours;
   }
 
   // The candidates that those before them leave uncovered.
@@ -235,6 +257,7 @@ class PictureRecords {
 
   // A narrower grid has about twice the records of the one before.
   static double share_done(int step, double of_step) {
+    if (step == filling) return 1.0;
     const double before = static_cast<double>(widest_step) / step - 1.0;
     return (before + of_step * (before + 1.0)) / (2.0 * widest_step - 1.0);
   }

@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "radiosity/solve.h"
+#include "raytrace/picture_records.h"
 #include "raytrace/scene_renderer.h"
+#include "raytrace/seen_places.h"
 #include "scene/parallel.h"
 #include "scene/sampling.h"
 #include "tests/raytrace/lit_scene.h"
@@ -265,6 +267,37 @@ TEST(PictureRecords, AreLeftOutWhereTheyAreNoisierThanTheMesh) {
   const Image by_default = room.picture({.gather_rays = 64});
   const Image by_mesh = room.picture({.has_records = false});
   EXPECT_TRUE((by_default.radiance == by_mesh.radiance).all());
+}
+
+// A record that serves farther than its neighbours allow is narrowed by the last grid, too, and
+// leaves places to no record, where the coarse mesh shows. A record covers what is within three
+// quarters of its radius, where its weight is 0.25; a place is a record itself or is covered so.
+TEST(PictureRecords, LeaveNoPlaceUncovered) {
+  SolvedRoom room{
+      SceneBuilder()
+          .box({.reflectance = 0.7f, .one_sided = true}, {0, 0, 0}, {4, 3, 2.5}, true)
+          .box({.reflectance = 0.6f, .one_sided = true}, {1.6, 1, 0}, {2.2, 1.7, 1.1}, false)
+          .box({.reflectance = 0.5f, .one_sided = true}, {2, 2.98, 1}, {2.6, 2.99, 1.6}, false)
+          .square({.exitance = 20.0f, .one_sided = true}, {2.9, 1.5, 2.45}, -up, 0.3)
+          .build(),
+      coarse_room().camera};
+  room.solve(1.5, 64);
+  const DirectLight direct_light(room.scene, room.solved.mesh);
+  const ElementCaster caster(room.solved.mesh);
+  const LitScene lit{room.scene, caster, direct_light};
+  const CameraRays rays(room.camera);
+  const RenderOptions options;
+  const auto records = find_records(lit, room.solved.solution, room.camera, rays, options);
+  ASSERT_NE(records, nullptr);
+  int places = 0, uncovered = 0;
+  for (const auto& place : SeenPlaces(lit, room.camera, rays, options.max_depth).on_grid(1)) {
+    if (!place) continue;
+    ++places;
+    uncovered += records->coverage(place->at.position, place->at.smooth_normal) < 0.25 ? 1 : 0;
+  }
+  std::printf("%d of %d places uncovered\n", uncovered, places);
+  EXPECT_GT(places, 64 * 48 / 2);
+  EXPECT_EQ(uncovered, 0);
 }
 
 // Pictures of the mesh's light show the indirect light of given records.
