@@ -58,7 +58,7 @@ struct SkyByCosine {
 /// For the cells that the site knows as open, the estimate is a control variate: the irradiance
 /// that rays find, minus the irradiance that the same rays would find without any occluder, times
 /// the visible share, plus the known irradiance times that share. An unobstructed point has no
-/// noise.
+/// noise. Where less than half is visible, the light that rays find is the estimate by itself.
 ///
 /// Seams of seam_share let no light through. The walls of a house that are open at an edge by the
 /// rounding of their vertices would show single bright vertices: one ray of thousands gets out
