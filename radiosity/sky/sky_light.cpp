@@ -205,10 +205,11 @@ class SkyLight::Estimate {
     const double square = pilot.squared_noise + unseen * unseen;
     const double enough =
         std::max(effort.goal.irradiance, effort.goal.share * result(pilot).mean());
-    const double rays = enough > 0.0 ? first * square / (enough * enough) : effort.most;
-    return static_cast<int>(std::lround(
-        std::clamp(rays, std::max(1.0, 0.5 * first),
-                   std::min(1.0 * effort.goal.most_times * effort.most, 1.0 * most_sky_rays))));
+    // The first rays do not count, and would be missed where there cannot be rays enough.
+    const double most =
+        std::min(1.0 * effort.goal.most_times * effort.most + first, 1.0 * most_sky_rays);
+    const double rays = enough > 0.0 ? first * square / (enough * enough) : most;
+    return static_cast<int>(std::lround(std::clamp(rays, std::max(1.0, 0.5 * first), most)));
   }
 
   const std::vector<Share>& cells() const { return shares_->cells; }
