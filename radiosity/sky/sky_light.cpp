@@ -306,9 +306,12 @@ class SkyLight::Estimate {
   Eigen::ArrayXd result(const Tally& tally) const {
     return shares_->E_open * seen_share(tally) + tally.seen_elsewhere;
   }
-  // The visible share, from half on. With a smaller share p the control variate would save about
-  // p / (1 - p) of the variance that the rays' weights have, and would be negative where no ray
-  // gets out: cut at 0, the light of slits would be 2 to 5 % too bright.
+  // The visible share p if it is a half or more, otherwise 0.
+  // - A control variate lowers the variance by p / (1 - p) of the share that the spread of the
+  //   weights of rays has in it: little where p is small.
+  // - It may be negative where no ray gets out, and cut at 0, which makes the mean too bright. From
+  //   p = 1/2 on, none of 4 rays, the fewest that follow, gets out once in 16 times at most, and
+  //   none of 16 once in 65 000 times.
   static Eigen::ArrayXd control_share(const Tally& tally) {
     constexpr double least = 0.5;
     const Eigen::ArrayXd share = seen_share(tally);

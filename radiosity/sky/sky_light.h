@@ -22,9 +22,9 @@ namespace lightwell {
 struct SkyEffort {
   int first = 32;
   int most = 128;  ///< 1 to most_sky_rays
-  /// Noise to reach, if set: the first rays estimate the noise, and as many follow as have that
-  /// noise by themselves, half of `first` to `first` and `goal.most_times` times `most`. Otherwise
-  /// `most` rays follow, and all rays count.
+  /// Noise to reach, if set. The first rays then only estimate the noise, and as many follow as
+  /// reach the goal by themselves: at least half of `first`, at most `goal.most_times` times `most`
+  /// and `first` more. Otherwise `most` rays follow, and all rays count.
   NoiseGoal goal{};
 };
 constexpr int most_sky_rays = 1 << 16;
