@@ -91,14 +91,21 @@ CutSize fine_enough(const RoundShape& shape, const CutSize& size, int spheres) {
   if (!sphere) return size;
   // Elements about as long as wide: 2 n^2 for n rings.
   const double rings = std::floor(std::min(most_rings, std::sqrt(most_elements / (2.0 * spheres))));
-  // Inverse of CutSize::pieces() for a meridian.
+  // Inverse of CutSize::pieces() for a meridian. All patches longer than a ball's parallels cut the
+  // ball alike, so those of balls that are much smaller count as shorter: integers hold no more
+  // elements along an edge.
+  constexpr double longest_patch = 1024.0;  // meridians
   const double meridian = std::numbers::pi * sphere->radius;
-  const double per_edge = meridian < size.patch_size
-                              ? std::floor(rings * size.patch_size / meridian)
-                              : std::ceil(rings / size.patches(meridian));
   CutSize fine = size;
-  fine.elements_per_edge = std::max(size.elements_per_edge, static_cast<int>(per_edge));
-  return fine;
+  double per_edge = 0.0;
+  if (meridian < size.patch_size) {
+    fine.patch_size = std::min(size.patch_size, longest_patch * meridian);
+    per_edge = std::floor(rings * fine.patch_size / meridian);
+  } else {
+    per_edge = std::ceil(rings / size.patches(meridian));
+  }
+  fine.elements_per_edge = static_cast<int>(per_edge);
+  return per_edge >= 1.0 && fine.element_size() < size.element_size() ? fine : size;
 }
 
 }  // namespace lightwell

@@ -147,8 +147,8 @@ class Cutter {
     // A patch takes the whole sectors that fit into its width, but no fewer than the elements along
     // its edge.
     const double sector_width = 2.0 * pi / out_.sectors * widest;
-    const int fit = std::max(size_.elements_per_edge,
-                             static_cast<int>(size_.patch_size / sector_width * (1.0 + 1e-9)));
+    const double whole = std::min<double>(out_.sectors, size_.patch_size / sector_width);
+    const int fit = std::max(size_.elements_per_edge, static_cast<int>(whole * (1.0 + 1e-9)));
     const int columns = std::max(4, (out_.sectors + fit - 1) / fit);
     for (int column = 0; column < columns; ++column) {
       const int west = block(column, columns, out_.sectors);

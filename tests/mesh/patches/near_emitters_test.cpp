@@ -132,5 +132,19 @@ TEST(FineEnough, ManyBallsHaveFewElements) {
   EXPECT_EQ(fine_enough(Sphere{.radius = 9.0}, size, 1).elements_per_edge, size.elements_per_edge);
 }
 
+// A patch is up to 10^13 meridians long here, more than integers count.
+TEST(FineEnough, TheSmallestBallsHaveAsManyElementsAsOthers) {
+  for (const double r : {1e-2, 1e-5, 1e-10, 1e-14}) {
+    const Sphere ball{.center = {1, 2, 3}, .radius = r};
+    const CutSize fine = fine_enough(ball, size, 1);
+    EXPECT_EQ(fine.pieces(std::numbers::pi * r), 8) << r;
+    const RoundElements elements = round_elements(ball, fine);
+    EXPECT_EQ(elements.rings, 8) << r;
+    EXPECT_EQ(elements.sectors, 16) << r;
+    // The fewest patches of a ball: two rows of four, and the end of the last.
+    EXPECT_EQ(elements.first_element.size(), 9u) << r;
+  }
+}
+
 }  // namespace
 }  // namespace lightwell::near_emitters_test
