@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cstdint>
 #include <limits>
 #include <unordered_map>
 
@@ -183,7 +184,7 @@ class ObjParser {
         if (vertex >= static_cast<int>(content_.vertices.size())) {
           file_.fail(face.line,
                      fmt::format("vertex index {} is out of range; the file has {} vertices",
-                                 vertex + 1, content_.vertices.size()));
+                                 std::int64_t{vertex} + 1, content_.vertices.size()));
         }
       }
     }

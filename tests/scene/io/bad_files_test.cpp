@@ -120,6 +120,7 @@ const std::vector<BadFile> bad_files = {
     {"camera-same-name.toml", {"camera-same-name.toml:14:", "camera 'eye'", "another"}},
     {"camera-name-slash.toml", {"camera-name-slash.toml:10:8:", "slash"}},
     {"index-too-large.obj", {"index-too-large.obj:4:", "vertex index 4", "3 vertices"}},
+    {"index-of-int.obj", {"index-of-int.obj:4:", "vertex index 2147483648", "3 vertices"}},
     {"index-zero.obj", {"index-zero.obj:4:", "vertex index 0"}},
     {"index-negative.obj", {"index-negative.obj:4:", "vertex index -4"}},
     {"index-word.obj", {"index-word.obj:4:", "'three'"}},
