@@ -40,7 +40,7 @@ ContactGraph::ContactGraph(const Scene& scene, const std::vector<FacetPlane>& pl
   cut_at_points();
   if (!critical.empty()) add_creases(critical, most_elements);
   make_atoms();
-  if (!sizes_.are_even()) grade_atoms();
+  size_atoms();
   count_pieces();
   divide();
 }
@@ -136,10 +136,7 @@ void ContactGraph::make_atoms() {
       const int a = std::min(points[k], points[k + 1]), b = std::max(points[k], points[k + 1]);
       const auto [entry, is_new] =
           atom_of_ends.try_emplace(ends_key(a, b), static_cast<int>(atoms_.size()));
-      if (is_new) {
-        const double length = (welded_[a] - welded_[b]).norm();
-        atoms_.push_back({.a = a, .b = b, .pieces = sizes_.near().pieces(length)});
-      }
+      if (is_new) atoms_.push_back({.a = a, .b = b});
       atoms_of_segment_[i].push_back(entry->second);
     }
   }
@@ -176,21 +173,25 @@ std::vector<int> ContactGraph::crease_atoms(int index) const {
                        contact_atoms(index));
 }
 
-// Lines that lie in no facet of what is near are divided by the sizes along them.
-void ContactGraph::grade_atoms() {
-  std::vector<char> is_near(atoms_.size(), 0);
+// Lines that lie in no facet of what is near are divided by the sizes along them. Pieces of the
+// near size along such a line may be more than integers count.
+void ContactGraph::size_atoms() {
+  std::vector<char> is_near(atoms_.size(), sizes_.are_even() ? 1 : 0);
   const auto mark = [&](const std::vector<int>& atoms) {
     for (const int i : atoms) is_near[i] = 1;
   };
   for (std::size_t p = 0; p < planes_.size(); ++p) {
-    if (!sizes_.is_near(planes_[p].facet)) continue;
+    if (sizes_.are_even() || !sizes_.is_near(planes_[p].facet)) continue;
     mark(atoms_of_boundary(static_cast<int>(p)));
     mark(atoms_of(contact_segments_[p]));
     mark(atoms_of(crease_segments_[p]));
   }
   for (std::size_t i = 0; i < atoms_.size(); ++i) {
-    if (is_near[i]) continue;
     Atom& atom = atoms_[i];
+    if (is_near[i]) {
+      atom.pieces = sizes_.near().pieces((welded_[atom.a] - welded_[atom.b]).norm());
+      continue;
+    }
     atom.cuts = sizes_.cuts(welded_[atom.a], welded_[atom.b]);
     atom.pieces = static_cast<int>(atom.cuts.size()) + 1;
   }

@@ -90,7 +90,7 @@ class ContactGraph {
   std::vector<std::vector<Crossing>> crossings_within_facets() const;
   void cut_at_points();
   void make_atoms();
-  void grade_atoms();
+  void size_atoms();
   void count_pieces();
   void divide();
   std::vector<int> atoms_of_boundary(int index) const;

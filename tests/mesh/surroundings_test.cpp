@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <set>
+#include <utility>
 #include <vector>
 
 #include "mesh/build_patches.h"
@@ -50,6 +53,27 @@ TEST(Surroundings, LeaveTheMeshOfWhatIsNearAsItIsAlone) {
   for (const double length : {300.0, 6000.0}) {
     EXPECT_EQ(elements_of(build_patches(cube_on_ground(length)), 6), alone) << length;
   }
+}
+
+// The edges of this ground are 10^10 near patches long, more than integers count. Each edge of
+// length L is L/2 away.
+// - A part of an edge is halved where distances d to the near box differ by a factor of 2 or more,
+//   so by a third of d or more from the part's middle: parts of L and L/2 at most, which leaves 4.
+// - Distances within a part differ by less than 4. Patches are half of the least distance long, or
+//   half of that by whole levels: more than d/16, so L/32, and elements more than L/64.
+// These are 64 elements, one more for each part, and one point more.
+TEST(Surroundings, EdgesOfAMillionKilometresAreCutBySizesThere) {
+  constexpr double length = 1e9;
+  const Scene scene = cube_on_ground(length);
+  ASSERT_GT(length / cut_size(scene, {}).patch_size, std::numeric_limits<int>::max());
+  const PatchMesh mesh = build_patches(scene);
+  std::set<std::pair<double, double>> on_edge;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const Eigen::Vector3d at = mesh.position(v);
+    if (at.y() == -0.5 * length) on_edge.emplace(at.x(), at.z());
+  }
+  EXPECT_GE(on_edge.size(), 2u);
+  EXPECT_LE(on_edge.size(), 64u + 4u + 1u);
 }
 
 // No element of a ground is longer than a diagonal of one and a half cells, the most that leaving
