@@ -234,12 +234,16 @@ Spectrum mean_sent_on(const Material& material) {
 
 namespace {
 
-// Share of light, per band, that passes a sheet straight on. Light under a coat passes by the
-// factor of the coated base, so that coat, base and passing light together never exceed the light
-// that arrives; holes, which are what the coat does not cover, pass all light.
+// Share of light, per band, that passes a sheet straight on. No light passes other surfaces, behind
+// which a lamp may lie.
+// - Light under a coat passes by the factor of the coated base, so that coat, base and passing
+// light
+//   together never exceed the light that arrives.
+// - Holes, which are what the coat does not cover, pass all light.
 Spectrum straight_share(const SurfaceInteraction& interaction) {
   const Material& material = interaction.material;
   const Spectrum& all = material.regular_transmittance;
+  if (all.size() == 0) return Spectrum::Zero(material.specular.size());
   if (!material.coat) return all;
   const auto holes_beside = [&]() -> Spectrum {
     const Coat& coat = *material.coat;

@@ -114,6 +114,21 @@ TEST(RoughGlass, LosesNothingAndReflectsByFresnelWhereItIsNearlySmooth) {
   }
 }
 
+// A lamp behind a surface that passes no light gives 0 in each band, and not an array without
+// bands.
+TEST(ScatteringWeight, IsZeroInAllBandsBehindOpaqueSurfaces) {
+  Material coated = mirror(0.2f);
+  coated.coat = Coat{.index_of_refraction = 1.5f};
+  for (const Material& material : {mirror(0.0f), mirror(0.2f), coated}) {
+    const Spectrum weight = scattering_weight(
+        {.material = material, .direction = downwards(30.0), .normal = Eigen::Vector3d::UnitZ()},
+        {.direction = -Eigen::Vector3d::UnitZ(), .crosses = true});
+    ASSERT_EQ(weight.size(), material.specular.size());
+    EXPECT_EQ(weight.maxCoeff(), 0.0f);
+    EXPECT_EQ(weight.minCoeff(), 0.0f);
+  }
+}
+
 TEST(RoughGlass, SpreadsMoreTheRougherItIs) {
   double last = 1.1;
   for (const float alpha : {0.0f, 0.1f, 0.3f, 0.8f}) {
