@@ -236,8 +236,7 @@ namespace {
 
 // Share of light, per band, that passes a sheet straight on. No light passes other surfaces, behind
 // which a lamp may lie.
-// - Light under a coat passes by the factor of the coated base, so that coat, base and passing
-// light
+// - Light under a coat passes by the factor of the coated base: coat, base and passing light
 //   together never exceed the light that arrives.
 // - Holes, which are what the coat does not cover, pass all light.
 Spectrum straight_share(const SurfaceInteraction& interaction) {
