@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "radiosity/gather/patch_power.h"
 #include "radiosity/gather/vertex_points.h"
 #include "radiosity/refine/even_out_noise.h"
+#include "radiosity/refine/gather_noise.h"
 #include "radiosity/refine/shared_gathers.h"
 
 namespace lightwell {
@@ -122,17 +122,19 @@ void gather_more(const VertexGatherTask& task, const BandArray& radiosity, KeptG
 }
 
 // Gives interpolated vertices the means of their ends, and the rays that leave the same noise.
-void fill_interpolated(const std::vector<InterpolatedVertex>& interpolated, VertexGather& gather) {
-  interpolate_vertices(interpolated, gather.found.indirect);
+// `found.variance` is that of one ray.
+void fill_interpolated(const std::vector<InterpolatedVertex>& interpolated,
+                       GatheredIrradiance& found, Eigen::ArrayXf& rays) {
+  interpolate_vertices(interpolated, found.indirect);
   for (const InterpolatedVertex& t : interpolated) {
     float inverse = 0.0f, variance = 0.0f;
     for (int i = 0; i < t.end_count(); ++i) {
-      inverse += 1.0f / gather.rays[t.ends[i]];
-      variance += gather.found.variance[t.ends[i]];
+      inverse += 1.0f / rays[t.ends[i]];
+      variance += found.variance[t.ends[i]];
     }
     const auto ends = static_cast<float>(t.end_count());
-    gather.rays[t.vertex] = ends / inverse;
-    gather.found.variance[t.vertex] = variance / ends;
+    rays[t.vertex] = ends / inverse;
+    found.variance[t.vertex] = variance / ends;
   }
 }
 
@@ -152,44 +154,37 @@ void even_out_own_noise(const LitScene& lit, const PilotGather& pilot, BandArray
   variance = (own > 0.0f).select(left, variance);
 }
 
-// Joins each vertex's gather with the prediction of the pilot gather and with its neighbours, and
-// counts the rays that leave the noise of all together.
-void join_predictions(const LitScene& lit, const PilotGather& pilot, VertexGather& gather) {
-  const PatchMesh& mesh = lit.mesh();
-  const int count = mesh.vertex_count();
+// Joins each vertex's gather with the prediction of the pilot gather and with its neighbours.
+void join_predictions(const LitScene& lit, const PilotGather& pilot, GatheredIrradiance& gather) {
   // Half of the difference between a stratified set's two halves is more than the error of the
-  // whole set (see estimate_error). The variance found at one vertex is little more than a guess,
-  // so all vertices of a patch take the patch's mean.
-  constexpr double share_of_whole_set = 0.5;
-  const std::vector<int> patch = vertex_patches(mesh);
-  const Eigen::ArrayXd of_patch = patch_integral(mesh, gather.found.variance).col(0);
-  Eigen::ArrayXf before(count);
-  for (int v = 0; v < count; ++v) {
-    const double area = mesh.area[patch[v]],
-                 of_a_ray = area > 0.0 ? of_patch[patch[v]] / area : 0.0;
-    before[v] = static_cast<float>(share_of_whole_set * of_a_ray / double{gather.rays[v]});
-  }
+  // whole set (see estimate_error).
+  constexpr float share_of_whole_set = 0.5f;
+  const Eigen::ArrayXf before = share_of_whole_set * gather.variance;
   Eigen::ArrayXf after = before;
-  combine_with_predictions(pilot.predictions, pilot.indirect, patch, lit.scene.bands.count(),
-                           gather.found.indirect, after);
-  if (pilot.tree) even_out_own_noise(lit, pilot, gather.found.indirect, after);
+  combine_with_predictions(pilot.predictions, pilot.indirect, vertex_patches(lit.mesh()),
+                           lit.scene.bands.count(), gather.indirect, after);
+  if (pilot.tree) even_out_own_noise(lit, pilot, gather.indirect, after);
   // Without noise there is nothing to compare.
-  gather.rays *= (before > 0.0f && after > 0.0f).select(before / after.max(1e-30f), 1.0f);
+  gather.variance =
+      (before > 0.0f && after > 0.0f).select(after / share_of_whole_set, gather.variance);
 }
 
 }  // namespace
 
-VertexGather gather_once(const VertexGatherTask& task, const BandArray& radiosity,
-                         KeptGather& kept) {
+GatheredIrradiance gather_once(const VertexGatherTask& task, const BandArray& radiosity,
+                               KeptGather& kept) {
   gather_more(task, radiosity, kept);
-  VertexGather gather{.found = {.indirect = kept.indirect, .variance = kept.variance}};
-  const int count = task.lit.mesh().vertex_count();
+  GatheredIrradiance found{.indirect = kept.indirect, .variance = kept.variance};
+  const PatchMesh& mesh = task.lit.mesh();
   // Vertices that cast no rays have no noise.
-  gather.rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), count).cast<float>().max(1.0f);
-  gather.found.variance *= gather.rays;
-  fill_interpolated(task.pilot.interpolated, gather);
-  join_predictions(task.lit, task.pilot, gather);
-  return gather;
+  Eigen::ArrayXf rays = Eigen::Map<const Eigen::ArrayXi>(kept.rays.data(), mesh.vertex_count())
+                            .cast<float>()
+                            .max(1.0f);
+  found.variance *= rays;
+  fill_interpolated(task.pilot.interpolated, found, rays);
+  found.variance = vertex_variance(mesh, found.variance, rays);
+  join_predictions(task.lit, task.pilot, found);
+  return found;
 }
 
 }  // namespace lightwell

@@ -38,18 +38,13 @@ struct VertexGatherTask {
   int cast_of(int all) const { return all > 0 ? std::max(1, all / one_in) : 0; }
 };
 
-/// Indirect light at vertices, with the variance of one of a vertex's rays; `rays` is how many rays
-/// each vertex stands for, with what predictions add to its own.
-struct VertexGather {
-  GatheredIrradiance found{};
-  Eigen::ArrayXf rays{};
-};
-
 /// Casts the rays that `kept` lacks, with random numbers of their own, and adds what they find.
 /// Joins each vertex's gather with the prediction of the pilot gather and, on refined elements,
 /// with its neighbours (see combine_with_predictions() and even_out_noise()). `radiosity` is what
-/// rays read, W/m^2, vertices x columns. Throws Interrupted when progress says stop.
-VertexGather gather_once(const VertexGatherTask& task, const BandArray& radiosity,
-                         KeptGather& kept);
+/// rays read, W/m^2, vertices x columns. The variance is that of half the difference between the
+/// two halves of the rays (see GatheredIrradiance), less what joining takes away. Throws
+/// Interrupted when progress says stop.
+GatheredIrradiance gather_once(const VertexGatherTask& task, const BandArray& radiosity,
+                               KeptGather& kept);
 
 }  // namespace lightwell

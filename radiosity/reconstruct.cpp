@@ -24,8 +24,8 @@ BandArray with_indirect(const PilotGather& pilot, const BandArray& indirect) {
 
 // Gathers in the light that `irradiance`, at vertices, makes; for refined elements with the power
 // that the patches' equations balanced.
-VertexGather gather_in(const VertexGatherTask& task, BandArray irradiance,
-                       const RadiositySolution& solution, KeptGather& kept) {
+GatheredIrradiance gather_in(const VertexGatherTask& task, BandArray irradiance,
+                             const RadiositySolution& solution, KeptGather& kept) {
   const PatchMesh& mesh = task.lit.mesh();
   BandArray radiosity = gatherable_radiosity(task.lit, irradiance, task.pilot.direct);
   irradiance.resize(0, 0);
@@ -82,17 +82,18 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
     constexpr int few = 8;
     VertexGatherTask second{lit, pilot, gather, solution.parts, rays, few};
     second.options.replica += first_replicas;
-    const VertexGather found = gather_in(second, std::move(irradiance), solution, so_far.of_pilot);
-    irradiance = with_indirect(pilot, found.found.indirect);
+    const GatheredIrradiance found =
+        gather_in(second, std::move(irradiance), solution, so_far.of_pilot);
+    irradiance = with_indirect(pilot, found.indirect);
   }
-  VertexGather last = gather_in({lit, pilot, gather, solution.parts, rays}, std::move(irradiance),
-                                solution, so_far.last);
-  irradiance = with_indirect(pilot, last.found.indirect);
-  solution.indirect_irradiance = std::move(last.found.indirect);
+  GatheredIrradiance last = gather_in({lit, pilot, gather, solution.parts, rays},
+                                      std::move(irradiance), solution, so_far.last);
+  irradiance = with_indirect(pilot, last.indirect);
+  solution.indirect_irradiance = std::move(last.indirect);
   solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
   solution.gather_noise =
       gather_noise(lit.mesh(), channel_sum(std::move(irradiance), lit.scene.bands.count()),
-                   last.found.variance, last.rays, solution.parts);
+                   last.variance, solution.parts);
   if (pilot.caustic.size() > 0) solution.indirect_irradiance += pilot.caustic;
   solution.caustic_irradiance = pilot.caustic;
   solution.interpolation_error = pilot.interpolation_error;

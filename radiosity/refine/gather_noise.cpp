@@ -7,22 +7,32 @@
 
 namespace lightwell {
 
-Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
-                            const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays,
-                            const SceneParts& parts) {
+Eigen::ArrayXf vertex_variance(const PatchMesh& mesh, const Eigen::ArrayXf& ray_variance,
+                               const Eigen::ArrayXf& rays) {
+  const std::vector<int> patch = vertex_patches(mesh);
   const Eigen::ArrayXd of_patch = patch_integral(mesh, ray_variance).col(0);
+  Eigen::ArrayXf variance(mesh.vertex_count());
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const double area = mesh.area[patch[v]],
+                 of_a_ray = area > 0.0 ? of_patch[patch[v]] / area : 0.0;
+    variance[v] = static_cast<float>(of_a_ray / double{rays[v]});
+  }
+  return variance;
+}
+
+Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
+                            const Eigen::ArrayXf& variance, const SceneParts& parts) {
   const Eigen::ArrayXd reference = error_references(mesh, irradiance, parts);
   Eigen::ArrayXf noise = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
-    const int n = mesh.corner_count(e), p = mesh.patch[e];
-    if (!(reference[e] > 0.0) || !(mesh.area[p] > 0.0)) continue;
+    const int n = mesh.corner_count(e);
+    if (!(reference[e] > 0.0)) continue;
     double of_corners = 0.0;
-    for (int c = 0; c < n; ++c) of_corners += 1.0 / double{rays[mesh.corners[e][c]]} / n;
+    for (int c = 0; c < n; ++c) of_corners += double{variance[mesh.corners[e][c]]} / n;
     // The mean over the element of the sum of squared interpolation weights: the share that is left
     // of the variance of independent errors at the corners.
     const double interpolated = n == 4 ? 4.0 / 9.0 : 1.0 / 2.0;
-    const double variance = of_patch[p] / mesh.area[p] * of_corners * interpolated;
-    noise[e] = static_cast<float>(std::sqrt(variance) / reference[e]);
+    noise[e] = static_cast<float>(std::sqrt(of_corners * interpolated) / reference[e]);
   }
   return noise;
 }

@@ -7,14 +7,17 @@
 
 namespace lightwell {
 
-/// Per element, the RMS error that the rays of a gather at vertices leave in interpolated
-/// irradiance, relative to error_references() of `irradiance` (vertices x bands, W/m^2); see
-/// RadiositySolution::gather_noise. `ray_variance` is the estimated variance of a single ray at
-/// each vertex, (W/m^2)^2. One vertex's value is little more than a guess, so the mean over each
-/// patch is used. `rays` is the number of rays of each vertex.
+/// Variance of the light gathered at each vertex, (W/m^2)^2: that of a single ray over the vertex's
+/// `rays`. `ray_variance` is an estimate from one gather per vertex, (W/m^2)^2, which is little
+/// more than a guess, so its mean over each patch is used.
+Eigen::ArrayXf vertex_variance(const PatchMesh& mesh, const Eigen::ArrayXf& ray_variance,
+                               const Eigen::ArrayXf& rays);
+
+/// Per element, the RMS error that gathers at vertices leave in interpolated irradiance, relative
+/// to error_references() of `irradiance` (vertices x bands, W/m^2); see
+/// RadiositySolution::gather_noise. `variance` is that of each vertex's light, (W/m^2)^2.
 Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
-                            const Eigen::ArrayXf& ray_variance, const Eigen::ArrayXf& rays,
-                            const SceneParts& parts = {});
+                            const Eigen::ArrayXf& variance, const SceneParts& parts = {});
 
 /// The RMS over the judged_patches() of each part of the noise of gather_noise().
 std::vector<double> rms_noises(const PatchMesh& mesh, const Eigen::ArrayXf& noise,

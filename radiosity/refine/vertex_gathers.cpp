@@ -259,10 +259,9 @@ void VertexGathers::sharpen_radiosity(const BandArray& caustic) {
   if (!effort_.has_noise_goal()) return;
   Eigen::ArrayXf rays(mesh.vertex_count());
   for (int v = 0; v < mesh.vertex_count(); ++v) rays[v] = static_cast<float>(effort_.rays(v));
-  effort_.choose_rays(
-      rms_noises(mesh, gather_noise(mesh, irradiance, gathered.variance * rays, rays, parts_),
-                 parts_),
-      shared_.read);
+  const Eigen::ArrayXf variance = vertex_variance(mesh, gathered.variance * rays, rays);
+  effort_.choose_rays(rms_noises(mesh, gather_noise(mesh, irradiance, variance, parts_), parts_),
+                      shared_.read);
   options_.rays = effort_.most_rays();
 }
 

@@ -232,6 +232,26 @@ TEST(Accuracy, EachAttemptIsWorthItsTime) {
   EXPECT_LE(coarse->refine_tolerance, 0.8 * reached.estimate);
 }
 
+// Where noise takes a good part of the error, a few more rays and slightly smaller elements cost
+// less than elements alone, whose number grows with the third power of the error that they have to
+// lose.
+TEST(Accuracy, NoiseAndElementsShareTheStep) {
+  const Effort first = first_effort(0.05, true);
+  RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.046};
+  // Besides noise and elements, 0.0588^2 - 0.0242^2 - 0.046^2 = 0.0275^2 stays. With the same rays,
+  // elements would have sqrt(0.0475^2 - 0.0275^2 - 0.0242^2) = 0.0303, two thirds of theirs.
+  const auto next = next_effort(first, 0.05, 0.0588, 0.0242, reached, 0);
+  ASSERT_TRUE(next);
+  EXPECT_GT(next->gather_rays, first.gather_rays);
+  EXPECT_GT(next->refine_tolerance, 0.0303);
+  EXPECT_LE(next->refine_tolerance, 0.8 * reached.estimate);
+  // Both together meet what is allowed: noise falls with rays^(-2/3).
+  const double times = static_cast<double>(next->gather_rays) / first.gather_rays;
+  const double left =
+      std::hypot(0.0275, next->refine_tolerance, 0.0242 * std::pow(times, -2.0 / 3.0));
+  EXPECT_LE(left, 0.0475 * 1.001);  // the share 0.0275 is rounded to three digits
+}
+
 // The error contains the noise of both gathers, so an estimate of the noise above it is too high.
 TEST(Accuracy, NoiseIsNoMoreThanTheError) {
   const Effort first = first_effort(0.05, true);

@@ -72,6 +72,29 @@ TEST(GatherNoise, IsNothingWhereAllThatIsSeenIsAlike) {
   EXPECT_LT(E.variance[0], 1e-12);  // weights of corners add up to 1 but for float rounding
 }
 
+// A vertex that patches share has one variance, whichever patch's rays it was found from: that of a
+// bright patch counts whole in the elements of a dark one beside it.
+TEST(GatherNoise, OfElementsIsThatOfTheirVertices) {
+  const Room room;
+  const PatchMesh& mesh = room.mesh;
+  const Eigen::ArrayXf variance = Eigen::ArrayXf::Constant(mesh.vertex_count(), 1e-4f);
+  const BandArray E = BandArray::Constant(mesh.vertex_count(), 3, 0.5f);
+  const Eigen::ArrayXf noise = gather_noise(mesh, E, variance);
+  // A bilinear mean of four independent errors has 4/9 of their variance.
+  const double expected = std::sqrt(4.0 / 9.0 * 1e-4) / 0.5;
+  EXPECT_NEAR(noise.minCoeff(), expected, 1e-6);
+  EXPECT_NEAR(noise.maxCoeff(), expected, 1e-6);
+
+  // Rays of one patch that all find the same light make no other patch's noise larger.
+  Eigen::ArrayXf of_ray = Eigen::ArrayXf::Zero(mesh.vertex_count());
+  const std::vector<int> patch = vertex_patches(mesh);
+  for (int v = 0; v < mesh.vertex_count(); ++v) of_ray[v] = patch[v] == patch[0] ? 64.0f : 0.0f;
+  const Eigen::ArrayXf of_vertices =
+      vertex_variance(mesh, of_ray, Eigen::ArrayXf::Constant(mesh.vertex_count(), 64.0f));
+  EXPECT_LE(of_vertices.maxCoeff(), 1.0f + 1e-6f);
+  EXPECT_GT(of_vertices[0], 0.0f);
+}
+
 TEST(GatherNoise, OfASolutionFallsWithRays) {
   const Room room;
   SolveOptions options{.mesh = {.max_patch_size = 0.5}, .refine = {.tolerance = 0.05}};
