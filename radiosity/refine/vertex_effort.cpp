@@ -73,20 +73,36 @@ int VertexEffort::pilot_rays(int rays) const {
 }
 
 // Vertices of small elements cast fewer rays, but a quarter at least: with fewer, noise would hide
-// the differences that the gathers are made for. Vertices that share gathers cast an eighth: what
-// the noise hides is left out for the whole group.
+// the differences that the gathers are made for.
 void VertexEffort::share_pilot_rays(const std::vector<InterpolatedVertex>& read) {
   const PatchMesh& mesh = elements_.base();
+  constexpr int times_at_least = 2;
   std::vector<int> rays;
   for (const int of_part : rays_of_part_) rays.push_back(pilot_rays(of_part));
   rays_ = share_rays(mesh, {}, parts_, rays);
   const std::vector<int> patch = vertex_patches(mesh);
   std::vector<char> shares(static_cast<std::size_t>(mesh.vertex_count()), 0);
   for (const InterpolatedVertex& at : read) shares[at.vertex] = 1;
+  const int times_if_shared = times_at_vertices_that_share(read);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const int times = shares[v] != 0 ? 1 : 2;
+    const int times = shares[v] != 0 ? times_if_shared : times_at_least;
     rays_[v] = std::min(times * rays_[v], rays[parts_.judged_with(patch[v])]);
   }
+}
+
+// Rays at vertices that share gathers, over an eighth of the pilot rays. An eighth may be 4 rays.
+// Where one of 4 rays in each of both gathers met the same bright spot far away, such as the top of
+// a column below a lamp, the difference from the records was a stripe of twice the light. Such a
+// stripe is dimmer and rarer with more rays. The rays are as many as take half of those of the
+// final gather: among leaves, which have most of the vertices, that is an eighth.
+int VertexEffort::times_at_vertices_that_share(const std::vector<InterpolatedVertex>& read) const {
+  constexpr int most_times = 8;
+  std::int64_t of_pilots = 0, of_final = 0;
+  for (const InterpolatedVertex& at : read) of_pilots += 2 * std::int64_t{rays_[at.vertex]};
+  for (const int rays : share_rays(elements_.base(), read, parts_, rays_of_part_)) of_final += rays;
+  int times = 1;
+  while (times < most_times && 2 * times * of_pilots <= of_final / 2) times *= 2;
+  return times;
 }
 
 // The number of the scene's part that a vertex is judged with.

@@ -18,8 +18,10 @@ namespace lightwell {
 /// - an eighth;
 /// - a sixteenth, but 64 at least, if the noise of the final gather has a goal;
 /// - a sixteenth if there are more than 32 768 vertices at the start;
-/// - down to a quarter of that at the smallest elements of the start, and down to an eighth at
-///   vertices of SharedGathers::read.
+/// - down to a quarter of that at the smallest elements of the start;
+/// - down to an eighth at vertices of SharedGathers::read, or twice to eight times as many as long
+/// as
+///   these vertices take no more than half of the rays of the start's final gather.
 ///
 /// The light of the sky has a multiple of the noise asked for at the vertices of small elements, if
 /// the elements of the start leave little room for others: refinement of few elements does not get
@@ -77,6 +79,7 @@ class VertexEffort {
   int part_of(int vertex) const;
   double fewness(int vertex) const;
   void share_pilot_rays(const std::vector<InterpolatedVertex>& read);
+  int times_at_vertices_that_share(const std::vector<InterpolatedVertex>& read) const;
 
   const RefinedElements& elements_;
   SceneParts parts_;
