@@ -101,7 +101,7 @@ void add_gather(const MissingRays& cast, const GatheredIrradiance& found, KeptGa
 void gather_more(const VertexGatherTask& task, const BandArray& radiosity, KeptGather& kept) {
   const PatchMesh& mesh = task.lit.mesh();
   const MissingRays missing = missing_rays(task, kept);
-  const GatherPoints all = vertex_points(task.lit);
+  const GatherPoints all = vertex_points(task.lit.caster);
   const GatherPoints fresh(static_cast<int>(missing.vertex.size()), [&](int i) {
     GatherPoint at = all[missing.vertex[i]];
     at.key = static_cast<std::uint64_t>(missing.vertex[i]);

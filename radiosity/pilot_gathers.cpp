@@ -24,7 +24,7 @@ constexpr std::uint64_t pilot_replica = 1000;
 // Indirect light at all vertices where rays read it; elsewhere 0.
 BandArray read_indirect(const LitScene& lit, const BandArray& radiosity,
                         const GatherOptions& options) {
-  const GatherPoints all = vertex_points(lit);
+  const GatherPoints all = vertex_points(lit.caster);
   const std::vector<char> unread = unread_patches(lit.scene, lit.mesh());
   const std::vector<int> patch = vertex_patches(lit.mesh());
   std::vector<int> vertices;

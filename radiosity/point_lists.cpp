@@ -24,7 +24,7 @@ GatherPoints points_on_patches(const PatchMesh& mesh, const std::vector<int>& pa
 
 BandArray direct_beside(const LitScene& lit, const std::vector<InterpolatedVertex>& unread,
                         const GatherOptions& options) {
-  const GatherPoints all = vertex_points(lit);
+  const GatherPoints all = vertex_points(lit.caster);
   const std::vector<int> others = indices_without(unread, static_cast<std::size_t>(all.size()));
   BandArray direct =
       spread_rows(gather_direct(lit, points_of_vertices(all, others), options), others, all.size());

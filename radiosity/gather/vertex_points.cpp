@@ -7,7 +7,6 @@
 #include "mesh/patches/inset.h"
 #include "mesh/patches/patch_sampler.h"
 #include "mesh/patches/round_grid.h"
-#include "radiosity/gather/body_exits.h"
 #include "radiosity/gather/gap_sizes.h"
 
 namespace lightwell {
@@ -121,12 +120,6 @@ GatherPoints vertex_points(const ElementCaster& caster) {
             return risen(caster, at, *normal, (on_facet.position - vertex).norm(),
                          (center - vertex).norm());
           }};
-}
-
-GatherPoints vertex_points(const LitScene& lit) {
-  const auto exits = std::make_shared<BodyExits>(lit);
-  const GatherPoints all = vertex_points(lit.caster);
-  return {all.size(), [exits, all](int v) { return exits->outside(v, all[v]); }};
 }
 
 }  // namespace lightwell

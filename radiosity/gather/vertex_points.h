@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
-#include "radiosity/direct_light/lit_scene.h"
 #include "radiosity/gather/final_gather.h"
 
 namespace lightwell {
@@ -48,9 +47,5 @@ GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& v
 ///   the body that the other surface bounds, whose light has nothing to do with that of the vertex.
 /// Keeps a reference to `caster`.
 GatherPoints vertex_points(const ElementCaster& caster);
-
-/// The same, and those of covered vertices outside the body that covers them (see BodyExits).
-/// Keeps references to the parts of `lit`.
-GatherPoints vertex_points(const LitScene& lit);
 
 }  // namespace lightwell

@@ -46,7 +46,6 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
     : scene_(lit.scene),
       caster_(lit.caster),
       direct_light_(lit.direct_light),
-      exits_(lit),
       radiosity_(radiosity),
       elements_(elements),
       options_(options),
@@ -69,7 +68,7 @@ GatherPoint VertexGathers::gather_point(int vertex) const {
   const PatchPoint at = elements_.inside(vertex, inset_);
   const GatherPoint point{at.position, at.normal, elements_.base().facet[at.element]};
   const Eigen::Vector3d center = element_center(elements_.base(), at.element).position;
-  return exits_.outside(vertex, moved_into_gap(caster_, elements_.position(vertex), center, point));
+  return moved_into_gap(caster_, elements_.position(vertex), center, point);
 }
 
 // A gather point with random numbers of the vertex's own.

@@ -6,7 +6,6 @@
 
 #include "mesh/elements/refine_elements.h"
 #include "radiosity/direct_light/lit_scene.h"
-#include "radiosity/gather/body_exits.h"
 #include "radiosity/gather/final_gather.h"
 #include "radiosity/refine/emitter_visibility_list.h"
 #include "radiosity/refine/interpolated_vertices.h"
@@ -113,7 +112,6 @@ class VertexGathers {
   const Scene& scene_;
   const ElementCaster& caster_;
   const DirectLight& direct_light_;
-  BodyExits exits_;
   BandArray radiosity_;  // at the base's vertices
   RefinedElements& elements_;
   GatherOptions options_;

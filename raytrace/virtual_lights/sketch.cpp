@@ -77,7 +77,7 @@ class Sketcher {
       : lit_(lit),
         lights_(lights),
         progress_(progress),
-        points_(vertex_points(lit)),
+        points_(vertex_points(lit.caster)),
         vertices_(sending_vertices(lit.mesh())),
         first_(first_in_cell(points_, vertices_, cell)),
         direct_(BandArray::Zero(lit.mesh().vertex_count(), lit.scene.bands.count())),
