@@ -20,10 +20,9 @@ namespace {
 // "Rooms", "The error estimate").
 constexpr double share_of_interpolation = 0.95, share_of_gather_noise = 0.55;
 constexpr int most_attempts = 6;
-// Share of the target that a later attempt aims at.
+// Share of the target that a later attempt aims at, so that an error which is a twentieth larger
+// than foreseen takes no further one.
 constexpr double share_of_target = 0.95;
-// The noise of a gather falls with this power of its rays (see rays_for_noise()).
-constexpr double noise_law = 2.0 / 3.0;
 
 // Rays to the dome for an error of 1 %, and the power of its inverse by which they grow: the noise
 // of stratified rays falls with rays^(-3/4).
@@ -96,11 +95,12 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
 ShadowOptions Effort::shadows(ManyLights many_lights) const {
   const int most = std::clamp(gather_rays / 4, 64, most_shadow_rays);
   // Clusters of 0.5 % leave noise of 0.35 % in a hall of 10 000 lamps, which beside 0.55 % of the
-  // rays and 0.95 % of interpolation hardly counts. `law` is that of rays_for_noise(). At the
+  // rays and 0.95 % of interpolation hardly counts. At the
   // finest share, no more than DirectLight's most parts are asked; at the coarsest, some 50 are.
-  constexpr double for_one_percent = 0.005, law = 2.0 / 3.0, finest = 1e-5, coarsest = 0.02;
+  constexpr double for_one_percent = 0.005, finest = 1e-5, coarsest = 0.02;
   const double share =
-      for_one_percent * std::pow(static_cast<double>(rays_for_one_percent) / gather_rays, law);
+      for_one_percent *
+      std::pow(static_cast<double>(rays_for_one_percent) / gather_rays, noise_order);
   return {.min_rays = std::max(16, most / 8),
           .max_rays = most,
           .cluster_share = std::clamp(share, finest, coarsest),
@@ -138,24 +138,30 @@ struct Step {
   double elements = 1.0;  // error of interpolation over that before; 1: no element is split
 };
 
-// 80 % of the error takes a quarter to a half more elements, since the error falls with 1/n in
-// smooth light and n^(-1/2) at the edges of shadows. An attempt repeats the gather and the estimate
-// whole, so that a smaller step costs nearly as much.
+// The error of interpolation after a split, over that before. An attempt repeats the gather and the
+// estimate whole, so that a smaller step than to 80 %, which takes up to twice the elements, would
+// cost nearly as much. A larger one than to 60 %, with up to five times the elements, trusts the
+// estimates of the attempt before too far.
 constexpr double largest_split = 0.6, smallest_split = 0.8;
 
 // The cheapest step after which the squared errors of noise and of elements add up to no more than
-// `allowed`. Empty if there is none. Costs are in units of the attempt's final gather. To split
-// elements takes about two more, for pilot gathers and shadow rays, and n grows with error^(-3):
-// measured for 4.6 and 3.6 % in a hall of 4634 patches, 124 and 245 thousand elements, which is
-// error^(-2.8), and 9 s beside 3 s of the final gather.
-std::optional<Step> cheapest_step(double allowed, double noise, double of_elements) {
+// `allowed`, with no more than `most_times` the rays. Empty if there is none. Costs are in units of
+// the attempt's final gather:
+// - pilot gathers and shadow rays of split elements take 2. Measured: 0.8 in the Cornell box, 3 in
+// a
+//   hall of 4634 patches.
+// - n elements grow with error^(-3). Measured for 4.6 and 3.6 % in that hall: 124 and 245 thousand,
+//   which is error^(-2.8). In smooth light they grow with error^(-1), and at the edges of shadows
+//   with error^(-2).
+std::optional<Step> cheapest_step(double allowed, double noise, double of_elements,
+                                  double most_times) {
   constexpr double of_refinement = 2.0, growth = 3.0;
   std::optional<Step> best;
   double least = 0.0;
   for (const double rays : {1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0}) {
-    const double left = allowed - std::pow(noise * std::pow(rays, -noise_law), 2);
+    const double left = allowed - std::pow(noise * std::pow(rays, -noise_order), 2);
     const double share = std::sqrt(std::max(left, 0.0)) / of_elements;
-    if (share < largest_split || (rays == 1.0 && share >= 1.0)) continue;
+    if (share < largest_split || rays > most_times) continue;
     const double elements = share < 1.0 ? std::min(share, smallest_split) : 1.0;
     const double cost =
         elements < 1.0 ? std::pow(elements, -growth) * (of_refinement + rays) : rays;
@@ -179,7 +185,7 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
   }
   const double without = std::sqrt(std::max(error * error - noise * noise, 0.0));
   if (!can_split && without >= target) return std::nullopt;
-  // The error left beside an independent `other` if both together are to be share_of_target.
+  // The error left beside an independent `other` if both together are share_of_target.
   const auto beside = [target](double other) {
     constexpr double least = 0.1;
     return std::sqrt(
@@ -207,10 +213,11 @@ std::optional<Effort> next_effort(const Effort& spent, double target, double err
     const double of_elements = std::min(reached, without);
     const double besides = without * without - of_elements * of_elements;
     const double allowed = std::pow(share_of_target * target, 2) - besides;
-    const auto step = cheapest_step(allowed, noise, of_elements);
-    next.refine_tolerance = (step ? step->elements : largest_split) * reached;
+    const double most = std::max(1.0, static_cast<double>(most_gather_rays) / spent.gather_rays);
+    const auto step = cheapest_step(allowed, noise, of_elements, most);
     if (step) next.gather_rays = static_cast<int>(std::lround(step->rays * spent.gather_rays));
-    if (step && !(step->elements < 1.0)) next.refine_tolerance = spent.refine_tolerance;
+    const double elements = step ? step->elements : largest_split;
+    if (elements < 1.0) next.refine_tolerance = elements * reached;
   }
   const bool is_more =
       next.gather_rays > spent.gather_rays || next.refine_tolerance < spent.refine_tolerance;

@@ -156,17 +156,14 @@ void even_out_own_noise(const LitScene& lit, const PilotGather& pilot, BandArray
 
 // Joins each vertex's gather with the prediction of the pilot gather and with its neighbours.
 void join_predictions(const LitScene& lit, const PilotGather& pilot, GatheredIrradiance& gather) {
-  // Half of the difference between a stratified set's two halves is more than the error of the
-  // whole set (see estimate_error).
-  constexpr float share_of_whole_set = 0.5f;
-  const Eigen::ArrayXf before = share_of_whole_set * gather.variance;
+  constexpr auto share = static_cast<float>(of_whole_set);
+  const Eigen::ArrayXf before = share * gather.variance;
   Eigen::ArrayXf after = before;
   combine_with_predictions(pilot.predictions, pilot.indirect, vertex_patches(lit.mesh()),
                            lit.scene.bands.count(), gather.indirect, after);
   if (pilot.tree) even_out_own_noise(lit, pilot, gather.indirect, after);
   // Without noise there is nothing to compare.
-  gather.variance =
-      (before > 0.0f && after > 0.0f).select(after / share_of_whole_set, gather.variance);
+  gather.variance = (before > 0.0f && after > 0.0f).select(after / share, gather.variance);
 }
 
 }  // namespace

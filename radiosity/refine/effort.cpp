@@ -23,9 +23,9 @@ int patch_count_for(double target, int most) {
 }
 
 int rays_for_noise(int rays, double found, double target) {
-  constexpr double order = 2.0 / 3.0, fewest = 128.0, most = 1 << 15;
-  const double wanted = rays * std::pow(found / target, 1.0 / order);
-  const double enough = std::clamp(wanted, fewest, most);
+  constexpr double fewest = 128.0;
+  const double wanted = rays * std::pow(found / target, 1.0 / noise_order);
+  const double enough = std::clamp(wanted, fewest, double{most_gather_rays});
   const auto whole = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::ceil(enough))));
   for (const int eighths : {5, 6, 7}) {
     const int less = eighths * (whole / 8);

@@ -15,9 +15,15 @@ int form_factor_rays(double target, int most);
 /// of a gather read light at vertices, which was gathered itself.
 int patch_count_for(double target, int most);
 
+/// The noise of a gather in a room falls with about this power of the number of its rays, which are
+/// stratified.
+inline constexpr double noise_order = 2.0 / 3.0;
+/// Most rays of a gather that an accuracy asks for.
+inline constexpr int most_gather_rays = 1 << 15;
+
 /// Rays of a gather that leave the noise `target`, if `rays` of them left `found`; both relative to
-/// the mean irradiance. The error of stratified rays in a room falls with about the power 2/3 of
-/// their number. 128 to 2^15, a power of two or five to seven eighths of one, which stratify well.
+/// the mean irradiance (see noise_order). 128 to most_gather_rays, a power of two or five to seven
+/// eighths of one, which stratify well.
 int rays_for_noise(int rays, double found, double target);
 
 /// Sample points of an error estimate for a solution with so many `vertices`: `asked`, or two, four

@@ -76,7 +76,7 @@ int VertexEffort::pilot_rays(int rays) const {
 // the differences that the gathers are made for.
 void VertexEffort::share_pilot_rays(const std::vector<InterpolatedVertex>& read) {
   const PatchMesh& mesh = elements_.base();
-  constexpr int times_at_least = 2;
+  constexpr int times_alone = 2;
   std::vector<int> rays;
   for (const int of_part : rays_of_part_) rays.push_back(pilot_rays(of_part));
   rays_ = share_rays(mesh, {}, parts_, rays);
@@ -85,16 +85,17 @@ void VertexEffort::share_pilot_rays(const std::vector<InterpolatedVertex>& read)
   for (const InterpolatedVertex& at : read) shares[at.vertex] = 1;
   const int times_if_shared = times_at_vertices_that_share(read);
   for (int v = 0; v < mesh.vertex_count(); ++v) {
-    const int times = shares[v] != 0 ? times_if_shared : times_at_least;
+    const int times = shares[v] != 0 ? times_if_shared : times_alone;
     rays_[v] = std::min(times * rays_[v], rays[parts_.judged_with(patch[v])]);
   }
 }
 
-// Rays at vertices that share gathers, over an eighth of the pilot rays. An eighth may be 4 rays.
-// Where one of 4 rays in each of both gathers met the same bright spot far away, such as the top of
-// a column below a lamp, the difference from the records was a stripe of twice the light. Such a
-// stripe is dimmer and rarer with more rays. The rays are as many as take half of those of the
-// final gather: among leaves, which have most of the vertices, that is an eighth.
+// Rays at vertices that share gathers, over those by area, which are down to an eighth of the pilot
+// rays. An eighth may be 4 rays. If one of 4 rays in each of both gathers meets the same bright
+// spot far away, such as the top of a column below a lamp, the difference from the records seems to
+// be twice the light, and makes a bright stripe. More rays make such a stripe dimmer and rarer.
+// Both gathers cast no more than half of the final gather's rays, so that a solve takes little
+// longer: leaves, which have most of a scene's vertices, keep the eighth.
 int VertexEffort::times_at_vertices_that_share(const std::vector<InterpolatedVertex>& read) const {
   constexpr int most_times = 8;
   std::int64_t of_pilots = 0, of_final = 0;

@@ -19,8 +19,7 @@ namespace lightwell {
 /// - a sixteenth, but 64 at least, if the noise of the final gather has a goal;
 /// - a sixteenth if there are more than 32 768 vertices at the start;
 /// - down to a quarter of that at the smallest elements of the start;
-/// - down to an eighth at vertices of SharedGathers::read, or twice to eight times as many as long
-/// as
+/// - down to an eighth at vertices of SharedGathers::read, or two, four or eight times that, while
 ///   these vertices take no more than half of the rays of the start's final gather.
 ///
 /// The light of the sky has a multiple of the noise asked for at the vertices of small elements, if

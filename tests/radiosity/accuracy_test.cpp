@@ -1,4 +1,5 @@
 #include "radiosity/accuracy.h"
+#include "radiosity/refine/effort.h"
 
 #include <gtest/gtest.h>
 
@@ -232,24 +233,44 @@ TEST(Accuracy, EachAttemptIsWorthItsTime) {
   EXPECT_LE(coarse->refine_tolerance, 0.8 * reached.estimate);
 }
 
-// Where noise takes a good part of the error, a few more rays and slightly smaller elements cost
-// less than elements alone, whose number grows with the third power of the error that they have to
-// lose.
+// A few more rays and slightly smaller elements cost less than elements alone if noise takes a good
+// part of the error: elements grow with the third power of the error that they have to lose.
 TEST(Accuracy, NoiseAndElementsShareTheStep) {
-  const Effort first = first_effort(0.05, true);
-  RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.046};
-  // Besides noise and elements, 0.0588^2 - 0.0242^2 - 0.046^2 = 0.0275^2 stays. With the same rays,
-  // elements would have sqrt(0.0475^2 - 0.0275^2 - 0.0242^2) = 0.0303, two thirds of theirs.
-  const auto next = next_effort(first, 0.05, 0.0588, 0.0242, reached, 0);
+  // A hall in daylight, as measured after its first attempt.
+  constexpr double target = 0.05, error = 0.0588, noise = 0.0242, elements = 0.046;
+  const Effort first = first_effort(target, true);
+  RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = elements};
+  const auto next = next_effort(first, target, error, noise, reached, 0);
   ASSERT_TRUE(next);
   EXPECT_GT(next->gather_rays, first.gather_rays);
-  EXPECT_GT(next->refine_tolerance, 0.0303);
-  EXPECT_LE(next->refine_tolerance, 0.8 * reached.estimate);
-  // Both together meet what is allowed: noise falls with rays^(-2/3).
+  // Independent errors add by their squares. An attempt aims at 95 % of the target; what neither
+  // noise nor elements explain stays.
+  constexpr double allowed = 0.95 * target;
+  const double stays = std::sqrt(error * error - noise * noise - elements * elements);
+  // The tolerance of elements that make up for the noise of the same rays: two thirds of theirs.
+  const double alone = std::sqrt(allowed * allowed - stays * stays - noise * noise);
+  EXPECT_GT(next->refine_tolerance, alone);
+  // A split is to four fifths or less (see EachAttemptIsWorthItsTime).
+  EXPECT_LE(next->refine_tolerance, 0.8 * elements);
   const double times = static_cast<double>(next->gather_rays) / first.gather_rays;
   const double left =
-      std::hypot(0.0275, next->refine_tolerance, 0.0242 * std::pow(times, -2.0 / 3.0));
-  EXPECT_LE(left, 0.0475 * 1.001);  // the share 0.0275 is rounded to three digits
+      std::hypot(stays, next->refine_tolerance, noise * std::pow(times, -noise_order));
+  constexpr double rounding = 1e-12;  // of some ten operations in double precision, generously
+  EXPECT_LE(left, allowed * (1.0 + rounding));
+}
+
+// A step casts no more rays than any accuracy asks for, however noisy the attempt before was.
+TEST(Accuracy, RaysOfAStepHaveALimit) {
+  const Effort spent{.refine_tolerance = 0.001, .gather_rays = most_gather_rays / 2};
+  RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.001};
+  // Noise alone misses the target twenty times, which takes 20^(3/2) = 89 times the rays.
+  const auto next = next_effort(spent, 0.001, 0.02, 0.0199, reached, 0);
+  ASSERT_TRUE(next);
+  EXPECT_LE(next->gather_rays, most_gather_rays);
+  // The same where elements are to be split as well.
+  const auto both = next_effort(spent, 0.001, 0.0014, 0.0011, reached, 0);
+  ASSERT_TRUE(both);
+  EXPECT_LE(both->gather_rays, most_gather_rays);
 }
 
 // The error contains the noise of both gathers, so an estimate of the noise above it is too high.
