@@ -27,7 +27,7 @@ constexpr ShadowOptions fewest_shadow_rays{.min_rays = 32, .max_rays = 256};
 constexpr double of_whole_solution = 0.7;
 
 // Per element, a number proportional to the error that interpolation may leave: the range of the
-// corners' irradiance over the reference, plus (in the square) 5 % for shadows that no corner sees.
+// corners' irradiance over the reference, plus (in the square) unseen_range.
 Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance,
                           const SceneParts& parts) {
   const Eigen::ArrayXd reference = error_references(mesh, irradiance, parts);
@@ -35,16 +35,9 @@ Eigen::ArrayXf indicators(const PatchMesh& mesh, const BandArray& irradiance,
   Eigen::ArrayXf indicator = Eigen::ArrayXf::Zero(mesh.element_count());
   for (int e = 0; e < mesh.element_count(); ++e) {
     if (judged[static_cast<std::size_t>(mesh.patch[e])] == 0 || !(reference[e] > 0.0)) continue;
-    Spectrum low = irradiance.row(mesh.corners[e][0]).transpose(), high = low;
-    for (int c = 1; c < mesh.corner_count(e); ++c) {
-      const Spectrum E = irradiance.row(mesh.corners[e][c]).transpose();
-      low = low.min(E);
-      high = high.max(E);
-    }
-    constexpr double unseen = 0.05;
-    const double square = (high - low).cast<double>().square().mean();
-    indicator[e] =
-        static_cast<float>(std::sqrt(square / (reference[e] * reference[e]) + unseen * unseen));
+    const double square = squared_range(mesh, irradiance, e);
+    indicator[e] = static_cast<float>(
+        std::sqrt(square / (reference[e] * reference[e]) + unseen_range * unseen_range));
   }
   return indicator;
 }

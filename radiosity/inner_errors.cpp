@@ -45,31 +45,40 @@ double squared_error(const PatchMesh& mesh, const BandArray& irradiance, const I
   return (E - gathered).cast<double>().square().mean();
 }
 
-// Gives elements that were not measured the mean square of those of their surface that were, or of
-// all.
-void spread_to_surfaces(const PatchMesh& mesh, std::vector<InnerError>& elements) {
-  struct Mean {
-    double sum = 0.0;
-    int count = 0;
-    void add(double square) {
-      sum += square;
-      ++count;
+// Squares of elements as the range of their corners lets expect, up to a factor.
+double expected_square(const PatchMesh& mesh, const BandArray& irradiance,
+                       const Eigen::ArrayXd& reference, int element) {
+  return squared_range(mesh, irradiance, element) / std::pow(reference[element], 2) +
+         std::pow(unseen_range, 2);
+}
+
+// Gives elements that were not measured their expected square, times the ratio of measured squares
+// to expected ones of their surface, or of all (a ratio estimator; Cochran 1977, chapter 6).
+void spread_to_surfaces(const PatchMesh& mesh, const std::vector<double>& expected,
+                        std::vector<InnerError>& elements) {
+  struct Ratio {
+    double measured = 0.0, expected = 0.0;
+    void add(double square, double as_expected) {
+      measured += square;
+      expected += as_expected;
     }
   };
-  std::map<int, Mean> of_surface;
-  Mean of_all;
+  std::map<int, Ratio> of_surface;
+  Ratio of_all;
   const auto surface = [&](int element) { return mesh.surface[mesh.patch[element]]; };
-  for (const auto& [element, square] : elements) {
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    const auto& [element, square] = elements[i];
     if (square < 0.0) continue;
-    of_surface[surface(element)].add(square);
-    of_all.add(square);
+    of_surface[surface(element)].add(square, expected[i]);
+    of_all.add(square, expected[i]);
   }
-  if (of_all.count == 0) return;
-  for (auto& [element, square] : elements) {
+  if (!(of_all.expected > 0.0)) return;
+  for (std::size_t i = 0; i < elements.size(); ++i) {
+    auto& [element, square] = elements[i];
     if (!(square < 0.0)) continue;
     const auto own = of_surface.find(surface(element));
-    const Mean& mean = own != of_surface.end() ? own->second : of_all;
-    square = mean.sum / mean.count;
+    const Ratio& ratio = own != of_surface.end() ? own->second : of_all;
+    square = ratio.measured / ratio.expected * expected[i];
   }
 }
 
@@ -101,6 +110,10 @@ void measure_inside(const LitScene& lit, const GatherOptions& gather,
   const Eigen::ArrayXd reference = error_references(mesh, irradiance, solution.parts);
   std::erase_if(elements, [&](const InnerError& of) { return !(reference[of.element] > 0.0); });
   if (elements.empty()) return;
+  std::vector<double> expected;
+  for (const InnerError& element : elements) {
+    expected.push_back(expected_square(mesh, irradiance, reference, element.element));
+  }
   const auto all = static_cast<int>(elements.size());
   const int most =
       std::min(effort.most, elements_in_budget(effort.rays, lit.direct_light.light_count()));
@@ -131,7 +144,7 @@ void measure_inside(const LitScene& lit, const GatherOptions& gather,
     }
     of(i).square = std::max(square, 0.0) / std::pow(reference[of(i).element], 2);
   }
-  spread_to_surfaces(mesh, elements);
+  spread_to_surfaces(mesh, expected, elements);
 }
 
 void raise_to_measured(const std::vector<InnerError>& elements, RadiositySolution& solution) {

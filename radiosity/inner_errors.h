@@ -38,8 +38,8 @@ struct InnerEffort {
 ///
 /// At most `effort.most` elements are measured, and fewer where lights are many: two million rays
 /// of hemispheres and towards lamps, beside those towards the sky. Every second, third, ... element
-/// is measured where there are more, and the others of a surface get the mean square of those that
-/// are.
+/// is measured where there are more. The squares of the others follow the squared range of their
+/// corners' irradiance, by the ratio of those of their surface that are measured.
 ///
 /// The caster of `lit` is of the solution's mesh; `gather` decides the shadow rays. Throws
 /// Interrupted when progress says stop.

@@ -93,4 +93,14 @@ Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradian
   return references;
 }
 
+double squared_range(const PatchMesh& mesh, const BandArray& irradiance, int element) {
+  Spectrum low = irradiance.row(mesh.corners[element][0]).transpose(), high = low;
+  for (int c = 1; c < mesh.corner_count(element); ++c) {
+    const Spectrum E = irradiance.row(mesh.corners[element][c]).transpose();
+    low = low.min(E);
+    high = high.max(E);
+  }
+  return (high - low).cast<double>().square().mean();
+}
+
 }  // namespace lightwell

@@ -58,4 +58,12 @@ PartMeans part_means(const PatchMesh& mesh, const BandArray& irradiance, const S
 Eigen::ArrayXd error_references(const PatchMesh& mesh, const BandArray& irradiance,
                                 const SceneParts& parts = {});
 
+/// The squared range of `irradiance` (vertices x bands) over the corners of an element, mean of the
+/// bands, (W/m^2)^2: linear interpolation errs by a share of the range.
+double squared_range(const PatchMesh& mesh, const BandArray& irradiance, int element);
+
+/// Range of irradiance, relative to error_reference(), that stands for shadows that no corner of an
+/// element sees.
+inline constexpr double unseen_range = 0.05;
+
 }  // namespace lightwell

@@ -122,10 +122,9 @@ double InterpolationError::expected(int cell, int side) const {
     low = low.min(E);
     high = high.max(E);
   }
-  constexpr double unseen = 0.05;
   return (mean_square(high - low) + shadows_.greatest_peak_error(cell, side)) /
              std::pow(reference(cell, side), 2) +
-         std::pow(unseen, 2);
+         std::pow(unseen_range, 2);
 }
 
 // Irradiance that errors in the cell are relative to, W/m^2.

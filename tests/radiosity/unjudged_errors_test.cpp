@@ -62,6 +62,48 @@ TEST(UnjudgedErrors, AreTheDifferenceFromTheLightOfTheLamp) {
   }
 }
 
+// A low lamp lights a few places of a large floor steeply and the rest evenly. Elements that are
+// not measured have the error that the range of their corners lets expect.
+TEST(InnerErrors, OfElementsThatAreNotMeasuredFollowTheRange) {
+  Scene scene;
+  add_polygon(scene, "floor", add_material(scene, diffuse(scene.bands, 0.0f)),
+              {{-4, -4, 0}, {6, -4, 0}, {6, 6, 0}, {-4, 6, 0}});
+  add_polygon(scene, "lamp", add_material(scene, diffuse(scene.bands, 0.0f, exitance)), lamp);
+  const PatchMesh mesh =
+      build_patches(scene, {.max_patch_size = 0.5, .elements_per_patch_edge = 2});
+  const ElementCaster caster(mesh);
+  const DirectLight direct_light(scene, mesh);
+  RadiositySolution solution = even_light(scene, mesh);
+  std::vector<InnerError> elements;
+  for (int e = 0; e < mesh.element_count(); ++e) {
+    if (mesh.surface[mesh.patch[e]] != 0 || mesh.is_back[mesh.patch[e]] != 0) continue;
+    elements.push_back({e});
+    for (int c = 0; c < mesh.corner_count(e); ++c) {
+      const int v = mesh.corners[e][c];
+      const double E = std::abs(point_to_polygon(mesh.position(v), Vector3d::UnitZ(), lamp));
+      solution.direct_irradiance.row(v).setConstant(exitance * static_cast<float>(E));
+    }
+  }
+  const auto squares = [&](int most) {
+    std::vector<InnerError> measured = elements;
+    measure_inside({scene, caster, direct_light}, {}, solution, {.most = most}, measured);
+    return measured;
+  };
+  const auto all = static_cast<int>(elements.size());
+  const std::vector<InnerError> truth = squares(all), some = squares(all / 16);
+  int exceeded = 0;
+  double sum = 0.0, sum_of_truth = 0.0;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    // Bounds are twice the error.
+    exceeded += truth[i].square > 4.0 * some[i].square ? 1 : 0;
+    sum += some[i].square;
+    sum_of_truth += truth[i].square;
+  }
+  std::printf("%d elements, %d measured: %d beyond their bounds, squares %.3g of %.3g\n", all,
+              all / 16, exceeded, sum, sum_of_truth);
+  EXPECT_LE(exceeded, all / 20);
+}
+
 TEST(UnjudgedErrors, LeaveScenesAloneInWhichAllSurfacesCount) {
   Scene scene = dark_floor(0.0f);
   scene.materials[0].reflectance.setConstant(0.5f);
