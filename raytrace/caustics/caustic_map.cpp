@@ -1,21 +1,34 @@
 #include "raytrace/caustics/caustic_map.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
-#include <numbers>
-#include <numeric>
-#include <span>
+#include <cstddef>
 #include <utility>
 
-#include "raytrace/caustics/disc_kernel.h"
+#include "raytrace/caustics/photon_tree.h"
 #include "scene/parallel.h"
 
 namespace lightwell {
 namespace {
 
-constexpr int subtree_size = 4096;  // most discs of a thread's unit of work
+// Standard deviation of the noise of independent photons, W/m^2, in the brightest band: that of the
+// bands' mean, as the band's light is to the mean's. A coloured light is in few bands.
+double noise_of(const PhotonDensity& density) {
+  const double mean = double{density.irradiance.mean()};
+  return mean > 0.0 ? std::sqrt(density.variance) * double{density.irradiance.maxCoeff()} / mean
+                    : 0.0;
+}
+
+// The greatest difference of any band, W/m^2.
+double difference(const PhotonDensity& a, const PhotonDensity& b) {
+  return double{(a.irradiance - b.irradiance).abs().maxCoeff()};
+}
+
+// 1 up to `whole` times `noise`, falling to 0 at `none` times `noise`.
+double fade(double difference, double whole, double none, double noise) {
+  if (!(noise > 0.0)) return 0.0;
+  return std::clamp((none - difference / noise) / (none - whole), 0.0, 1.0);
+}
 
 }  // namespace
 
@@ -27,217 +40,90 @@ int CausticMap::neighbours(std::size_t count) {
 }
 
 CausticMap::CausticMap(const PatchMesh& mesh, const CausticPhotons& photons)
-    : regions_(light_regions(mesh)), root_(static_cast<std::size_t>(regions_.count()), -1) {
-  const int count = static_cast<int>(photons.count());
-  power_.resize(0, mesh.emission.cols());
-  if (count == 0) return;
-  for (const Eigen::Vector3d& p : photons.position) origin_ += p / count;
-  const auto region_of = [&](int photon) {
-    return regions_.of_element[static_cast<std::size_t>(photons.element[photon])];
-  };
-  std::vector<int> order(static_cast<std::size_t>(count));
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](int a, int b) { return region_of(a) < region_of(b); });
-  for (const int i : order) {
-    const auto p = static_cast<std::size_t>(i);
-    tree_.discs.push_back({.center = (photons.position[p] - origin_).cast<float>(),
-                           .normal = element_center(mesh, photons.element[p]).normal.cast<float>(),
-                           .photon = i});
-  }
+    : regions_(light_regions(mesh)), bands_(static_cast<int>(mesh.emission.cols())) {
+  if (photons.count() == 0) return;
   const int k = neighbours(photons.count());
-  for (int begin = 0; begin < count;) {
-    const int region = region_of(order[static_cast<std::size_t>(begin)]);
-    int end = begin;
-    while (end < count && region_of(order[static_cast<std::size_t>(end)]) == region) ++end;
-    root_[static_cast<std::size_t>(region)] = tree_.build(begin, end);
-    begin = end;
+  const PhotonSums each = each_photon(photons);
+  PhotonTree tree = build_photon_tree(mesh, regions_, each);
+  const PhotonSums small = clustered(tree, each, DiscTree::leaf_size),
+                   large = clustered(tree, each, 4 * DiscTree::leaf_size);
+  layers_.emplace_back(regions_, std::move(tree), each, k);
+  for (const PhotonSums* clusters : {&small, &large}) {
+    // A disc of more than a quarter of a region would be folded more than once.
+    const int fewest = 4 * k;
+    layers_.emplace_back(regions_, build_photon_tree(mesh, regions_, *clusters), *clusters, k,
+                         fewest);
   }
-  std::vector<Folded> folded(tree_.discs.size());
-  for (int region = 0; region < regions_.count(); ++region) {
-    if (root_[static_cast<std::size_t>(region)] < 0) continue;
-    set_radii(region, k);
-    fold_discs(region, folded);
-  }
-  insert(folded, photons.power);
+  measure_noise(mesh, small, k);
 }
 
-void CausticMap::set_radii(int region, int k) {
-  const int root = root_[static_cast<std::size_t>(region)];
-  const DiscTree::Node& all = tree_.nodes[static_cast<std::size_t>(root)];
-  const auto& bounds = regions_.bounds[static_cast<std::size_t>(region)];
-  // With at most k photons, each is spread over the whole region.
-  const bool are_few = all.end - all.begin <= k;
-  float size2 = (all.high - all.low).square().sum();
-  for (const LightRegions::Edge& edge : bounds) {
-    const Eigen::Array3f from = (edge.from - origin_).cast<float>().array();
-    size2 = std::max(size2, 4.0f * (from - 0.5f * (all.low + all.high)).square().sum());
+// Photons of stratified samples have less noise than independent ones, and those by way of few
+// facets may have more. Measured at pairs of clusters a disc apart: the blur of the wider discs is
+// about the same at both, so that noise alone differs. The median of a normal
+// distribution's deviations is 0.6745 of its standard deviation.
+void CausticMap::measure_noise(const PatchMesh& mesh, const PhotonSums& clusters, int k) {
+  constexpr double median_of_normal = 0.6745;
+  constexpr std::size_t most_samples = 512;
+  noise_.assign(static_cast<std::size_t>(regions_.count()), 0.0f);
+  // Clusters follow each other in space, those of a region together.
+  std::vector<std::vector<std::size_t>> of_region(noise_.size());
+  for (std::size_t i = 0; i < clusters.element.size(); ++i) {
+    const auto element = static_cast<std::size_t>(clusters.element[i]);
+    of_region[static_cast<std::size_t>(regions_.of_element[element])].push_back(i);
   }
-  const auto set = [&](const DiscTree::Node& group, float radius2) {
-    for (int i = group.begin; i < group.end; ++i) {
-      tree_.discs[static_cast<std::size_t>(i)].radius2 = std::max(radius2, 1e-12f * size2);
-    }
-  };
-  if (are_few) return set(all, size2);
-  std::vector<int> subtrees;
-  tree_.collect(root, subtree_size, subtrees);
-  parallel_for(static_cast<int>(subtrees.size()), 1, [&](int begin, int end) {
-    NearestDiscs nearest(tree_, k);
-    for (int s = begin; s < end; ++s) {
-      const int subtree = subtrees[static_cast<std::size_t>(s)];
-      // About k / 10 neighbouring discs share a radius, which varies little over a small part of a
-      // disc.
-      constexpr int part = 10;
-      std::vector<int> groups;
-      tree_.collect(subtree, k / part, groups);
-      for (const int g : groups) {
-        const DiscTree::Node& group = tree_.nodes[static_cast<std::size_t>(g)];
-        set(group, nearest.distance2_to_last(root, 0.5f * (group.low + group.high)));
+  // Discs two radii apart, 4 k photons, share none.
+  const auto apart = static_cast<std::size_t>(std::max(1, 4 * k / DiscTree::leaf_size));
+  parallel_for(regions_.count(), 1, [&](int begin, int end) {
+    for (int region = begin; region < end; ++region) {
+      const std::vector<std::size_t>& own = of_region[static_cast<std::size_t>(region)];
+      if (!layers_.back().cover(region) || own.size() <= apart) continue;
+      const std::size_t pairs = own.size() - apart, samples = std::min(most_samples, pairs);
+      std::vector<double> ratios;
+      for (std::size_t s = 0; s < samples; ++s) {
+        Spectrum both = Spectrum::Zero(bands_);
+        double noise2 = 0.0;
+        for (const std::size_t end_of_pair : {std::size_t{0}, apart}) {
+          const std::size_t i = own[s * pairs / samples + end_of_pair];
+          const Eigen::Vector3d normal = element_center(mesh, clusters.element[i]).normal;
+          const PhotonDensity narrow = layers_[0].at(clusters.position[i], normal, region),
+                              wide = layers_[1].at(clusters.position[i], normal, region);
+          const float sign = end_of_pair == 0 ? 1.0f : -1.0f;
+          both += sign * (narrow.irradiance - wide.irradiance);
+          noise2 += std::pow(noise_of(narrow), 2);
+        }
+        if (noise2 > 0.0) ratios.push_back(double{both.abs().maxCoeff()} / std::sqrt(noise2));
       }
-      // The radius of a disc that reaches over the boundary was too large, since only its area
-      // within has neighbours.
-      const auto near = edges_about(tree_.nodes[static_cast<std::size_t>(subtree)], bounds);
-      for (const int g : groups) {
-        const DiscTree::Node& group = tree_.nodes[static_cast<std::size_t>(g)];
-        const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(group.begin)];
-        const Eigen::Vector3f middle = 0.5f * (group.low + group.high);
-        set(group, disc.radius2 * static_cast<float>(disc_within(
-                                      middle.cast<double>() + origin_, disc.normal.cast<double>(),
-                                      std::sqrt(double{disc.radius2}), edges_about(group, near))));
-      }
+      if (ratios.empty()) continue;
+      const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+      std::ranges::nth_element(ratios, middle);
+      noise_[static_cast<std::size_t>(region)] = static_cast<float>(*middle / median_of_normal);
     }
   });
-}
-
-// Returns the edges whose boxes the discs of a node may reach.
-std::vector<LightRegions::Edge> CausticMap::edges_about(
-    const DiscTree::Node& node, std::span<const LightRegions::Edge> edges) const {
-  float radius2 = 0.0f;
-  for (int i = node.begin; i < node.end; ++i) {
-    radius2 = std::max(radius2, tree_.discs[static_cast<std::size_t>(i)].radius2);
-  }
-  const double r = std::sqrt(double{radius2});
-  const Eigen::Array3d low = node.low.cast<double>() - r, high = node.high.cast<double>() + r;
-  std::vector<LightRegions::Edge> found;
-  for (const LightRegions::Edge& edge : edges) {
-    const Eigen::Array3d from = (edge.from - origin_).array(), to = (edge.to - origin_).array();
-    if ((from.min(to) <= high).all() && (from.max(to) >= low).all()) found.push_back(edge);
-  }
-  return found;
-}
-
-void CausticMap::fold_discs(int region, std::vector<Folded>& folded) const {
-  std::vector<int> subtrees;
-  tree_.collect(root_[static_cast<std::size_t>(region)], subtree_size, subtrees);
-  const auto fold_leaf = [&](const DiscTree::Node& leaf,
-                             std::span<const LightRegions::Edge> edges) {
-    for (int i = leaf.begin; i < leaf.end; ++i) {
-      const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(i)];
-      const Eigen::Vector3d center = disc.center.cast<double>() + origin_,
-                            normal = disc.normal.cast<double>();
-      const FoldedDisc found = fold(center, normal, std::sqrt(double{disc.radius2}), edges);
-      Folded& result = folded[static_cast<std::size_t>(i)];
-      result.weight =
-          2.0f / (std::numbers::pi_v<float> * disc.radius2 * static_cast<float>(found.within));
-      for (const Eigen::Vector3d& mirrored : found.mirrored) {
-        result.mirrored.emplace_back((mirrored - origin_).cast<float>());
-      }
-    }
-  };
-  parallel_for(static_cast<int>(subtrees.size()), 1, [&](int begin, int end) {
-    for (int s = begin; s < end; ++s) {
-      const int subtree = subtrees[static_cast<std::size_t>(s)];
-      const auto near = edges_about(tree_.nodes[static_cast<std::size_t>(subtree)],
-                                    regions_.bounds[static_cast<std::size_t>(region)]);
-      std::vector<int> leaves;
-      tree_.collect(subtree, DiscTree::leaf_size, leaves);
-      for (const int l : leaves) {
-        const DiscTree::Node& leaf = tree_.nodes[static_cast<std::size_t>(l)];
-        fold_leaf(leaf, edges_about(leaf, near));
-      }
-    }
-  });
-}
-
-// Inserts mirror images after their own discs, and fits the boxes of all nodes to the discs'
-// extents.
-void CausticMap::insert(const std::vector<Folded>& folded, const BandArray& power) {
-  std::size_t count = tree_.discs.size();
-  for (const Folded& disc : folded) count += disc.mirrored.size();
-  std::vector<DiscTree::Disc> all;
-  all.reserve(count);
-  power_.resize(static_cast<Eigen::Index>(count), power.cols());
-  const auto add = [&](const DiscTree::Disc& disc, float weight) {
-    // Rows of power_ follow the order of the discs, so that discs close in space are close in
-    // memory.
-    power_.row(static_cast<Eigen::Index>(all.size())) = weight * power.row(disc.photon);
-    all.push_back(disc);
-  };
-  for (DiscTree::Node& leaf : tree_.nodes) {
-    if (leaf.second >= 0) continue;
-    const auto begin = static_cast<int>(all.size());
-    for (int i = leaf.begin; i < leaf.end; ++i) {
-      DiscTree::Disc disc = tree_.discs[static_cast<std::size_t>(i)];
-      const Folded& more = folded[static_cast<std::size_t>(i)];
-      add(disc, more.weight);
-      for (const Eigen::Vector3f& center : more.mirrored) {
-        disc.center = center;
-        add(disc, more.weight);
-      }
-    }
-    leaf.begin = begin;
-    leaf.end = static_cast<int>(all.size());
-  }
-  tree_.discs = std::move(all);
-  for (auto n = static_cast<int>(tree_.nodes.size()) - 1; n >= 0; --n) {
-    DiscTree::Node& node = tree_.nodes[static_cast<std::size_t>(n)];
-    if (node.second >= 0) {
-      const DiscTree::Node& first = tree_.nodes[static_cast<std::size_t>(n) + 1];
-      const DiscTree::Node& second = tree_.nodes[static_cast<std::size_t>(node.second)];
-      node = {first.low.min(second.low), first.high.max(second.high), first.begin, second.end,
-              node.second};
-      continue;
-    }
-    for (int i = node.begin; i < node.end; ++i) {
-      const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(i)];
-      const float r = std::sqrt(disc.radius2);
-      node.low = node.low.min(disc.center.array() - r);
-      node.high = node.high.max(disc.center.array() + r);
-    }
-  }
 }
 
 Spectrum CausticMap::irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                                 int element) const {
-  Spectrum E = Spectrum::Zero(power_.cols());
-  const int root =
-      root_[static_cast<std::size_t>(regions_.of_element[static_cast<std::size_t>(element)])];
-  if (root < 0) return E;
-  const Eigen::Vector3f p = (point - origin_).cast<float>(), n = normal.cast<float>();
-  // The cosine of 60 degrees: between surfaces at larger angles light is not shared.
-  constexpr float most_bend = 0.5f;
-  std::array<int, 64> stack;
-  int depth = 0;
-  stack[depth++] = root;
-  while (depth > 0) {
-    const int number = stack[--depth];
-    const DiscTree::Node& node = tree_.nodes[static_cast<std::size_t>(number)];
-    if ((p.array() < node.low).any() || (p.array() > node.high).any()) continue;
-    if (node.second >= 0) {
-      stack[depth++] = node.second;
-      stack[depth++] = number + 1;
-      continue;
-    }
-    for (int i = node.begin; i < node.end; ++i) {
-      const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(i)];
-      const float d2 = (disc.center - p).squaredNorm();
-      if (!(d2 < disc.radius2) || !(n.dot(disc.normal) > most_bend)) continue;
-      const float K = 1.0f - d2 / disc.radius2;
-      const float* power = power_.data() + i * power_.cols();
-      for (Eigen::Index k = 0; k < E.size(); ++k) E[k] += K * power[k];
-    }
-  }
-  return E;
+  if (layers_.empty()) return Spectrum::Zero(bands_);
+  const int region = regions_.of_element[static_cast<std::size_t>(element)];
+  const PhotonDensity narrow = layers_[0].at(point, normal, region);
+  if (!layers_.back().cover(region)) return narrow.irradiance;
+  // Something sharp that both wider discs blur alike shows against the narrow one.
+  constexpr double sure = 3.0, excluded = 4.0;
+  const double measured = double{noise_[static_cast<std::size_t>(region)]};
+  const double noise = measured * noise_of(narrow);
+  const PhotonDensity wide = layers_[1].at(point, normal, region);
+  double share = fade(difference(narrow, wide), sure, excluded, noise);
+  if (!(share > 0.0)) return narrow.irradiance;
+  // The error of the blur grows with the square of the radius, so that the wide disc has a third of
+  // the difference from the widest one, with twice the radius.
+  constexpr double whole = 0.5, none = 1.5;
+  const PhotonDensity widest = layers_[2].at(point, normal, region);
+  const double blur = difference(wide, widest);
+  share *= fade(blur, whole, none, noise);
+  const double of_widest = fade(blur, whole, none, measured * noise_of(wide));
+  const Spectrum smooth =
+      wide.irradiance + static_cast<float>(of_widest) * (widest.irradiance - wide.irradiance);
+  return narrow.irradiance + static_cast<float>(share) * (smooth - narrow.irradiance);
 }
 
 std::shared_ptr<const CausticMap> trace_caustics(const Scene& scene, const ElementCaster& caster,

@@ -2,25 +2,28 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <span>
 #include <vector>
 
 #include "mesh/elements/element_caster.h"
 #include "radiosity/paths/caustic_photons.h"
-#include "raytrace/caustics/disc_tree.h"
 #include "raytrace/caustics/light_regions.h"
+#include "raytrace/caustics/photon_discs.h"
 
 namespace lightwell {
 
-/// Irradiance of photons on surfaces (Jensen 1996). Each photon is spread over a disc of its own
-/// radius r by Epanechnikov's kernel, 2 / (pi r^2) (1 - (d / r)^2). The radius is the distance to
-/// the photon's k-th neighbour, with k proportional to N^(2/3) for N photons. Both the noise,
-/// k^(-1/2), and the blurred area, k / N, then shrink with N, in the balance that minimizes their
-/// sum (Silverman 1986).
+/// Irradiance of photons on surfaces (Jensen 1996), spread over discs (see PhotonDiscs) that reach
+/// to the k-th neighbour, with k proportional to N^(2/3) for N photons. Both the noise, k^(-1/2),
+/// and the blurred area, k / N, then shrink with N, in the balance that minimizes their sum
+/// (Silverman 1986).
 ///
-/// Energy is conserved. A photon contributes to points of its own region alone (see LightRegions),
-/// and the part of its disc beyond the region's boundary is folded back, so the integral of
-/// irradiance equals the power of the photons.
+/// Wider discs, of some ten and forty times the area, take over where light is smooth: of clusters
+/// of as many photons, so that a point reads about as many discs of each width. The light of a
+/// wider disc counts (after Lepski 1991)
+/// - as far as it agrees with that of the narrowest one within the noise: whole up to three
+///   standard deviations, and nothing from four on;
+/// - as far as a still wider disc agrees with it: whole up to half a standard deviation of the
+///   narrower disc that it takes over from, and nothing from one and a half on.
+/// The integral of irradiance equals the power of the photons up to a part of the noise.
 class CausticMap {
  public:
   CausticMap(const PatchMesh& mesh, const CausticPhotons& photons);
@@ -34,22 +37,12 @@ class CausticMap {
   static int neighbours(std::size_t count);
 
  private:
-  void set_radii(int region, int k);
-  /// Result of folding a disc: the factor of its power, and the centres of its mirror images.
-  struct Folded {
-    float weight = 0.0f;
-    std::vector<Eigen::Vector3f> mirrored{};
-  };
-  void fold_discs(int region, std::vector<Folded>& folded) const;
-  std::vector<LightRegions::Edge> edges_about(const DiscTree::Node& about,
-                                              std::span<const LightRegions::Edge> edges) const;
-  void insert(const std::vector<Folded>& folded, const BandArray& power);
+  void measure_noise(const PatchMesh& mesh, const PhotonSums& clusters, int k);
 
   LightRegions regions_;
-  Eigen::Vector3d origin_ = Eigen::Vector3d::Zero();  // m; disc centres are relative to this point
-  DiscTree tree_;
-  BandArray power_;  // per disc: power / (pi r^2 / 2) / the share of the kernel within the region
-  std::vector<int> root_;  // root node per region; -1: no photons
+  int bands_;
+  std::vector<float> noise_{};         // per region, over that of independent photons
+  std::vector<PhotonDiscs> layers_{};  // the narrowest first
 };
 
 /// Returns the map of `photons` photons of shoot_photons(), which follow up to `max_specular_depth`
