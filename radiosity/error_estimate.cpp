@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "mesh/patches/patch_sampler.h"
+#include "radiosity/gather/body_exits.h"
 #include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/refine/effort.h"
 #include "radiosity/refine/error_reference.h"
@@ -123,15 +124,17 @@ std::vector<ErrorSample> unenclosed_samples(const ElementCaster& caster, double 
   return open;
 }
 
-std::vector<ErrorSample> draw_samples(const Scene& scene, const ElementCaster& caster,
+std::vector<ErrorSample> draw_samples(const LitScene& lit, const BodyExits& exits,
                                       const ErrorSampler& sampler, int wanted, int batch) {
   const SobolPoints sobol(wanted);
   std::vector<ErrorSample> drawn;
   const std::uint64_t key = static_cast<std::uint64_t>(RandomPurpose::error_points) +
                             batch_keys * static_cast<std::uint64_t>(batch);
   for (int i = 0; i < wanted; ++i) drawn.push_back(sampler.draw(sobol.point(i, key)));
+  // Points within bodies are invisible, and vertices around them may have the light outside.
+  std::erase_if(drawn, [&](const ErrorSample& at) { return exits.covers(at.point); });
   constexpr double crack = 1e-4;  // share of scenery_length()
-  return unenclosed_samples(caster, crack * scenery_length(scene), drawn);
+  return unenclosed_samples(lit.caster, crack * scenery_length(lit.scene), drawn);
 }
 
 // The sample points of each part: `all` shared by area, with a least number for each part.
@@ -159,6 +162,7 @@ struct PartSamples {
 PartSamples draw_samples(const LitScene& lit, const Eigen::ArrayXf& indicator,
                          const SceneParts& parts, int points, int batch,
                          std::span<const char> wanted) {
+  const BodyExits exits(lit);
   std::vector<ErrorSampler> samplers;
   for (int p = 0; p < parts.judged_count(); ++p) {
     samplers.emplace_back(lit.caster, indicator, parts, p);
@@ -166,9 +170,8 @@ PartSamples draw_samples(const LitScene& lit, const Eigen::ArrayXf& indicator,
   const std::vector<int> shares = share_points(samplers, points);
   PartSamples samples;
   for (std::size_t p = 0; p < samplers.size(); ++p) {
-    const bool is_wanted = wanted.empty() || wanted[p] != 0;
-    if (is_wanted && shares[p] > 0 && samplers[p].area() > 0.0) {
-      const auto drawn = draw_samples(lit.scene, lit.caster, samplers[p], shares[p], batch);
+    if ((wanted.empty() || wanted[p] != 0) && shares[p] > 0 && samplers[p].area() > 0.0) {
+      const auto drawn = draw_samples(lit, exits, samplers[p], shares[p], batch);
       samples.drawn.insert(samples.drawn.end(), drawn.begin(), drawn.end());
     }
     samples.begin.push_back(static_cast<int>(samples.drawn.size()));

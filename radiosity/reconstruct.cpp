@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "radiosity/gather/body_exits.h"
 #include "radiosity/gather/gatherable_radiosity.h"
 #include "radiosity/gather/patch_power.h"
 #include "radiosity/part_balance.h"
@@ -22,10 +23,10 @@ BandArray with_indirect(const PilotGather& pilot, const BandArray& indirect) {
   return irradiance;
 }
 
-// Gathers in the light that `irradiance`, at vertices, makes; for refined elements with the power
-// that the patches' equations balanced.
-GatheredIrradiance gather_in(const VertexGatherTask& task, BandArray irradiance,
-                             const RadiositySolution& solution, KeptGather& kept) {
+// The light that rays read where `irradiance` arrives at vertices; for refined elements with the
+// power that the patches' equations balanced.
+BandArray light_to_read(const VertexGatherTask& task, BandArray irradiance,
+                        const RadiositySolution& solution) {
   const PatchMesh& mesh = task.lit.mesh();
   BandArray radiosity = gatherable_radiosity(task.lit, irradiance, task.pilot.direct);
   irradiance.resize(0, 0);
@@ -35,7 +36,7 @@ GatheredIrradiance gather_in(const VertexGatherTask& task, BandArray irradiance,
   PartBalance balance{.parts = task.parts, .gather = task.options, .caustic = task.pilot.caustic};
   for (const int rays : task.rays) balance.rays.push_back(task.cast_of(rays));
   balance_parts(task.lit, balance, radiosity);
-  return gather_once(task, radiosity, kept);
+  return radiosity;
 }
 
 // The pilot gather's direct light, or a new gather if that one cast fewer shadow rays.
@@ -50,6 +51,11 @@ BandArray final_direct(const LitScene& lit, const SolveOptions& of_solve, const 
   spread_pools(lit, unscaled_radiosity(solution), pilot.beside_direct(), of_solve.free_rays,
                direct);
   return direct;
+}
+
+GatherOptions with_most_rays(GatherOptions options, const std::vector<int>& of_parts) {
+  options.rays = *std::ranges::max_element(of_parts);
+  return options;
 }
 
 void split_by_channel(RadiositySolution& solution) {
@@ -73,6 +79,7 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
   KeptGathers& so_far = kept ? *kept : none;
   carry_over(pilot.number, so_far);
   solution.direct_irradiance = final_direct(lit, options, pilot, solution);
+  const std::vector<BodyExit> exits = BodyExits(lit).all();
   BandArray irradiance = with_indirect(pilot, pilot.indirect);
   if (pilot.tree) {
     // The final gather averages the noise of the second pilot gather over all directions, so few
@@ -82,12 +89,18 @@ void reconstruct(const LitScene& lit, const SolveOptions& options, const PilotGa
     constexpr int few = 8;
     VertexGatherTask second{lit, pilot, gather, solution.parts, rays, few};
     second.options.replica += first_replicas;
-    const GatheredIrradiance found =
-        gather_in(second, std::move(irradiance), solution, so_far.of_pilot);
+    BandArray read = light_to_read(second, std::move(irradiance), solution);
+    copy_from_outside(exits, read);
+    const GatheredIrradiance found = gather_once(second, read, so_far.of_pilot);
     irradiance = with_indirect(pilot, found.indirect);
   }
-  GatheredIrradiance last = gather_in({lit, pilot, gather, solution.parts, rays},
-                                      std::move(irradiance), solution, so_far.last);
+  const VertexGatherTask task{lit, pilot, gather, solution.parts, rays};
+  BandArray read = light_to_read(task, std::move(irradiance), solution);
+  copy_from_outside(exits, read);
+  GatheredIrradiance last = gather_once(task, read, so_far.last);
+  last.direct = std::move(solution.direct_irradiance);
+  light_covered_vertices(lit, exits, read, with_most_rays(gather, rays), last);
+  solution.direct_irradiance = std::move(last.direct);
   irradiance = with_indirect(pilot, last.indirect);
   solution.indirect_irradiance = std::move(last.indirect);
   solution.indirect_irradiance = solution.indirect_irradiance.max(0.0f);
