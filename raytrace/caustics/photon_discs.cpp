@@ -134,13 +134,14 @@ void PhotonDiscs::insert(const std::vector<Folded>& folded, const PhotonSums& ph
   for (const Folded& disc : folded) count += disc.mirrored.size();
   std::vector<DiscTree::Disc> all;
   all.reserve(count);
-  power_.resize(static_cast<Eigen::Index>(count), photons.power.cols());
-  square_.reserve(count);
+  const Eigen::Index bands = photons.power.cols();
+  power_.resize(static_cast<Eigen::Index>(count), bands + 1);
   const auto add = [&](const DiscTree::Disc& disc, float weight) {
     // Rows of power_ follow the order of the discs, so that discs close in space are close in
     // memory.
-    power_.row(static_cast<Eigen::Index>(all.size())) = weight * photons.power.row(disc.photon);
-    square_.push_back(weight * weight * photons.square[disc.photon]);
+    auto row = power_.row(static_cast<Eigen::Index>(all.size()));
+    row.head(bands) = weight * photons.power.row(disc.photon);
+    row[bands] = weight * weight * photons.square[disc.photon];
     all.push_back(disc);
   };
   for (DiscTree::Node& leaf : tree_.nodes) {
@@ -177,15 +178,34 @@ void PhotonDiscs::insert(const std::vector<Folded>& folded, const PhotonSums& ph
   }
 }
 
+// Adds the discs of a leaf to the sums at a point, of the columns of power_. With three bands, as
+// most scenes have, the sums stay in registers.
+template <int Columns>
+void PhotonDiscs::add_leaf(const DiscTree::Node& leaf, const Eigen::Vector3f& point,
+                           const Eigen::Vector3f& normal, float* sums) const {
+  // The cosine of 60 degrees: between surfaces at larger angles light is not shared.
+  constexpr float most_bend = 0.5f;
+  const auto columns = Columns > 0 ? Columns : static_cast<int>(power_.cols());
+  for (int i = leaf.begin; i < leaf.end; ++i) {
+    const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(i)];
+    const float d2 = (disc.center - point).squaredNorm();
+    if (!(d2 < disc.radius2) || !(normal.dot(disc.normal) > most_bend)) continue;
+    const float K = 1.0f - d2 / disc.radius2;
+    const float* power = power_.data() + Eigen::Index{i} * columns;
+    for (int k = 0; k + 1 < columns; ++k) sums[k] += K * power[k];
+    sums[columns - 1] += K * K * power[columns - 1];
+  }
+}
+
 PhotonDensity PhotonDiscs::at(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
                               int region) const {
-  PhotonDensity found{.irradiance = Spectrum::Zero(power_.cols())};
-  Spectrum& E = found.irradiance;
+  const Eigen::Index bands = power_.cols() - 1;
+  PhotonDensity found{.irradiance = Spectrum::Zero(bands)};
   const int root = root_[static_cast<std::size_t>(region)];
   if (root < 0) return found;
   const Eigen::Vector3f p = (point - origin_).cast<float>(), n = normal.cast<float>();
-  // The cosine of 60 degrees: between surfaces at larger angles light is not shared.
-  constexpr float most_bend = 0.5f;
+  Spectrum sums = Spectrum::Zero(power_.cols());
+  std::array<float, 4> of_three{};
   std::array<int, 64> stack;
   int depth = 0;
   stack[depth++] = root;
@@ -196,18 +216,15 @@ PhotonDensity PhotonDiscs::at(const Eigen::Vector3d& point, const Eigen::Vector3
     if (node.second >= 0) {
       stack[depth++] = node.second;
       stack[depth++] = number + 1;
-      continue;
-    }
-    for (int i = node.begin; i < node.end; ++i) {
-      const DiscTree::Disc& disc = tree_.discs[static_cast<std::size_t>(i)];
-      const float d2 = (disc.center - p).squaredNorm();
-      if (!(d2 < disc.radius2) || !(n.dot(disc.normal) > most_bend)) continue;
-      const float K = 1.0f - d2 / disc.radius2;
-      const float* power = power_.data() + i * power_.cols();
-      for (Eigen::Index k = 0; k < E.size(); ++k) E[k] += K * power[k];
-      found.variance += double{K * K * square_[static_cast<std::size_t>(i)]};
+    } else if (bands == 3) {
+      add_leaf<4>(node, p, n, of_three.data());
+    } else {
+      add_leaf<0>(node, p, n, sums.data());
     }
   }
+  if (bands == 3) sums = Eigen::Map<const Eigen::Array4f>(of_three.data());
+  found.irradiance = sums.head(bands);
+  found.variance = double{sums[bands]};
   return found;
 }
 

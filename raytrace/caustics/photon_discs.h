@@ -47,13 +47,17 @@ class PhotonDiscs {
   };
   void fold_discs(int root, Edges bounds, std::vector<Folded>& folded) const;
   std::vector<LightRegions::Edge> edges_about(const DiscTree::Node& about, Edges edges) const;
+  template <int Columns>
+  void add_leaf(const DiscTree::Node& leaf, const Eigen::Vector3f& point,
+                const Eigen::Vector3f& normal, float* sums) const;
   void insert(const std::vector<Folded>& folded, const PhotonSums& photons);
 
   Eigen::Vector3d origin_;  // m; disc centres are relative to this point
   DiscTree tree_;
   std::vector<int> root_;  // root node per region; -1: no discs
-  BandArray power_{};  // per disc: power / (pi r^2 / 2) / the share of the kernel within the region
-  std::vector<float> square_{};  // per disc: square, by the same factor squared
+  // Per disc: power, times a factor of 1 / (pi r^2 / 2) / the share of the kernel within the
+  // region, and in the last column PhotonSums::square times the squared factor.
+  BandArray power_{};
 };
 
 }  // namespace lightwell
