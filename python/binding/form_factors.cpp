@@ -64,7 +64,7 @@ auto list_of(const std::vector<Scalar>& values) {
   return owned(std::vector<Scalar>(values), {values.size()});
 }
 
-void add_options(nb::module_& module) {
+void add_form_factor_options(nb::module_& module) {
   using Options = FacetViewFactorOptions;
   nb::class_<Options>(module, "FormFactorOptions")
       .def(nb::init<>())
@@ -91,7 +91,7 @@ void add_options(nb::module_& module) {
 }  // namespace
 
 void add_form_factors(nb::module_& module) {
-  add_options(module);
+  add_form_factor_options(module);
   nb::class_<FoundFormFactors>(module, "FoundFormFactors")
       .def("csr", csr)
       .def_prop_ro("area",

@@ -166,7 +166,7 @@ Pass pass_named(const std::string& name) {
                    "'; choose from: interpolate, direct, gather");
 }
 
-void add_options(nb::module_& module) {
+void add_lightmap_options(nb::module_& module) {
   nb::class_<LightmapOptions>(module, "LightmapOptions")
       .def(nb::init<>())
       .def_prop_rw(
@@ -191,7 +191,7 @@ void add_options(nb::module_& module) {
 }  // namespace
 
 void add_lightmaps(nb::module_& module) {
-  add_options(module);
+  add_lightmap_options(module);
   nb::class_<LightmapData>(module, "LightmapData")
       .def_ro("size", &LightmapData::size)
       .def_ro("padding", &LightmapData::padding)

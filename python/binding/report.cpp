@@ -22,9 +22,9 @@ namespace lightwell::python {
 namespace {
 
 // Measures, writes the files, and returns the figures as JSON.
-std::string report(const SharedSolution& solution, const ReportRequest& asked,
-                   const std::vector<std::filesystem::path>& files, const std::string& code,
-                   const nb::object& progress) {
+std::string made_report(const SharedSolution& solution, const ReportRequest& asked,
+                        const std::vector<std::filesystem::path>& files, const std::string& code,
+                        const nb::object& progress) {
   const std::optional<Language> language = language_of(code);
   if (!language) throw InputError("the language is '" + code + "'; it can be en, de, fr or es");
   for (const std::filesystem::path& file : files) require_report_file(file);
@@ -81,7 +81,7 @@ void add_report(nb::module_& module) {
           [](ReportRequest& r, int v) { r.rays = power_of_two("rays", v); })
       .def_rw("has_picture", &ReportRequest::has_picture)
       .def_rw("camera", &ReportRequest::camera);
-  module.def("report", report, nb::arg("solution"), nb::arg("request"), nb::arg("files"),
+  module.def("report", made_report, nb::arg("solution"), nb::arg("request"), nb::arg("files"),
              nb::arg("language"), nb::arg("progress").none());
 }
 

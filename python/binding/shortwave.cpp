@@ -92,7 +92,7 @@ std::vector<SunAndSky> instants_from(const ShortwaveQuestion& asked) {
   return instants;
 }
 
-std::vector<Probe> probes_from(const ShortwaveQuestion& asked) {
+std::vector<Probe> probes_of(const ShortwaveQuestion& asked) {
   const std::vector<Eigen::Vector3d> positions = points_from(asked.points),
                                      normals = points_from(asked.normals);
   std::vector<Probe> probes(positions.size());
@@ -106,7 +106,7 @@ std::shared_ptr<ShortwaveArrays> shortwave(const FoundFormFactors& found,
                                            const ShortwaveQuestion& asked,
                                            const nb::object& progress) {
   const std::vector<SunAndSky> instants = instants_from(asked);
-  const std::vector<Probe> probes = probes_from(asked);
+  const std::vector<Probe> probes = probes_of(asked);
   const Eigen::ArrayXd albedo = array_from(asked.albedo);
   const Eigen::Vector3d up = up_of(asked);
   const bool is_even = asked.days.size() == 0;

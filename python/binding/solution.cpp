@@ -159,9 +159,9 @@ void save(const SharedSolution& solution, const std::filesystem::path& path) {
   run_long(nb::none(), [&](const Progress&) { write_solution(path, solution->solved); });
 }
 
-using Class = nb::class_<SolutionData>;
+using SolutionClass = nb::class_<SolutionData>;
 
-void add_mesh_arrays(Class& solution) {
+void add_mesh_arrays(SolutionClass& solution) {
   solution
       .def_prop_ro(
           "vertices",
@@ -206,7 +206,7 @@ void add_mesh_arrays(Class& solution) {
       });
 }
 
-void add_light_arrays(Class& solution) {
+void add_light_arrays(SolutionClass& solution) {
   solution
       .def_prop_ro("direct_irradiance",
                    [](Handle self) {
@@ -249,7 +249,7 @@ void add_light_arrays(Class& solution) {
       });
 }
 
-void add_figures(Class& solution) {
+void add_figures(SolutionClass& solution) {
   solution.def_prop_ro("energy", energy_of)
       .def_prop_ro("outcome", outcome_of)
       .def_prop_ro("error", [](const SolutionData& s) { return s.solved.solution.error_estimate; })
@@ -288,7 +288,7 @@ void add_figures(Class& solution) {
 }  // namespace
 
 void add_solution(nb::module_& module) {
-  Class solution(module, "SolutionData");
+  SolutionClass solution(module, "SolutionData");
   add_mesh_arrays(solution);
   add_light_arrays(solution);
   add_figures(solution);

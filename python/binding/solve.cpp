@@ -163,9 +163,9 @@ SharedSolution solve(const SharedScene& scene, const SolveSettings& settings,
   });
 }
 
-using Class = nb::class_<SolveSettings>;
+using SettingsClass = nb::class_<SolveSettings>;
 
-void add_mesh_options(Class& settings) {
+void add_mesh_options(SettingsClass& settings) {
   settings
       .def_prop_rw(
           "max_patch_size", [](const SolveSettings& s) { return s.solve.mesh.max_patch_size; },
@@ -189,7 +189,7 @@ void add_mesh_options(Class& settings) {
           [](SolveSettings& s, bool v) { s.solve.mesh.discontinuity = v; });
 }
 
-void add_effort_options(Class& settings) {
+void add_effort_options(SettingsClass& settings) {
   settings
       .def_prop_rw(
           "accuracy",
@@ -218,7 +218,7 @@ void add_effort_options(Class& settings) {
           [](SolveSettings& s, double v) { s.seconds = positive("seconds", v); });
 }
 
-void add_checkpoint_options(Class& settings) {
+void add_checkpoint_options(SettingsClass& settings) {
   settings.def_rw("checkpoint", &SolveSettings::checkpoint)
       .def_rw("reuse", &SolveSettings::reuse)
       .def_rw("resume", &SolveSettings::resume)
@@ -229,7 +229,7 @@ void add_checkpoint_options(Class& settings) {
 }
 
 // Those who look, in their order.
-void add_onlookers(Class& settings) {
+void add_onlookers(SettingsClass& settings) {
   settings
       .def("look_from_camera",
            [](SolveSettings& s, const Camera& camera) {
@@ -252,7 +252,7 @@ void add_onlookers(Class& settings) {
            });
 }
 
-void add_method_options(Class& settings) {
+void add_method_options(SettingsClass& settings) {
   settings
       .def_prop_rw(
           "form_factors", [](const SolveSettings&) {},
@@ -288,7 +288,7 @@ void add_method_options(Class& settings) {
 }  // namespace
 
 void add_solve(nb::module_& module) {
-  Class settings(module, "SolveOptions");
+  SettingsClass settings(module, "SolveOptions");
   settings.def(nb::init<>());
   add_mesh_options(settings);
   add_effort_options(settings);
