@@ -106,7 +106,7 @@ void CausticMap::measure_noise(const PatchMesh& mesh, const PhotonSums& clusters
 }
 
 Spectrum CausticMap::irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                                int element) const {
+                                int element, double besides) const {
   if (layers_.empty()) return Spectrum::Zero(bands_);
   const int region = regions_.of_element[static_cast<std::size_t>(element)];
   const PhotonDensity narrow = layers_[0].at(point, normal, region);
@@ -115,8 +115,12 @@ Spectrum CausticMap::irradiance(const Eigen::Vector3d& point, const Eigen::Vecto
   constexpr double sure = 3.0, excluded = 4.0;
   const double measured = double{noise_[static_cast<std::size_t>(region)]};
   const double noise = measured * noise_of(narrow);
+  constexpr double faint = 0.005;
+  const double all = double{narrow.irradiance.mean()} + besides;
+  const double visible = std::clamp(noise / (faint * all) - 1.0, 0.0, 1.0);
+  if (!(visible > 0.0)) return narrow.irradiance;
   const PhotonDensity wide = layers_[1].at(point, normal, region);
-  double share = fade(difference(narrow, wide), sure, excluded, noise);
+  double share = visible * fade(difference(narrow, wide), sure, excluded, noise);
   if (!(share > 0.0)) return narrow.irradiance;
   // The error of the blur grows with the square of the radius, so that the wide disc has a third of
   // the difference from the widest one, with twice the radius.

@@ -29,9 +29,11 @@ class CausticMap {
   CausticMap(const PatchMesh& mesh, const CausticPhotons& photons);
 
   /// Irradiance at `point` of `element`, W/m^2 per band. `normal` is the unit normal of the surface
-  /// at `point`. Photons on elements whose normal is within 60 degrees of `normal` count.
-  Spectrum irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal,
-                      int element) const;
+  /// at `point`. Photons on elements whose normal is within 60 degrees of `normal` count. Wider
+  /// discs are left out where the noise is half a percent of all light or less, with `besides`, the
+  /// mean of the bands of other irradiance there, W/m^2.
+  Spectrum irradiance(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int element,
+                      double besides = 0.0) const;
 
   /// Number of neighbours k that a disc reaches over, for `count` photons in all; at least 16.
   static int neighbours(std::size_t count);

@@ -391,7 +391,7 @@ void RayTree::add_caustics(const ElementHit& hit, const ShadingPoint& at, bool i
     if (is_gathered) indirect += interpolate(caster_.mesh(), solution_.caustic_irradiance, hit);
     return;
   }
-  indirect += caustics_->irradiance(at.rest, at.rest_normal, hit.element);
+  indirect += caustics_->irradiance(at.rest, at.rest_normal, hit.element, double{indirect.mean()});
 }
 
 void RayTree::note_layers(const Branch& branch, const ElementHit& hit, const Spectrum& M,
