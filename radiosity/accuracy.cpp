@@ -95,8 +95,8 @@ double mean_illuminance(const Bands& bands, const PatchMesh& mesh,
 ShadowOptions Effort::shadows(ManyLights many_lights) const {
   const int most = std::clamp(gather_rays / 4, 64, most_shadow_rays);
   // Clusters of 0.5 % leave noise of 0.35 % in a hall of 10 000 lamps, which beside 0.55 % of the
-  // rays and 0.95 % of interpolation hardly counts. At the
-  // finest share, no more than DirectLight's most parts are asked; at the coarsest, some 50 are.
+  // rays and 0.95 % of interpolation hardly counts. At the finest share, no more than DirectLight's
+  // most parts are asked; at the coarsest, some 50 are.
   constexpr double for_one_percent = 0.005, finest = 1e-5, coarsest = 0.02;
   const double share =
       for_one_percent *
@@ -147,12 +147,11 @@ constexpr double largest_split = 0.6, smallest_split = 0.8;
 // The cheapest step after which the squared errors of noise and of elements add up to no more than
 // `allowed`, with no more than `most_times` the rays. Empty if there is none. Costs are in units of
 // the attempt's final gather:
-// - pilot gathers and shadow rays of split elements take 2. Measured: 0.8 in the Cornell box, 3 in
-// a
-//   hall of 4634 patches.
-// - n elements grow with error^(-3). Measured for 4.6 and 3.6 % in that hall: 124 and 245 thousand,
-//   which is error^(-2.8). In smooth light they grow with error^(-1), and at the edges of shadows
-//   with error^(-2).
+// - Pilot gathers and shadow rays of split elements take 2. Measured: 0.8 in the Cornell box, and 3
+//   in a hall of 4634 patches.
+// - The elements grow with error^(-3). Measured for 4.6 and 3.6 % in that hall: 124 and 245
+//   thousand, which is error^(-2.8). In smooth light they grow with error^(-1), and at the edges of
+//   shadows with error^(-2).
 std::optional<Step> cheapest_step(double allowed, double noise, double of_elements,
                                   double most_times) {
   constexpr double of_refinement = 2.0, growth = 3.0;

@@ -21,8 +21,8 @@ Eigen::ArrayXf vertex_variance(const PatchMesh& mesh, const Eigen::ArrayXf& ray_
 
 /// Per element, the RMS error that gathers at vertices leave in interpolated irradiance, relative
 /// to error_references() of `irradiance` (vertices x bands, W/m^2); see
-/// RadiositySolution::gather_noise. `variance` is that of each vertex's light as
-/// gathers estimate it, (W/m^2)^2 (see of_whole_set).
+/// RadiositySolution::gather_noise. `variance` is that of each vertex's light as gathers
+/// estimate it, (W/m^2)^2 (see of_whole_set).
 Eigen::ArrayXf gather_noise(const PatchMesh& mesh, const BandArray& irradiance,
                             const Eigen::ArrayXf& variance, const SceneParts& parts = {});
 

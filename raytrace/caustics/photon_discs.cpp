@@ -204,8 +204,7 @@ PhotonDensity PhotonDiscs::at(const Eigen::Vector3d& point, const Eigen::Vector3
   const int root = root_[static_cast<std::size_t>(region)];
   if (root < 0) return found;
   const Eigen::Vector3f p = (point - origin_).cast<float>(), n = normal.cast<float>();
-  Spectrum sums = Spectrum::Zero(power_.cols());
-  std::array<float, 4> of_three{};
+  std::array<float, max_bands + 1> sums{};
   std::array<int, 64> stack;
   int depth = 0;
   stack[depth++] = root;
@@ -217,14 +216,13 @@ PhotonDensity PhotonDiscs::at(const Eigen::Vector3d& point, const Eigen::Vector3
       stack[depth++] = node.second;
       stack[depth++] = number + 1;
     } else if (bands == 3) {
-      add_leaf<4>(node, p, n, of_three.data());
+      add_leaf<4>(node, p, n, sums.data());
     } else {
       add_leaf<0>(node, p, n, sums.data());
     }
   }
-  if (bands == 3) sums = Eigen::Map<const Eigen::Array4f>(of_three.data());
-  found.irradiance = sums.head(bands);
-  found.variance = double{sums[bands]};
+  found.irradiance = Eigen::Map<const Eigen::ArrayXf>(sums.data(), bands);
+  found.variance = double{sums[static_cast<std::size_t>(bands)]};
   return found;
 }
 

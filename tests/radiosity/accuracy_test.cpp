@@ -215,6 +215,9 @@ TEST(Accuracy, EffortFollowsTheError) {
   EXPECT_FALSE(next_effort(first, 0.01, 0.02, 0.013, reached, 20));
 }
 
+// The largest tolerance of elements over the error that they had, if any are split.
+constexpr double smallest_step = 0.8;
+
 // An attempt repeats much of the one before, so that even the smallest excess takes half more rays,
 // or 80 % of the error that elements have, which is a quarter to a half more of them.
 TEST(Accuracy, EachAttemptIsWorthItsTime) {
@@ -226,11 +229,10 @@ TEST(Accuracy, EachAttemptIsWorthItsTime) {
   const auto noisy = next_effort(first, 0.02, 0.0201, 0.0111, reached, 0);
   ASSERT_TRUE(noisy);
   EXPECT_GE(noisy->gather_rays, 1.5 * first.gather_rays);
-  // 1 % more than 0.019, none of it noise. The step is from the error that elements have, to four
-  // fifths of it or less, as said above.
+  // 1 % more than 0.019, none of it noise. The step is from the error that elements have.
   const auto coarse = next_effort(first, 0.02, 0.0192, 0.0, reached, 0);
   ASSERT_TRUE(coarse);
-  EXPECT_LE(coarse->refine_tolerance, 0.8 * reached.estimate);
+  EXPECT_LE(coarse->refine_tolerance, smallest_step * reached.estimate);
 }
 
 // A few more rays and slightly smaller elements cost less than elements alone if noise takes a good
@@ -250,8 +252,7 @@ TEST(Accuracy, NoiseAndElementsShareTheStep) {
   // The tolerance of elements that make up for the noise of the same rays: two thirds of theirs.
   const double alone = std::sqrt(allowed * allowed - stays * stays - noise * noise);
   EXPECT_GT(next->refine_tolerance, alone);
-  // A split is to four fifths or less (see EachAttemptIsWorthItsTime).
-  EXPECT_LE(next->refine_tolerance, 0.8 * elements);
+  EXPECT_LE(next->refine_tolerance, smallest_step * elements);
   const double times = static_cast<double>(next->gather_rays) / first.gather_rays;
   const double left =
       std::hypot(stays, next->refine_tolerance, noise * std::pow(times, -noise_order));
@@ -261,6 +262,7 @@ TEST(Accuracy, NoiseAndElementsShareTheStep) {
 
 // A step casts no more rays than any accuracy asks for, however noisy the attempt before was.
 TEST(Accuracy, RaysOfAStepHaveALimit) {
+  // An attempt at 0.1 % with half of all rays allowed, whose elements are good enough.
   const Effort spent{.refine_tolerance = 0.001, .gather_rays = most_gather_rays / 2};
   RefineReport reached{.outcome = RefineOutcome::tolerance_reached, .estimate = 0.001};
   // Noise alone misses the target twenty times, which takes 20^(3/2) = 89 times the rays.

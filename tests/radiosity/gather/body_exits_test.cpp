@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -91,10 +92,12 @@ void expect_outside(const PatchMesh& mesh, const BodyExit& exit, const Is& is_in
   EXPECT_LE(exit.share, 1.0);
   for (const GatherPoint& point : {exit.point, exit.middle}) {
     EXPECT_FALSE(is_inside(point.position)) << point.position.transpose();
-    // A point of the shape to the rounding of double precision in a room of 1 m.
+    // Coordinates of up to 1 m go through some ten operations, each with a rounding of half an
+    // epsilon; a normal's error is that over the radius.
+    constexpr double rounding = 10.0 * std::numeric_limits<double>::epsilon();
     const Vector3d from_center = point.position - shape.center;
-    EXPECT_NEAR(from_center.norm(), shape.radius, 1e-14);
-    EXPECT_NEAR((point.normal - from_center.normalized()).norm(), 0.0, 1e-13);
+    EXPECT_NEAR(from_center.norm(), shape.radius, rounding);
+    EXPECT_NEAR((point.normal - from_center.normalized()).norm(), 0.0, rounding / shape.radius);
   }
 }
 
@@ -211,8 +214,8 @@ TEST(BodyExits, LightOfCoveredVerticesIsThatOfTheNearestLine) {
   // Rays from outside of the body meet fronts alone, whose light is 1.
   const Eigen::Index vertices = of.mesh.vertex_count(), bands = room.scene.bands.count();
   const BandArray radiosity = BandArray::Ones(vertices, bands);
-  // Of light E_b = 2 at the other corner and 1 along the way, the line nearest to it falls by 3/2
-  // at the exit; less than 0 is no light.
+  // The line nearest to light of E_b = 2 at the other corner and 1 along the way falls by 3/2 at
+  // the exit. Less than 0 is no light.
   for (const float E_b : {1.0f, 2.0f}) {
     GatheredIrradiance found{.direct = BandArray::Zero(vertices, bands),
                              .indirect = BandArray::Constant(vertices, bands, E_b),
