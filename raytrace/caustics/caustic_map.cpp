@@ -127,7 +127,9 @@ Spectrum CausticMap::irradiance(const Eigen::Vector3d& point, const Eigen::Vecto
   constexpr double whole = 0.5, none = 1.5;
   const PhotonDensity widest = layers_[2].at(point, normal, region);
   const double blur = difference(wide, widest);
-  share *= fade(blur, whole, none, noise);
+  // A blur of a few percent of all light would be seen, as at the focus of a lens.
+  constexpr double visible_blur = 0.04;
+  share *= fade(blur, whole, none, std::min(noise, visible_blur * all));
   const double of_widest = fade(blur, whole, none, measured * noise_of(wide));
   const Spectrum smooth =
       wide.irradiance + static_cast<float>(of_widest) * (widest.irradiance - wide.irradiance);

@@ -22,7 +22,8 @@ namespace lightwell {
 /// - as far as it agrees with that of the narrowest one within the noise: whole up to three
 ///   standard deviations, and nothing from four on;
 /// - as far as a still wider disc agrees with it: whole up to half a standard deviation of the
-///   narrower disc that it takes over from, and nothing from one and a half on.
+///   narrower disc that it takes over from, or 2 % of all light if that is less, and nothing from
+///   three times that on.
 /// The integral of irradiance equals the power of the photons up to a part of the noise.
 class CausticMap {
  public:
