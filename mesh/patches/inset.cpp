@@ -13,7 +13,7 @@ double least_inset(double diagonal) {
   return roundings * float_rounding(diagonal);
 }
 
-double inset_share(const PatchMesh& mesh, int element, double share) {
+double off_border(const PatchMesh& mesh, int element) {
   const auto& corners = mesh.corners[static_cast<std::size_t>(element)];
   const int n = mesh.corner_count(element);
   double longest = 0.0;
@@ -22,8 +22,11 @@ double inset_share(const PatchMesh& mesh, int element, double share) {
               to = corners[static_cast<std::size_t>((i + 1) % n)];
     longest = std::max(longest, (mesh.position(to) - mesh.position(from)).norm());
   }
-  // The centre of a rectangle is so far off the longer sides, and that of a triangle a third more.
-  return inset_share(mesh, 0.5 * mesh.element_area[element] / longest, share);
+  return 0.5 * mesh.element_area[element] / longest;
+}
+
+double inset_share(const PatchMesh& mesh, int element, double share) {
+  return inset_share(mesh, off_border(mesh, element), share);
 }
 
 double inset_share(const PatchMesh& mesh, double off_border, double share) {

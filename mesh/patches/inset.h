@@ -13,7 +13,11 @@ double least_inset(double diagonal);
 /// borders, as far as half of the way allows.
 double inset_share(const PatchMesh& mesh, int element, double share);
 
-/// The same for a patch whose centre is `off_border` metres off the nearest border.
+/// About the distance of an element's centre from its nearest border, metres: half of the area over
+/// the longest edge. That is exact for rectangles; the centre of a triangle is a third more away.
+double off_border(const PatchMesh& mesh, int element);
+
+/// inset_share() for a patch whose centre is `off_border` metres off the nearest border.
 double inset_share(const PatchMesh& mesh, double off_border, double share);
 
 }  // namespace lightwell

@@ -88,20 +88,27 @@ std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh) {
   return points;
 }
 
-GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex,
-                           const Eigen::Vector3d& center, const GatherPoint& point) {
+double gap_reach(const PatchMesh& mesh, int element, const Eigen::Vector3d& vertex) {
+  // The corners of a rectangle of 1 : 4 are 4.1 times as far from the centre as the sides, and
+  // those of half a square at most 4.2 times.
+  constexpr double slimmest = 4.25;
+  return std::min((element_center(mesh, element).position - vertex).norm(),
+                  slimmest * off_border(mesh, element));
+}
+
+GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex, double reach,
+                           const GatherPoint& point) {
   if (point.facet < 0) return point;
   const Eigen::Vector3d way = point.position - vertex;
-  const double to_center = (center - vertex).norm();
-  constexpr double narrow = 0.3;  // share of the way to the element's centre
-  if (!(to_center > 0.0 && way.norm() > 0.0)) return point;
+  constexpr double narrow = 0.3;  // share of the reach
+  if (!(reach > 0.0 && way.norm() > 0.0)) return point;
   const Ray ray{.origin = point.position,
                 .direction = point.normal,
-                .t_max = narrow * to_center,
+                .t_max = narrow * reach,
                 .origin_group = point.facet};
   ElementHit hit;
   caster.closest_elements({&ray, 1}, {&hit, 1});
-  if (hit.element < 0 || !(hit.t > nearest * to_center)) return point;
+  if (hit.element < 0 || !(hit.t > nearest * reach)) return point;
   const Eigen::Vector3d normal = element_center(caster.mesh(), hit.element).normal;
   if (std::abs(normal.dot(point.normal)) < -facing) return point;
   GatherPoint moved = point;
@@ -112,13 +119,16 @@ GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& v
 GatherPoints vertex_points(const ElementCaster& caster) {
   const auto all = std::make_shared<VertexGatherPoints>(caster.mesh());
   return {caster.mesh().vertex_count(), [all, &caster](int v) {
-            const Eigen::Vector3d vertex = caster.mesh().position(v), center = all->center(v);
+            const PatchMesh& mesh = caster.mesh();
+            const Eigen::Vector3d vertex = mesh.position(v);
             const GatherPoint on_facet = all->on_facet(v);
-            const GatherPoint at = moved_into_gap(caster, vertex, center, on_facet);
+            const int element = all->element(v);
+            const double reach = element < 0 ? 0.0 : gap_reach(mesh, element, vertex);
+            const GatherPoint at = moved_into_gap(caster, vertex, reach, on_facet);
             const std::optional<Eigen::Vector3d> normal = all->common_normal(v);
             if (!normal) return at;
             return risen(caster, at, *normal, (on_facet.position - vertex).norm(),
-                         (center - vertex).norm());
+                         (all->center(v) - vertex).norm());
           }};
 }
 

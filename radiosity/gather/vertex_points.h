@@ -23,6 +23,8 @@ class VertexGatherPoints {
   std::optional<Eigen::Vector3d> common_normal(int vertex) const;
   /// The centre of the element that the point of the vertex lies in; the vertex itself without one.
   Eigen::Vector3d center(int vertex) const;
+  /// The element that the point of the vertex lies in; -1: none.
+  int element(int vertex) const { return element_[vertex]; }
 
  private:
   const PatchMesh& mesh_;
@@ -32,12 +34,18 @@ class VertexGatherPoints {
 /// The points of VertexGatherPoints for all vertices of a mesh.
 std::vector<GatherPoint> vertex_gather_points(const PatchMesh& mesh);
 
-/// The gather point of a vertex, a little way from `vertex` towards the `center` of an element.
-/// The point is moved further inside, to as far from the vertex as a gap is wide, if another
-/// surface is above the point, nearer than 0.3 of the whole way: light falls off steeply where a
-/// gap begins, and light at its brink would be interpolated far inside.
-GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex,
-                           const Eigen::Vector3d& center, const GatherPoint& point);
+/// The gather point of a vertex, a little way from `vertex` towards the centre of an element. The
+/// point is moved further inside, to as far from the vertex as a gap is wide, if another surface is
+/// above the point, nearer than 0.3 of `reach` (see gap_reach): light falls off steeply where a gap
+/// begins, and light at its brink would be interpolated far inside.
+GatherPoint moved_into_gap(const ElementCaster& caster, const Eigen::Vector3d& vertex, double reach,
+                           const GatherPoint& point);
+
+/// The length that gaps at a vertex are compared with, metres: the way from `vertex` to the centre
+/// of an element of the caster's mesh, but little more than the element is wide. A slat of a blind
+/// is long beside the way to the next slat, and light still changes across it: a point that is
+/// moved as far as that would show the sun beyond the shadow's edge.
+double gap_reach(const PatchMesh& mesh, int element, const Eigen::Vector3d& vertex);
 
 /// The gather points of all vertices of a caster's mesh. They are those of VertexGatherPoints,
 /// except beside other surfaces:

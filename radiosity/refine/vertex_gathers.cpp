@@ -67,8 +67,9 @@ VertexGathers::VertexGathers(const LitScene& lit, const BandArray& radiosity,
 GatherPoint VertexGathers::gather_point(int vertex) const {
   const PatchPoint at = elements_.inside(vertex, inset_);
   const GatherPoint point{at.position, at.normal, elements_.base().facet[at.element]};
-  const Eigen::Vector3d center = element_center(elements_.base(), at.element).position;
-  return moved_into_gap(caster_, elements_.position(vertex), center, point);
+  const Eigen::Vector3d position = elements_.position(vertex);
+  const double reach = gap_reach(elements_.base(), at.element, position);
+  return moved_into_gap(caster_, position, reach, point);
 }
 
 // A gather point with random numbers of the vertex's own.

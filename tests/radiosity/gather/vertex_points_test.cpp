@@ -107,5 +107,38 @@ TEST(VertexPoints, InTheOpenAreThoseOfTheMesh) {
   EXPECT_GT(smooth, 0);
 }
 
+// Two slats of 35 mm x 0.66 m that face each other, `gap` apart, of elements 0.33 m long. Returns
+// the number of the lower one's vertices whose points are not those of the mesh.
+int moved_between_slats(double gap) {
+  Scene scene;
+  const int metal = test::add_material(scene, test::diffuse(scene.bands, 0.5f));
+  test::add_polygon(scene, "lower", metal,
+                    {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.66}, {0.035, 0.0, 0.66}, {0.035, 0.0, 0.0}});
+  test::add_polygon(scene, "upper", metal,
+                    {{0.0, gap, 0.0}, {0.035, gap, 0.0}, {0.035, gap, 0.66}, {0.0, gap, 0.66}});
+  const PatchMesh mesh =
+      build_patches(scene, {.max_patch_size = 0.33, .elements_per_patch_edge = 1});
+  const ElementCaster caster(mesh);
+  const std::vector<GatherPoint> expected = vertex_gather_points(mesh);
+  const GatherPoints points = vertex_points(caster);
+  int moved = 0, lower = 0;
+  for (int v = 0; v < mesh.vertex_count(); ++v) {
+    const auto& at = expected[static_cast<std::size_t>(v)];
+    if (at.position.y() > 0.5 * gap || !(at.normal.y() > 0.0)) continue;
+    ++lower;
+    moved += points[v].position != at.position ? 1 : 0;
+  }
+  EXPECT_GE(lower, 6);  // two elements in a row
+  return moved;
+}
+
+// The next slat, as far away as a slat is wide, is no gap, though an element is ten times as long:
+// a point moved by 33 mm would lie beyond the edge of its own slat's shadow. Surfaces 1 cm apart
+// are a gap for all vertices.
+TEST(VertexPoints, OfLongSlatsAreMovedInGapsThatAreNarrowBesideTheirWidth) {
+  EXPECT_EQ(moved_between_slats(0.033), 0);
+  EXPECT_GE(moved_between_slats(0.01), 6);
+}
+
 }  // namespace
 }  // namespace lightwell::vertex_points_test
