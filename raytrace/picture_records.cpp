@@ -54,8 +54,8 @@ double least_radius(const SeenPlace& place) {
 // the error of a furnished room's picture from 3.0 to 3.5 %.
 constexpr double share_of_distance = 0.05;
 
-// The share of that distance, within limits by the grid.
-double radius_of(const ElementCaster& caster, const SeenPlace& place) {
+// The share of that distance, as far as the grid finds records in time.
+double radius_by_distance(const ElementCaster& caster, const SeenPlace& place) {
   // 32 rays tell the mean of 1 / t to some 10 %, as well as the share is known.
   constexpr std::size_t count = 32;
   // Four steps of the widest grid: a record that serves farther is found no sooner.
@@ -74,15 +74,12 @@ double radius_of(const ElementCaster& caster, const SeenPlace& place) {
     if (hit.facet >= 0) nearness += 1.0 / (hit.t * count);
   }
   const double most = most_steps * place.spacing;
-  if (!(nearness > 0.0)) return most;
-  return std::clamp(share_of_distance / nearness, least_radius(place), most);
+  return nearness > 0.0 ? std::min(share_of_distance / nearness, most) : most;
 }
 
 // A record without light at a place.
-IrradianceRecord empty_record(const ElementCaster& caster, const SeenPlace& place) {
-  return {.position = place.at.position,
-          .normal = place.at.smooth_normal,
-          .radius = radius_of(caster, place)};
+IrradianceRecord empty_record(const SeenPlace& place, double radius) {
+  return {.position = place.at.position, .normal = place.at.smooth_normal, .radius = radius};
 }
 
 class PictureRecords {
@@ -100,7 +97,9 @@ class PictureRecords {
   std::vector<IrradianceRecord> find(double most_noise) {
     bool is_finished = true;
     for (int step = widest_step; step >= 1; step /= 2) {
-      std::vector<Candidate> candidates = uncovered(step);
+      const SeenGrid grid(seen_.on_grid(step));
+      follow_detail(grid);
+      std::vector<Candidate> candidates = uncovered(grid);
       clamp(candidates);
       is_finished = add_in_time(candidates, step);
       if (!is_finished) break;
@@ -116,13 +115,55 @@ class PictureRecords {
   // A place, and its record before its light is known.
   struct Candidate {
     SeenPlace place{};
+    double by_distance = 0.0;  // m, radius_by_distance()
+    double least = 0.0;        // m, least radius
     IrradianceRecord record{};
   };
+
+  // Places of a grid, and the least radii that a record may have there.
+  struct SeenGrid {
+    explicit SeenGrid(std::vector<std::optional<SeenPlace>> all)
+        : places(std::move(all)), detail(records_of(places), one_for_one) {}
+
+    // The least radius of a record at a place, or less where the picture shows places around in
+    // finer detail, as those that a mirror shows at a grazing angle and the picture itself from
+    // nearby: such a record reaches no farther than to those places.
+    double least_radius_at(const IrradianceRecord& place, double least) const {
+      return detail.allowed_radius(
+          {.position = place.position, .normal = place.normal, .radius = least});
+    }
+
+    static std::vector<IrradianceRecord> records_of(
+        const std::vector<std::optional<SeenPlace>>& places) {
+      std::vector<IrradianceRecord> records;
+      for (const auto& place : places) {
+        if (place) records.push_back(empty_record(*place, least_radius(*place)));
+      }
+      return records;
+    }
+
+    static constexpr double one_for_one = 1.0;  // metre of radius for a metre of distance
+    std::vector<std::optional<SeenPlace>> places;
+    RecordNeighbours detail;
+  };
+
+  // Lowers the least radii of the records so far to what a grid shows.
+  void follow_detail(const SeenGrid& grid) {
+    parallel_for(static_cast<int>(records_.size()), records_together, [&](int begin, int end) {
+      for (int i = begin; i < end; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        least_radii_[k] = grid.least_radius_at(records_[k], least_radii_[k]);
+        const double most = std::max(least_radii_[k], by_distance_[k]);
+        at_first_[k].radius = std::min(at_first_[k].radius, most);
+        records_[k].radius = std::min(records_[k].radius, most);
+      }
+    });
+  }
 
   // Gathers for places that were covered until their records were narrowed, by themselves or by
   // what the narrowest grid saw. The solution's light would show there as a dark or bright crumb.
   void fill() {
-    std::vector<Candidate> candidates = uncovered(1);
+    std::vector<Candidate> candidates = uncovered(SeenGrid(seen_.on_grid(1)));
     limit(candidates);
     add_in_time(candidates, filling);
   }
@@ -137,17 +178,21 @@ class PictureRecords {
   }
 
   // Places of a grid that no record covers well.
-  std::vector<Candidate> uncovered(int step) const {
+  std::vector<Candidate> uncovered(const SeenGrid& grid) const {
     const IrradianceRecords known(records_);
-    const auto places = seen_.on_grid(step);
-    std::vector<std::optional<Candidate>> found(places.size());
-    parallel_for(static_cast<int>(places.size()), records_together, [&](int begin, int end) {
+    std::vector<std::optional<Candidate>> found(grid.places.size());
+    parallel_for(static_cast<int>(grid.places.size()), records_together, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
         const auto k = static_cast<std::size_t>(i);
-        if (!places[k]) continue;
-        const ShadingPoint& at = places[k]->at;
-        if (known.coverage(at.position, at.smooth_normal) >= least_coverage) continue;
-        found[k] = Candidate{*places[k], empty_record(lit_.caster, *places[k])};
+        if (!grid.places[k]) continue;
+        const SeenPlace& place = *grid.places[k];
+        if (known.coverage(place.at.position, place.at.smooth_normal) >= least_coverage) continue;
+        Candidate& candidate = found[k].emplace();
+        candidate.place = place;
+        candidate.by_distance = radius_by_distance(lit_.caster, place);
+        candidate.record = empty_record(place, 0.0);
+        candidate.least = grid.least_radius_at(candidate.record, least_radius(place));
+        candidate.record.radius = std::max(candidate.least, candidate.by_distance);
       }
     });
     std::vector<Candidate> left;
@@ -181,8 +226,9 @@ class PictureRecords {
     RecordNeighbours neighbours(std::move(all), growth);
     parallel_for(static_cast<int>(candidates.size()), records_together, [&](int begin, int end) {
       for (int i = begin; i < end; ++i) {
-        auto& [place, record] = candidates[static_cast<std::size_t>(i)];
-        record.radius = std::max(least_radius(place), neighbours.allowed_radius(record));
+        Candidate& candidate = candidates[static_cast<std::size_t>(i)];
+        candidate.record.radius =
+            std::max(candidate.least, neighbours.allowed_radius(candidate.record));
       }
     });
     return neighbours;
@@ -191,7 +237,7 @@ class PictureRecords {
   // The candidates that those before them leave uncovered.
   static std::vector<Candidate> thinned(const std::vector<Candidate>& candidates) {
     std::vector<BoxTree::Box> boxes;
-    for (const auto& [place, record] : candidates) boxes.push_back(reach(record));
+    for (const Candidate& candidate : candidates) boxes.push_back(reach(candidate.record));
     const BoxTree tree(std::move(boxes));
     std::vector<char> is_kept(candidates.size(), 0);
     std::vector<int> around;
@@ -219,7 +265,8 @@ class PictureRecords {
     for (const Candidate& candidate : candidates) {
       records_.push_back(candidate.record);
       at_first_.push_back(candidate.record);
-      least_radii_.push_back(least_radius(candidate.place));
+      by_distance_.push_back(candidate.by_distance);
+      least_radii_.push_back(candidate.least);
     }
     for (int done = 0; done < count; done += between_reports) {
       report(run.progress, "records", share_done(step, static_cast<double>(done) / count));
@@ -291,6 +338,7 @@ class PictureRecords {
   PixelGather gather_;
   std::vector<IrradianceRecord> records_{};
   std::vector<IrradianceRecord> at_first_{};  // without light, and as wide as they were at first
+  std::vector<double> by_distance_{};         // m, radii by the distances to what places see
   std::vector<double> least_radii_{};         // m, to which records may be narrowed
 };
 

@@ -18,8 +18,9 @@ namespace lightwell {
 ///
 /// Places are sought on grids of pixels, from wide to narrow ones: a place that no record covers
 /// gets a record, whose radius is a share of the harmonic mean of the distances to what the place
-/// sees (Ward, Rubinstein & Clear 1988), but at least 0.8 of a step of the narrowest grid. What is
-/// seen by way of smooth mirrors and glass gets records as well. A last round covers the places
+/// sees (Ward, Rubinstein & Clear 1988), but at least 0.8 of a step of the narrowest grid, or less
+/// where the picture shows places around in finer detail. What is seen by way of smooth mirrors and
+/// glass gets records as well. A last round covers the places
 /// that narrowed records have left. Grids that do not fit into limited time are left out.
 /// RecordNeighbours keep a record in the open from serving in a room that stands on the same
 /// ground. E is that of PixelGather with RenderOptions::gather_rays.

@@ -206,6 +206,29 @@ TEST(PictureRecords, AreNearerToAGatherThanACoarseMesh) {
   EXPECT_GT(without, IrradianceRecords::usual_error) << "the mesh is too fine for this test";
 }
 
+// A mirror shows the dark floor below a board at a grazing angle, where pixels are a metre apart on
+// the floor; records there do not serve on the bright floor that the picture shows from nearby.
+TEST(PictureRecords, OfGrazingReflectionsDoNotServeWhereThePictureShowsMore) {
+  SolvedRoom room{
+      SceneBuilder()
+          .box({.reflectance = 0.7f, .one_sided = true}, {0, 0, 0}, {6.5, 3, 2.5}, true)
+          .box({.reflectance = 0.3f, .one_sided = true}, {3, 0.3, 0.15}, {4.2, 2.7, 0.2}, false)
+          .polygon({.specular = 0.9f, .one_sided = true},
+                   {{6, 0.2, 0.01}, {6, 0.2, 1.2}, {6, 2.8, 1.2}, {6, 2.8, 0.01}})
+          .square({.exitance = 20.0f, .one_sided = true}, {1.5, 1.5, 2.45}, -up, 0.3)
+          .build(),
+      {.position = {0.3, 1.5, 1.2},
+       .direction = Vector3d(1.0, 0.0, -0.25).normalized(),
+       .fov_degrees = 60.0,
+       .width = 64,
+       .height = 48}};
+  room.solve(1.5, 64);
+  const Image gathered = room.picture({.pass = Pass::gather, .gather_rays = 1024});
+  const double off = difference(room.picture({}), gathered);
+  std::printf("beside a mirror, records are %.2f %% off a gather\n", 100 * off);
+  EXPECT_LT(off, IrradianceRecords::usual_error);
+}
+
 // Corners of a hole of 2 m x 1.2 m in a wall.
 constexpr double left = 1.0, right = 3.0, low = 0.6, high = 1.8;
 
